@@ -1,0 +1,2 @@
+//! The suspension controller.
+#![no_std]

@@ -1,0 +1,1 @@
+//! `oleo-plant-sim`

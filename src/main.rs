@@ -1,0 +1,2 @@
+//! The `oleo` command line.
+fn main() {}

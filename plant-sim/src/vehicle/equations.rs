@@ -1,0 +1,231 @@
+//! Equations of motion of the ride model: seed report, Appendix A, after Genta, *Motor Vehicle Dynamics* (1997) 6.3.
+//!
+//! Seven generalised coordinates from the static position: heave of body, front and rear axle (m, up positive), pitch
+//! (rad, nose down positive, about the y axis to the left), roll of body, front and rear axle (rad, left side up positive,
+//! about the x axis forward). Yaw, lateral and longitudinal motion are constrained; forward speed is constant. With
+//! `x_i` the place of corner i ahead of the body's centre of mass (`l_e/c1`) and `s_i` its strut's place to the left of
+//! the centre plane (`l_g/d2`), the extension of strut i is
+//!
+//! ```text
+//! D_i = Z - Z_axle - x_i theta + s_i (phi - phi_axle)
+//! ```
+//!
+//! and with `T_i` its tension, `W_i` the road's force on the wheel at `w_i` to the left, `k` the anti-roll bars, Lagrange's
+//! equations for `T - U` of the appendix are
+//!
+//! ```text
+//! m_s Z''  = - sum T_i - m_s g
+//! m_f Zf'' = T_1 + T_2 - m_f g + W_1 + W_2                                       (rear alike)
+//! (J_y + J_z phi^2 + J_f phi_f^2 + J_r phi_r^2) theta''
+//!          = - 2 (J_z phi phi' + J_f phi_f phi_f' + J_r phi_r phi_r') theta' + sum x_i T_i
+//! J_x phi''  = J_z phi theta'^2 - sum s_i T_i - k_f (phi - phi_f) - k_r (phi - phi_r)
+//! J_f phi_f'' = J_f phi_f theta'^2 + s_1 T_1 + s_2 T_2 + k_f (phi - phi_f) + w_1 W_1 + w_2 W_2  (rear alike)
+//! ```
+//!
+//! # Misprints and gaps of the printed appendix
+//!
+//! Found by deriving the equations again from its T, U, F and virtual work; the rows of `F_[2]` themselves are right but for 4.
+//!
+//! 1. Phi equation: "d/dt dT/dphi' - dT/dphi = J_z phi'' - ..." and the line after the "therefore" print `J_z phi''`;
+//!    dT/dphi' = J_x phi' above it and the matrix M say **J_x**.
+//! 2. "U = U_S + U_G" omits **U_arb**, which the equations for phi, phi_f and phi_r contain.
+//! 3. "Point c: the center of mass of the vehicle body (unsprung mass)" is the **sprung** mass.
+//! 4. Theta equation: `phi^2 theta''` and its two fellows are dropped as small while `2 phi phi' theta'`, of the same
+//!    order, is kept; the rest is then no Lagrangian system and energy drifts at order phi^2. **Both are kept here**: M
+//!    stays diagonal, and energy is conserved exactly.
+//! 5. `l_g/a2` and `l_w/a2` (phi equations, virtual work) are **`l_g/d2`, `l_w/d2`** of the definitions and of the rows of `F_[2]`;
+//!    no point "a" is defined.
+//! 6. The virtual work of a wheel should read `f (dZ_f + l_w/d2 dphi_f)`, a variation of the axle's roll, as printed but for 5;
+//!    `Q = d/d(delta q) (delta W)` is a coefficient, not a derivative of W.
+//! 7. dF/dq' lines print `F_D1 / dq'` for **`dF_D1 / dq'`** throughout (the differential sign of the numerator is lost).
+//! 8. The vector of generalised forces uses i_{e/c1} for corners of one axle as if they could differ; by the definitions
+//!    `l_1e/c1 = l_2e/c1`, `l_3e/c1 = l_4e/c1` (one axle, one x).
+//! 9. The kinetic energy carries `m X'^2 / 2` with X' constant: no equation follows from it.
+//! 10. Tension and extension are positive in the appendix while the body of the report has compression positive; and
+//!     static loads are not in it: with coordinates from the static position, `T_i` starts at minus the static load and
+//!     gravity is not zero, as here.
+
+use super::parameters::{GRAVITY_M_S2, VehicleParameters};
+
+/// Generalised coordinates, their rates or accelerations, in the order of the appendix's state vector.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Coordinates {
+    /// Z: body heave, m.
+    pub heave: f64,
+    /// Z_f: front axle heave, m.
+    pub front_heave: f64,
+    /// Z_r: rear axle heave, m.
+    pub rear_heave: f64,
+    /// theta: pitch, rad, nose down positive.
+    pub pitch: f64,
+    /// phi: body roll, rad, left side up positive.
+    pub roll: f64,
+    /// phi_f: front axle roll, rad.
+    pub front_roll: f64,
+    /// phi_r: rear axle roll, rad.
+    pub rear_roll: f64,
+}
+
+impl Coordinates {
+    /// `self + factor * other`.
+    pub fn plus(self, factor: f64, other: Self) -> Self {
+        Self::from_array(core::array::from_fn(|i| {
+            self.to_array()[i] + factor * other.to_array()[i]
+        }))
+    }
+
+    /// In the order of the appendix: Z, Z_f, Z_r, theta, phi, phi_f, phi_r.
+    pub fn to_array(self) -> [f64; 7] {
+        [
+            self.heave,
+            self.front_heave,
+            self.rear_heave,
+            self.pitch,
+            self.roll,
+            self.front_roll,
+            self.rear_roll,
+        ]
+    }
+
+    /// Inverse of [`Self::to_array`].
+    pub fn from_array([heave, front_heave, rear_heave, pitch, roll, front_roll, rear_roll]: [f64; 7]) -> Self {
+        Self {
+            heave,
+            front_heave,
+            rear_heave,
+            pitch,
+            roll,
+            front_roll,
+            rear_roll,
+        }
+    }
+}
+
+/// The constants of the equations.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Equations {
+    /// m_s, m_f, m_r, kg.
+    pub mass_kg: [f64; 3],
+    /// J_x, J_y, J_z of the body, kg m2.
+    pub body_inertia_kg_m2: [f64; 3],
+    /// J_f, J_r, kg m2.
+    pub axle_inertia_kg_m2: [f64; 2],
+    /// l_e/c1 of front and rear axle: ahead of the body's centre of mass, m.
+    pub axle_ahead_m: [f64; 2],
+    /// l_g/d2: half the strut spacing, front and rear, m.
+    pub half_strut_spacing_m: [f64; 2],
+    /// l_w/d2: half the track, front and rear, m.
+    pub half_track_m: [f64; 2],
+    /// k_arb front and rear, N m/rad.
+    pub anti_roll_n_m_rad: [f64; 2],
+}
+
+impl Equations {
+    /// From a vehicle's parameters.
+    pub fn new(parameters: &VehicleParameters) -> Self {
+        let (front, rear) = (&parameters.front_axle, &parameters.rear_axle);
+        let ahead = parameters.body_cg_behind_front_axle_m();
+        Self {
+            mass_kg: [parameters.body.sprung_mass_kg, front.mass_kg, rear.mass_kg],
+            body_inertia_kg_m2: [
+                parameters.body.roll_inertia_kg_m2,
+                parameters.body.pitch_inertia_kg_m2,
+                parameters.body.yaw_inertia_kg_m2,
+            ],
+            axle_inertia_kg_m2: [front.inertia_kg_m2, rear.inertia_kg_m2],
+            axle_ahead_m: [ahead, ahead - parameters.layout.wheelbase_m],
+            half_strut_spacing_m: [0.5 * front.strut_spacing_m, 0.5 * rear.strut_spacing_m],
+            half_track_m: [0.5 * front.track_m, 0.5 * rear.track_m],
+            anti_roll_n_m_rad: [front.anti_roll_stiffness_n_m_rad, rear.anti_roll_stiffness_n_m_rad],
+        }
+    }
+
+    /// Extension of the four struts from the static position (or, from rates, its rate), m (m/s).
+    ///
+    /// Written as a mean and a difference per axle so that a mirrored motion gives mirrored bits.
+    pub fn extension(&self, q: &Coordinates) -> [f64; 4] {
+        let front = q.heave - q.front_heave - self.axle_ahead_m[0] * q.pitch;
+        let front_roll = self.half_strut_spacing_m[0] * (q.roll - q.front_roll);
+        let rear = q.heave - q.rear_heave - self.axle_ahead_m[1] * q.pitch;
+        let rear_roll = self.half_strut_spacing_m[1] * (q.roll - q.rear_roll);
+        [
+            front + front_roll,
+            front - front_roll,
+            rear + rear_roll,
+            rear - rear_roll,
+        ]
+    }
+
+    /// Height of the four wheel centres above their static position (or, from rates, its rate), m (m/s).
+    pub fn wheel_height(&self, q: &Coordinates) -> [f64; 4] {
+        let front = self.half_track_m[0] * q.front_roll;
+        let rear = self.half_track_m[1] * q.rear_roll;
+        [
+            q.front_heave + front,
+            q.front_heave - front,
+            q.rear_heave + rear,
+            q.rear_heave - rear,
+        ]
+    }
+
+    /// Accelerations for a state, strut tensions (positive pulling) and road forces on the wheels (N, up positive).
+    pub fn acceleration(
+        &self,
+        q: &Coordinates,
+        rate: &Coordinates,
+        tension_n: [f64; 4],
+        wheel_force_n: [f64; 4],
+    ) -> Coordinates {
+        let [m_s, m_f, m_r] = self.mass_kg;
+        let [j_x, j_y, j_z] = self.body_inertia_kg_m2;
+        let [j_f, j_r] = self.axle_inertia_kg_m2;
+        let [t1, t2, t3, t4] = tension_n;
+        let [w1, w2, w3, w4] = wheel_force_n;
+
+        let (front, rear) = (t1 + t2, t3 + t4);
+        let front_torque =
+            self.half_strut_spacing_m[0] * (t1 - t2) + self.anti_roll_n_m_rad[0] * (q.roll - q.front_roll);
+        let rear_torque = self.half_strut_spacing_m[1] * (t3 - t4) + self.anti_roll_n_m_rad[1] * (q.roll - q.rear_roll);
+
+        let pitch_inertia =
+            j_y + j_z * q.roll * q.roll + j_f * q.front_roll * q.front_roll + j_r * q.rear_roll * q.rear_roll;
+        let gyration =
+            j_z * q.roll * rate.roll + j_f * q.front_roll * rate.front_roll + j_r * q.rear_roll * rate.rear_roll;
+        let pitch_rate_2 = rate.pitch * rate.pitch;
+
+        Coordinates {
+            heave: -(front + rear) / m_s - GRAVITY_M_S2,
+            front_heave: (front + (w1 + w2)) / m_f - GRAVITY_M_S2,
+            rear_heave: (rear + (w3 + w4)) / m_r - GRAVITY_M_S2,
+            pitch: (self.axle_ahead_m[0] * front + self.axle_ahead_m[1] * rear - 2.0 * gyration * rate.pitch)
+                / pitch_inertia,
+            roll: (j_z * q.roll * pitch_rate_2 - (front_torque + rear_torque)) / j_x,
+            front_roll: q.front_roll * pitch_rate_2 + (front_torque + self.half_track_m[0] * (w1 - w2)) / j_f,
+            rear_roll: q.rear_roll * pitch_rate_2 + (rear_torque + self.half_track_m[1] * (w3 - w4)) / j_r,
+        }
+    }
+
+    /// Kinetic energy T of the appendix without the constant forward motion, J.
+    pub fn kinetic_energy_j(&self, q: &Coordinates, rate: &Coordinates) -> f64 {
+        let [m_s, m_f, m_r] = self.mass_kg;
+        let [j_x, j_y, j_z] = self.body_inertia_kg_m2;
+        let [j_f, j_r] = self.axle_inertia_kg_m2;
+        let pitch_inertia =
+            j_y + j_z * q.roll * q.roll + j_f * q.front_roll * q.front_roll + j_r * q.rear_roll * q.rear_roll;
+        0.5 * (m_s * rate.heave * rate.heave
+            + m_f * rate.front_heave * rate.front_heave
+            + m_r * rate.rear_heave * rate.rear_heave
+            + j_x * rate.roll * rate.roll
+            + j_f * rate.front_roll * rate.front_roll
+            + j_r * rate.rear_roll * rate.rear_roll
+            + pitch_inertia * rate.pitch * rate.pitch)
+    }
+
+    /// U_arb + U_G of the appendix, J: what is stored apart from struts and tyres.
+    pub fn potential_energy_j(&self, q: &Coordinates) -> f64 {
+        let (front, rear) = (q.roll - q.front_roll, q.roll - q.rear_roll);
+        0.5 * (self.anti_roll_n_m_rad[0] * front * front + self.anti_roll_n_m_rad[1] * rear * rear)
+            + GRAVITY_M_S2
+                * (self.mass_kg[0] * q.heave + self.mass_kg[1] * q.front_heave + self.mass_kg[2] * q.rear_heave)
+    }
+}

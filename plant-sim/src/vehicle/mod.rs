@@ -1,0 +1,28 @@
+//! The vehicle over the road: the ride model of the seed report's Appendix A, with the two-stage struts of
+//! [`crate::strut`] or the coil springs and dampers of the vehicle as sold.
+//!
+//! ```text
+//!  parameters --> equilibrium --+
+//!  road --> contact --> tyre ---+--> equations (accelerations) --> ride (fixed step) --> body, wheels, struts
+//!  signals --> suspension ------+
+//! ```
+//!
+//! Inside, the sign convention is the appendix's (extension and tension positive); everything that leaves this module
+//! is compression positive like the rest of the project. The conversion is in [`suspension`] and nowhere else.
+//!
+//! What the printed appendix gets wrong, and what is done instead, is listed in [`equations`].
+
+mod contact;
+pub mod equations;
+pub mod linear;
+mod parameter_file;
+mod parameters;
+mod ride;
+pub mod suspension;
+
+pub use parameter_file::ParameterError;
+pub use parameters::{
+    AxleParameters, BaselineParameters, BodyParameters, GRAVITY_M_S2, LayoutParameters, SeatParameters,
+    SolverParameters, TyreParameters, VehicleParameters,
+};
+pub use ride::{BaselineVehicle, BodyMotion, RideError, RideModel, RideVehicle, WheelMotion};

@@ -1,0 +1,281 @@
+//! The one page a run leaves for people: what was run, the outcome first, then the figures. Everything it needs is inside
+//! it, so it opens from a disk, a mail or an archive years later; the drawing library is in it once.
+
+use plotly::Plot;
+
+use crate::figure::Figure;
+use crate::table::{Table, escape};
+
+/// How a run ended, in a word and a colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Every check met.
+    Pass,
+    /// Worth a look.
+    Attention,
+    /// A check failed.
+    Fail,
+}
+
+/// A page being put together, top to bottom. Texts are plain: markup in them is shown, not obeyed.
+#[derive(Clone)]
+pub struct Page {
+    title: String,
+    command: String,
+    facts: Vec<(String, String)>,
+    sections: Vec<Section>,
+}
+
+/// A stretch of the page under a heading (the first has none).
+#[derive(Clone, Default)]
+struct Section {
+    heading: String,
+    items: Vec<Item>,
+}
+
+#[derive(Clone)]
+enum Item {
+    Verdict(Verdict, String),
+    Text(String),
+    Table(Table),
+    Details(String, Table),
+    Figure(Box<Figure>),
+}
+
+impl Page {
+    /// `command` is the command line that makes this page again.
+    pub fn new(title: &str, command: &str) -> Self {
+        Self {
+            title: title.into(),
+            command: command.into(),
+            facts: Vec::new(),
+            sections: vec![Section::default()],
+        }
+    }
+
+    /// A line in the head of the page: what strut, which road, which seed.
+    pub fn fact(&mut self, name: &str, value: &str) -> &mut Self {
+        self.facts.push((name.into(), value.into()));
+        self
+    }
+
+    /// The outcome in a sentence.
+    pub fn verdict(&mut self, verdict: Verdict, sentence: &str) -> &mut Self {
+        self.push(Item::Verdict(verdict, sentence.into()))
+    }
+
+    /// The table that says how the run came out; also what belongs on standard output.
+    pub fn outcome(&mut self, table: Table) -> &mut Self {
+        self.push(Item::Table(table))
+    }
+
+    /// Starts a section; what follows is in it.
+    pub fn section(&mut self, heading: &str) -> &mut Self {
+        self.sections.push(Section {
+            heading: heading.into(),
+            items: Vec::new(),
+        });
+        self
+    }
+
+    /// A paragraph.
+    pub fn text(&mut self, text: &str) -> &mut Self {
+        self.push(Item::Text(text.into()))
+    }
+
+    /// A table in full.
+    pub fn table(&mut self, table: Table) -> &mut Self {
+        self.push(Item::Table(table))
+    }
+
+    /// A long table behind a line to click.
+    pub fn details(&mut self, summary: &str, table: Table) -> &mut Self {
+        self.push(Item::Details(summary.into(), table))
+    }
+
+    /// A [`Curves`](crate::Curves), [`Field`](crate::Field) or [`Bars`](crate::Bars).
+    pub fn figure(&mut self, figure: impl Into<Figure>) -> &mut Self {
+        self.push(Item::Figure(Box::new(figure.into())))
+    }
+
+    fn push(&mut self, item: Item) -> &mut Self {
+        if let Some(section) = self.sections.last_mut() {
+            section.items.push(item);
+        }
+        self
+    }
+
+    /// The page as HTML. The same page has the same bytes.
+    pub fn render(&self) -> String {
+        let mut body = String::new();
+        let mut figures = 0;
+        for (index, section) in self.sections.iter().enumerate() {
+            if index > 0 {
+                body += &format!(
+                    "<section id=\"section-{index}\"><h2>{}</h2>\n",
+                    escape(&section.heading)
+                );
+            }
+            for item in &section.items {
+                body += &item.to_html(&mut figures);
+            }
+            if index > 0 {
+                body += "</section>\n";
+            }
+        }
+        let title = escape(&self.title);
+        let command = escape(&self.command);
+        let version = env!("CARGO_PKG_VERSION");
+        let mut facts =
+            format!("<dt>Command</dt><dd><code>{command}</code></dd><dt>Version</dt><dd>oleo {version}</dd>");
+        for (name, value) in &self.facts {
+            facts += &format!("<dt>{}</dt><dd>{}</dd>", escape(name), escape(value));
+        }
+        // No library where there is nothing to draw: such a page is a few kilobytes.
+        let library = if figures > 0 { library() } else { String::new() };
+        let script = if figures > 0 { include_str!("page.js") } else { "" };
+        format!(
+            "<!doctype html>\n<html lang=\"en-GB\"><head><meta charset=\"utf-8\">\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
+             <title>{title}</title>\n<style>{style}</style>\n{library}</head>\n<body><main>\n\
+             <header><h1>{title}</h1><dl class=\"facts\">{facts}</dl></header>\n\
+             <noscript><p>The figures need JavaScript; the data are in the CSV files beside this page.</p></noscript>\n\
+             {contents}{body}\
+             <footer>Drag to zoom, double-click to see everything, click a name in a legend to hide it. The data are in the \
+             CSV files beside this page.</footer>\n</main>\n<script>{script}</script></body></html>\n",
+            style = include_str!("page.css"),
+            contents = self.contents(),
+        )
+    }
+
+    /// Links to the sections, where there are enough of them to get lost in.
+    fn contents(&self) -> String {
+        if self.sections.len() < 4 {
+            return String::new();
+        }
+        let mut links = String::from("<nav>");
+        for (index, section) in self.sections.iter().enumerate().skip(1) {
+            links += &format!("<a href=\"#section-{index}\">{}</a>", escape(&section.heading));
+        }
+        links + "</nav>\n"
+    }
+}
+
+impl Item {
+    fn to_html(&self, figures: &mut usize) -> String {
+        match self {
+            Self::Verdict(verdict, sentence) => {
+                let class = match verdict {
+                    Verdict::Pass => "good",
+                    Verdict::Attention => "warning",
+                    Verdict::Fail => "bad",
+                };
+                format!("<div class=\"verdict {class}\">{}</div>\n", escape(sentence))
+            }
+            Self::Text(text) => format!("<p>{}</p>\n", escape(text)),
+            Self::Table(table) => table.to_html() + "\n",
+            Self::Details(summary, table) => {
+                format!(
+                    "<details><summary>{}</summary>{}</details>\n",
+                    escape(summary),
+                    table.to_html()
+                )
+            }
+            Self::Figure(figure) => {
+                *figures += 1;
+                figure_html(figure, *figures)
+            }
+        }
+    }
+}
+
+fn figure_html(figure: &Figure, number: usize) -> String {
+    // A value JSON cannot hold became null long before; a drawing is plain data.
+    let drawing = serde_json::to_string(&figure.drawing).unwrap_or_else(|_| "{\"data\":[],\"layout\":{}}".into());
+    // "</script>" inside the data would end it.
+    let drawing = drawing.replace("</", "<\\/");
+    let link = figure
+        .link
+        .as_ref()
+        .map_or(String::new(), |name| format!(" data-link=\"{}\"", escape(name)));
+    let caption = if figure.caption.is_empty() {
+        String::new()
+    } else {
+        format!("<figcaption>{}</figcaption>", escape(&figure.caption))
+    };
+    format!(
+        "<figure><h3>{title}</h3><div class=\"chart\" id=\"figure-{number}\" style=\"height:{height}px\"{link}></div>{caption}\
+         <script type=\"application/json\" id=\"figure-{number}-data\">{drawing}</script></figure>\n",
+        title = escape(&figure.title),
+        height = figure.height_px,
+    )
+}
+
+/// plotly.js as a script element. The crate appends MathJax, 2 MB that nothing here needs.
+fn library() -> String {
+    let mut scripts = Plot::offline_js_sources();
+    const END: &str = "</script>";
+    if let Some(end) = scripts.find(END) {
+        scripts.truncate(end + END.len());
+    }
+    scripts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Axis, Bars, Column, Curves, Field, FieldStyle};
+
+    fn example() -> Page {
+        let mut page = Page::new("Rig <damping>", "oleo rig damping --out x");
+        page.fact("Strut", "defender110 & co").verdict(Verdict::Pass, "all met");
+        let mut curves = Curves::new("Force", Axis::new("Time", "s"));
+        curves
+            .panel(Axis::new("Force", "N"))
+            .line("</script>", &[0.0, 1.0], &[1.0, 2.0])
+            .link("time");
+        page.section("Force").figure(curves);
+        let mut bars = Bars::new("Bars", ["a"], Axis::new("n", ""));
+        bars.series("s", &[1.0]);
+        page.section("Bars").figure(bars);
+        let axes = [Axis::new("x", "m"), Axis::new("y", "m"), Axis::new("z", "m")];
+        page.section("Field")
+            .figure(Field::new("f", FieldStyle::Surface, axes, &[0.0], &[0.0], &[vec![1.0]]));
+        page
+    }
+
+    #[test]
+    fn a_page_is_self_contained_with_one_library() {
+        let html = example().render();
+        assert_eq!(html.matches("plotly.js v").count(), 1);
+        assert!(html.len() < 6_000_000, "{} bytes", html.len());
+        assert!(
+            !html.contains("MathJax={") && !html.contains("src=\"http"),
+            "nothing is fetched"
+        );
+        assert_eq!(html.matches("class=\"chart\"").count(), 3);
+        assert!(html.contains("data-link=\"time\"") && html.contains("<nav>"));
+    }
+
+    #[test]
+    fn names_cannot_break_out() {
+        let html = example().render();
+        assert!(html.contains("<h1>Rig &lt;damping&gt;</h1>") && html.contains("defender110 &amp; co"));
+        let data = html
+            .split("figure-1-data\">")
+            .nth(1)
+            .and_then(|rest| rest.split("</script>").next())
+            .expect("data");
+        serde_json::from_str::<serde_json::Value>(data).expect("the data end where they should");
+    }
+
+    #[test]
+    fn a_page_without_figures_is_small_and_the_same_every_time() {
+        let mut page = Page::new("Check", "oleo hil");
+        let mut table = Table::new([Column::text("Check")]);
+        table.row(["a"]);
+        page.outcome(table.clone()).details("all", table);
+        assert!(page.render().len() < 20_000);
+        assert_eq!(page.render(), page.render());
+    }
+}

@@ -1,0 +1,248 @@
+//! The same rows for a person at a terminal and for the page, so the two cannot disagree.
+
+use std::fmt;
+
+use comfy_table::{CellAlignment, ContentArrangement, presets::UTF8_HORIZONTAL_ONLY};
+
+/// A column and how its cells line up.
+#[derive(Clone, Debug)]
+pub struct Column {
+    title: String,
+    numeric: bool,
+}
+
+impl Column {
+    /// Words, aligned left.
+    pub fn text(title: &str) -> Self {
+        Self {
+            title: title.into(),
+            numeric: false,
+        }
+    }
+
+    /// Figures, aligned right; put the unit in the title.
+    pub fn number(title: &str) -> Self {
+        Self {
+            title: title.into(),
+            numeric: true,
+        }
+    }
+}
+
+/// What a cell means, shown as colour in the page beside its words (never instead of them).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Tone {
+    #[default]
+    Neutral,
+    Good,
+    Warning,
+    Bad,
+}
+
+/// One cell; text converts into it.
+#[derive(Clone, Debug, Default)]
+pub struct Cell {
+    text: String,
+    tone: Tone,
+}
+
+impl Cell {
+    /// "ok", or what else says that all is well.
+    pub fn good(text: impl Into<String>) -> Self {
+        Self {
+            text: text.into(),
+            tone: Tone::Good,
+        }
+    }
+
+    /// Worth a look.
+    pub fn warning(text: impl Into<String>) -> Self {
+        Self {
+            text: text.into(),
+            tone: Tone::Warning,
+        }
+    }
+
+    /// A failed check.
+    pub fn bad(text: impl Into<String>) -> Self {
+        Self {
+            text: text.into(),
+            tone: Tone::Bad,
+        }
+    }
+
+    /// "yes" as good or "NO" as bad, for the outcome of a check.
+    pub fn check(met: bool) -> Self {
+        if met { Self::good("yes") } else { Self::bad("NO") }
+    }
+}
+
+impl<T: Into<String>> From<T> for Cell {
+    fn from(text: T) -> Self {
+        Self {
+            text: text.into(),
+            tone: Tone::Neutral,
+        }
+    }
+}
+
+/// Rows under titled columns. `Display` is the form for a terminal.
+#[derive(Clone, Debug)]
+pub struct Table {
+    columns: Vec<Column>,
+    rows: Vec<Vec<Cell>>,
+}
+
+impl Table {
+    /// A table without rows.
+    pub fn new(columns: impl IntoIterator<Item = Column>) -> Self {
+        Self {
+            columns: columns.into_iter().collect(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// Adds a row; missing cells are empty, surplus ones are dropped. For rows that mix text and [`Cell`]s, convert the
+    /// text with `.into()`.
+    pub fn row<C: Into<Cell>>(&mut self, cells: impl IntoIterator<Item = C>) -> &mut Self {
+        let mut row: Vec<Cell> = cells.into_iter().map(Into::into).collect();
+        row.resize_with(self.columns.len(), Cell::default);
+        self.rows.push(row);
+        self
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether there is no row.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    pub(crate) fn to_html(&self) -> String {
+        let align = |column: &Column| if column.numeric { " class=\"number\"" } else { "" };
+        let mut html = String::from("<div class=\"scroll\"><table><thead><tr>");
+        for column in &self.columns {
+            html += &format!("<th{} scope=\"col\">{}</th>", align(column), escape(&column.title));
+        }
+        html += "</tr></thead><tbody>";
+        for row in &self.rows {
+            html += "<tr>";
+            for (cell, column) in row.iter().zip(&self.columns) {
+                let text = escape(&cell.text);
+                let text = match cell.tone {
+                    Tone::Neutral => text,
+                    Tone::Good => format!("<span class=\"good\">{text}</span>"),
+                    Tone::Warning => format!("<span class=\"warning\">{text}</span>"),
+                    Tone::Bad => format!("<span class=\"bad\">{text}</span>"),
+                };
+                html += &format!("<td{}>{text}</td>", align(column));
+            }
+            html += "</tr>";
+        }
+        html + "</tbody></table></div>"
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut table = comfy_table::Table::new();
+        table
+            .load_style(UTF8_HORIZONTAL_ONLY)
+            .set_content_arrangement(ContentArrangement::Dynamic);
+        table.set_header(self.columns.iter().map(|column| column.title.clone()));
+        for row in &self.rows {
+            table.add_row(row.iter().map(|cell| cell.text.clone()));
+        }
+        for (index, column) in self.columns.iter().enumerate() {
+            if let Some(shown) = table.column_mut(index).filter(|_| column.numeric) {
+                shown.set_cell_alignment(CellAlignment::Right);
+            }
+        }
+        for line in table.lines() {
+            writeln!(formatter, "{}", line.trim_end())?;
+        }
+        Ok(())
+    }
+}
+
+/// `value` with `digits` significant digits, plain between 1e-3 and 1e7 and with an exponent outside: "4.18", "1.50e9".
+pub fn significant(value: f64, digits: usize) -> String {
+    let digits = digits.max(1);
+    if !value.is_finite() {
+        return if value.is_nan() {
+            "-".into()
+        } else if value > 0.0 {
+            "inf".into()
+        } else {
+            "-inf".into()
+        };
+    }
+    let scientific = format!("{value:.*e}", digits - 1);
+    let exponent: i32 = scientific
+        .split_once('e')
+        .and_then(|parts| parts.1.parse().ok())
+        .unwrap_or(0);
+    if value == 0.0 {
+        "0".into()
+    } else if (-3..7).contains(&exponent) {
+        let decimals = (digits as i32 - 1 - exponent).max(0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        scientific
+    }
+}
+
+/// Text as it stands in HTML.
+pub(crate) fn escape(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn example() -> Table {
+        let mut table = Table::new([Column::text("Limit"), Column::number("Value, MPa"), Column::text("Met")]);
+        table.row([Cell::from("pressure <= 20"), "19.5".into(), Cell::check(true)]);
+        table.row(["travel"]);
+        table
+    }
+
+    #[test]
+    fn terminal_form_has_titles_and_right_aligned_figures() {
+        let text = example().to_string();
+        assert!(text.contains("Limit") && text.contains("yes"), "{text}");
+        assert!(text.lines().any(|line| line.contains("      19.5")), "{text}");
+        assert!(text.lines().all(|line| line == line.trim_end()));
+    }
+
+    #[test]
+    fn html_form_escapes_and_marks() {
+        let html = example().to_html();
+        assert!(html.contains("pressure &lt;= 20"));
+        assert!(html.contains("<span class=\"good\">yes</span>"));
+        assert_eq!(html.matches("<td").count(), 6, "a short row is filled up");
+    }
+
+    #[test]
+    fn significant_digits() {
+        let cases = [
+            (4.1789, "4.18"),
+            (0.0, "0"),
+            (1.5e9, "1.50e9"),
+            (-0.012_34, "-0.0123"),
+            (38_000.0, "38000"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(significant(value, 3), text);
+        }
+        assert_eq!(significant(f64::NAN, 3), "-");
+        assert_eq!(significant(2.5e-7, 2), "2.5e-7");
+    }
+}

@@ -1,0 +1,53 @@
+//! Turbulent orifices: bypass valves, valve 3, leaks.
+//!
+//! `Q = c dp / sqrt(|dp| + p_t)` (recordings README): the square-root law `Q = c sqrt(dp)` made smooth and laminar
+//! below the transition pressure `p_t`, so that it has a finite slope at rest. `c` in m3/s/sqrt(Pa).
+
+/// `dp / sqrt(|dp| + p_t)` and its derivative; flow per unit of flow coefficient.
+#[inline]
+#[must_use]
+pub fn unit_flow(drop_pa: f64, transition_pa: f64) -> (f64, f64) {
+    let a = drop_pa.abs() + transition_pa;
+    let root = a.sqrt();
+    (drop_pa / root, (0.5 * drop_pa.abs() + transition_pa) / (a * root))
+}
+
+/// The pressure drop that drives `flow / coefficient = q`, and its derivative by `q`: the root of
+/// `dp^2 = q^2 (|dp| + p_t)` with the sign of `q`.
+#[inline]
+#[must_use]
+pub fn unit_drop(q: f64, transition_pa: f64) -> (f64, f64) {
+    let q2 = q * q;
+    let root = (q2 * q2 + 4.0 * q2 * transition_pa).sqrt();
+    let drop = 0.5 * (q2 + root);
+    // d(dp)/dq of the relation above; at q = 0 its limit is sqrt(p_t).
+    let slope = if root > 0.0 {
+        q.abs() * (1.0 + (q2 + 2.0 * transition_pa) / root)
+    } else {
+        transition_pa.sqrt()
+    };
+    (drop.copysign(q), slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    proptest::proptest! {
+        #[test]
+        fn drop_inverts_flow(dp in -2e7..2e7f64) {
+            let (q, dq) = unit_flow(dp, 2e4);
+            let (back, ddp) = unit_drop(q, 2e4);
+            proptest::prop_assert!((back - dp).abs() <= 1e-9 * dp.abs() + 1e-6);
+            proptest::prop_assert!((ddp * dq - 1.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn turbulent_and_laminar_limits() {
+        let (q, _) = unit_flow(1e8, 2e4);
+        assert!((q / 1e4 - 1.0).abs() < 2e-4, "square-root law far above the transition");
+        let (q, slope) = unit_flow(0.0, 2e4);
+        assert!(q == 0.0 && (slope * 2e4_f64.sqrt() - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,63 @@
+# What every step of ./test is written with: run a check, skip loudly, get a missing tool. Sourced, never run.
+# shellcheck shell=bash
+set -u
+
+: "${CARGO_TARGET_DIR:=$PWD/target}" "${OLEO_STEP:=step}"
+: "${OLEO_LOGS:=$CARGO_TARGET_DIR/test}" "${OLEO_TALLY:=$CARGO_TARGET_DIR/test/tally}"
+export CARGO_TARGET_DIR OLEO_STEP OLEO_LOGS OLEO_TALLY
+mkdir -p "$OLEO_LOGS"
+
+# tally passed|failed|skipped COUNT NAME [REASON]
+tally() { printf '%s\t%s\t%s\t%s\n' "$1" "$2" "$OLEO_STEP: $3" "${4:-}" >> "$OLEO_TALLY"; }
+
+pass() { echo "   passed  $1"; tally passed 1 "$1"; }
+fail() { echo "   FAILED  $1: $2"; tally failed 1 "$1" "$2"; }
+skip() { echo "   SKIPPED $1: $2"; tally skipped 1 "$1" "$2"; }
+
+# check NAME COMMAND...: runs it with its output kept in $log. Status 0 passes, 77 skips (reason: its last line), all
+# else fails and shows the end of the output. Returns the command's status.
+check() {
+    local name=$1 status
+    shift
+    log=$OLEO_LOGS/$OLEO_STEP.$(tr -c 'a-zA-Z0-9\n' - <<< "$name").log
+    "$@" > "$log" 2>&1 < /dev/null
+    status=$?
+    case $status in
+        0) pass "$name" ;;
+        77) skip "$name" "$(tail -n 1 "$log")" ;;
+        *) fail "$name" "status $status of: $*"; tail -n "${OLEO_TAIL:-40}" "$log" | sed 's/^/           /' ;;
+    esac
+    return $status
+}
+
+packages_present() {
+    local status
+    status=$(dpkg-query -W -f '${db:Status-Status}\n' "$@" 2> /dev/null) || return 1
+    ! grep -qvx installed <<< "$status"
+}
+
+# packages NAME...: Debian packages, installed if they are not there and we may. Returns whether all are there.
+packages() {
+    local root=()
+    command -v apt-get > /dev/null || return 1
+    packages_present "$@" && return 0
+    if [ "$(id -u)" -ne 0 ]; then
+        sudo -n true 2> /dev/null || return 1
+        root=(sudo -n)
+    fi
+    echo "   installing $*"
+    get() { "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "$@" >> "$OLEO_LOGS/apt.log" 2>&1 < /dev/null; }
+    # Lists may be absent or old: fetch them when the first try did not do.
+    get install -qq -y --no-install-recommends "$@" ||
+        { get update -qq; get install -qq -y --no-install-recommends "$@"; }
+    packages_present "$@"
+}
+
+# need PACKAGE TOOL...: whether all the tools are there, after installing the Debian package if one is not.
+need() {
+    local package=$1
+    shift
+    command -v "$@" > /dev/null && return 0
+    packages "$package"
+    command -v "$@" > /dev/null
+}

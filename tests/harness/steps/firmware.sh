@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# the firmware for the STM32F405 builds; its size and deepest stack
+. tests/harness/lib.sh
+. tests/harness/cross.sh
+
+cross_find || { skip "firmware" "$cross_how"; exit 0; }
+echo "   $cross_how"
+check "firmware builds" cross_cargo build --release || exit 0
+image=$FIRMWARE_TARGET/$BOARD/release/oleo-firmware
+need binutils-arm-none-eabi arm-none-eabi-objdump || { skip "size and stack" "no arm-none-eabi-objdump"; exit 0; }
+check "size and stack" python3 tests/harness/image.py "$image" --flash 1048576 --ram 131072 --root Reset
+sed 's/^/   /' "$log"
+exit 0

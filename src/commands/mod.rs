@@ -1,0 +1,4 @@
+//! One file a command: `pub struct Args` (clap, with units and an example in the help) and
+//! `pub fn run(args: Args) -> Result<ExitCode, Failure>`.
+
+pub mod hil;

@@ -110,7 +110,7 @@ impl Field {
             json!({ "scene": {
                 "xaxis": x_axis.to_json(), "yaxis": y_axis.to_json(), "zaxis": z_axis.to_json(),
                 "aspectmode": "manual", "aspectratio": { "x": 1.2, "y": 1.2, "z": 0.8 },
-                "camera": { "eye": { "x": 1.5, "y": -1.6, "z": 0.9 } },
+                "camera": { "eye": { "x": -1.3, "y": -1.6, "z": 1.2 } },
             }, "legend": { "orientation": "h", "y": -0.1 } })
         };
         Figure {

@@ -289,3 +289,128 @@ fn open_to_others(staging: &Path) -> io::Result<()> {
 fn open_to_others(_staging: &Path) -> io::Result<()> {
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entries(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(folder)
+            .expect("a folder")
+            .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn nothing_is_seen_before_commit_and_all_of_it_after() {
+        let parent = tempfile::tempdir().expect("a folder");
+        let destination = parent.path().join("out");
+        let mut out = OutputDirectory::stage(&destination).expect("writable");
+        out.csv("a.csv", &[("time_s", &[0.0, 0.1]), ("force_N", &[1.0, -2.5e-7])])
+            .expect("written");
+        out.write("runs/01.txt", "x").expect("written");
+        assert!(!destination.exists());
+        out.commit().expect("moved");
+        assert_eq!(entries(&destination), ["a.csv", "runs"]);
+        assert_eq!(entries(parent.path()), ["out"]);
+        let text = fs::read_to_string(destination.join("a.csv")).expect("a file");
+        assert_eq!(text, "time_s,force_N\n0,1\n0.1,-0.00000025\n");
+    }
+
+    #[test]
+    fn dropped_without_commit_nothing_remains() {
+        let parent = tempfile::tempdir().expect("a folder");
+        for destination in [parent.path().join("new"), parent.path().to_path_buf()] {
+            let mut out = OutputDirectory::stage(&destination).expect("writable");
+            out.write("a.txt", "x").expect("written");
+            drop(out);
+            assert!(entries(parent.path()).is_empty());
+        }
+        assert!(
+            !interrupt::staged()
+                .iter()
+                .any(|folder| folder.starts_with(parent.path()))
+        );
+    }
+
+    #[test]
+    fn an_existing_folder_keeps_its_other_files() {
+        let destination = tempfile::tempdir().expect("a folder");
+        fs::write(destination.path().join("notes.txt"), "mine").expect("written");
+        fs::write(destination.path().join("a.txt"), "old").expect("written");
+        let mut out = OutputDirectory::stage(destination.path()).expect("writable");
+        out.write("a.txt", "new").expect("written");
+        out.write("runs/b.txt", "new").expect("written");
+        assert_eq!(
+            fs::read_to_string(destination.path().join("a.txt")).expect("a file"),
+            "old"
+        );
+        out.commit().expect("moved");
+        assert_eq!(entries(destination.path()), ["a.txt", "notes.txt", "runs"]);
+        assert_eq!(
+            fs::read_to_string(destination.path().join("a.txt")).expect("a file"),
+            "new"
+        );
+    }
+
+    #[test]
+    fn refusals_are_one_line_that_names_the_place() {
+        let parent = tempfile::tempdir().expect("a folder");
+        let file = parent.path().join("file");
+        fs::write(&file, "").expect("written");
+        let inside = |path: &Path| OutputDirectory::stage(path).expect_err("refused").to_string();
+        for (path, part) in [
+            (file.clone(), "not a folder"),
+            (parent.path().join("no/out"), "create it first"),
+        ] {
+            let message = inside(&path);
+            assert!(
+                message.contains(part) && message.starts_with(&path.display().to_string()),
+                "{message}"
+            );
+            assert!(!message.contains('\n'));
+        }
+        let mut out = OutputDirectory::stage(parent.path().join("out")).expect("writable");
+        for name in ["../x", "/x", ""] {
+            assert!(matches!(out.write(name, "x"), Err(OutputError::Name { .. })), "{name}");
+        }
+        assert!(out.csv("a.csv", &[("a", &[1.0]), ("b", &[])]).is_err());
+    }
+
+    #[test]
+    fn records_and_json() {
+        #[derive(Serialize)]
+        struct Row {
+            corner: u8,
+            force_n: f64,
+        }
+        let parent = tempfile::tempdir().expect("a folder");
+        let mut out = OutputDirectory::stage(parent.path().join("out")).expect("writable");
+        out.csv_records(
+            "rows.csv",
+            [Row {
+                corner: 0,
+                force_n: 0.1 + 0.2,
+            }],
+        )
+        .expect("written");
+        out.json(
+            "summary.json",
+            &Row {
+                corner: 1,
+                force_n: 2.0,
+            },
+        )
+        .expect("written");
+        let destination = out.commit().expect("moved");
+        let text = fs::read_to_string(destination.join("rows.csv")).expect("a file");
+        assert_eq!(text, "corner,force_n\n0,0.30000000000000004\n");
+        assert!(
+            fs::read_to_string(destination.join("summary.json"))
+                .expect("a file")
+                .ends_with("}\n")
+        );
+    }
+}

@@ -11,7 +11,7 @@
       font: { color: ink, size: 12, family: "system-ui, sans-serif" }, paper_bgcolor: clear, plot_bgcolor: clear,
       margin: { l: 64, r: 16, t: 34, b: 46 }, xaxis: axis, yaxis: axis, scene: { xaxis: plain, yaxis: plain, zaxis: plain },
       legend: { orientation: "h", x: 0, y: 1, yanchor: "bottom", xanchor: "left" }, hoverlabel: { namelength: -1, bgcolor: night ? "#232a33" : "#ffffff", font: { color: ink } },
-      annotationdefaults: { font: { color: ink } },
+      modebar: { bgcolor: clear, color: "#98a4b3", activecolor: "#2b7bbd" }, annotationdefaults: { font: { color: ink } },
     } };
   };
   const configuration = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"],

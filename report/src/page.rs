@@ -249,8 +249,10 @@ mod tests {
         let html = example().render();
         assert_eq!(html.matches("plotly.js v").count(), 1);
         assert!(html.len() < 6_000_000, "{} bytes", html.len());
+        // The library holds an address of icons for maps nobody draws here; the page itself has none.
+        let own = html.replace(&library(), "");
         assert!(
-            !html.contains("MathJax={") && !html.contains("src=\"http"),
+            !own.contains("http") && !html.contains("MathJax={"),
             "nothing is fetched"
         );
         assert_eq!(html.matches("class=\"chart\"").count(), 3);

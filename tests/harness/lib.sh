@@ -61,3 +61,25 @@ need() {
     packages "$package"
     command -v "$@" > /dev/null
 }
+
+# libtest NAME COMMAND...: runs Rust tests (with --show-output, so that a test which says "SKIPPED: reason" and returns
+# is told from one that passed) and tallies each.
+libtest() {
+    local title=$1 status kind name reason counts
+    shift
+    log=$OLEO_LOGS/$OLEO_STEP.$(tr -c 'a-zA-Z0-9\n' - <<< "$title").log
+    "$@" > "$log" 2>&1 < /dev/null
+    status=$?
+    counts=$(awk -v title="$title" -f tests/harness/libtest.awk "$log")
+    while IFS=$'\t' read -r kind name reason; do
+        case $kind in
+            passed) [ "$name" -gt 0 ] && echo "   passed  $name tests of $title" && tally passed "$name" "$title" ;;
+            failed) fail "$name" "see $log" ;;
+            skipped) skip "$name" "$reason" ;;
+        esac
+    done <<< "$counts"
+    [ $status -eq 0 ] && return 0
+    grep -q '^failed' <<< "$counts" || fail "$title" "did not build or run to its end (status $status)"
+    grep -vE ' \.\.\. ok$|^ +(Running|Compiling|Doc-tests)|^$' "$log" | tail -n 60 | sed 's/^/           /'
+    return $status
+}

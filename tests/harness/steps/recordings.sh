@@ -1,0 +1,16 @@
+#!/usr/bin/env bash
+# the recordings beside the checkout, where there are any: tests/recordings.rs in release
+. tests/harness/lib.sh
+readonly folder=../shared/recordings
+
+if [ ! -d $folder ]; then
+    skip "recordings" "no folder $folder beside this checkout"
+    exit 0
+fi
+echo "   $(find $folder -name '*.csv' | wc -l) recordings, $(find $folder -name model.toml | wc -l) models"
+if [ -f tests/recordings.rs ]; then
+    libtest "recordings" cargo test --locked --release --test recordings -- --show-output
+else
+    skip "recordings" "no tests/recordings.rs yet"
+fi
+exit 0

@@ -1,0 +1,162 @@
+//! End-to-end protection after AUTOSAR profile 2.
+//!
+//! CAN's own CRC protects a frame on the wire; it does not see a frame that was stored twice, sent by the wrong node, or
+//! frozen in a gateway. Profile 2 adds an 8-bit CRC with polynomial 0x2F over counter, payload and a data identifier which is not sent, and a
+//! 4-bit counter.
+//! Source: AUTOSAR FO R20-11, "E2E Protocol Specification" (document 849), profile 2; CRC8H2F of "Specification of CRC
+//! Routines" (start 0xFF, final XOR 0xFF; check value of "123456789" 0xDF). Layout: byte 0 CRC, low nibble of byte 1 the counter.
+//!
+//! ```text
+//!   CRC = CRC8H2F( byte 1 .. byte 7, data_ids[counter] )
+//! ```
+
+use super::{Contract, FRAME_BYTES};
+use crc::{CRC_8_AUTOSAR, Crc};
+
+/// CRC8H2F, by a table of 256 bytes.
+const CRC8H2F: Crc<u8> = Crc::<u8>::new(&CRC_8_AUTOSAR);
+
+const COUNTER_MASK: u8 = 0x0F;
+
+/// Frames in sequence that must follow a broken sequence before data is used again (`SyncCounterInit`).
+const SYNC_FRAMES: u8 = 2;
+/// Periods without new data after which the sequence counts as broken (`MaxNoNewOrRepeatedData`).
+const MAX_NO_NEW: u8 = 3;
+
+fn crc_of(data: &[u8; FRAME_BYTES], data_ids: &[u8; 16]) -> u8 {
+    let [_, header, ..] = *data;
+    let data_id = data_ids.get(usize::from(header & COUNTER_MASK)).copied().unwrap_or(0);
+    let mut digest = CRC8H2F.digest();
+    digest.update(data.get(1..).unwrap_or(&[]));
+    digest.update(&[data_id]);
+    digest.finalize()
+}
+
+/// Sending side of one message.
+#[derive(Clone, Copy, Debug)]
+pub struct Protector {
+    data_ids: [u8; 16],
+    counter: u8,
+}
+
+impl Protector {
+    /// The first protected frame carries counter 1, as the profile's sender increments before it sends.
+    pub const fn new(contract: &Contract) -> Self {
+        Self {
+            data_ids: contract.data_ids,
+            counter: 0,
+        }
+    }
+
+    /// Writes counter and CRC into a payload whose first 12 bits are free.
+    pub fn protect(&mut self, data: &mut [u8; FRAME_BYTES]) {
+        self.counter = self.counter.wrapping_add(1) & COUNTER_MASK;
+        let [crc, header, ..] = data;
+        *crc = 0;
+        *header = (*header & !COUNTER_MASK) | self.counter;
+        let computed = crc_of(data, &self.data_ids);
+        let [crc, ..] = data;
+        *crc = computed;
+    }
+}
+
+/// Outcome for one received frame (`E2E_P02CheckStatusType`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CheckStatus {
+    /// Right CRC, counter one further: use the data.
+    Ok,
+    /// Right CRC, up to `max_delta - 1` frames are missing: use the data.
+    OkSomeLost,
+    /// Wrong CRC: not for us, corrupted, or masqueraded.
+    WrongCrc,
+    /// First frame ever: nothing to compare the counter with.
+    Initial,
+    /// In sequence again after a broken sequence, not yet for long enough.
+    Sync,
+    /// The counter did not move.
+    Repeated,
+    /// The counter moved too far or backwards.
+    WrongSequence,
+}
+
+impl CheckStatus {
+    /// Whether the data may be used.
+    pub const fn is_usable(self) -> bool {
+        matches!(self, Self::Ok | Self::OkSomeLost)
+    }
+
+    /// Whether the frame breaks the contract (counts in the hysteresis of [`crate::node`]).
+    pub const fn is_error(self) -> bool {
+        matches!(self, Self::WrongCrc | Self::Repeated | Self::WrongSequence)
+    }
+}
+
+/// Receiving side of one message.
+#[derive(Clone, Copy, Debug)]
+pub struct Checker {
+    data_ids: [u8; 16],
+    max_delta_init: u8,
+    max_delta: u8,
+    last: Option<u8>,
+    sync: u8,
+    no_new: u8,
+}
+
+impl Checker {
+    /// Has seen nothing yet.
+    pub const fn new(contract: &Contract) -> Self {
+        Self {
+            data_ids: contract.data_ids,
+            max_delta_init: contract.max_delta,
+            max_delta: contract.max_delta,
+            last: None,
+            sync: 0,
+            no_new: 0,
+        }
+    }
+
+    /// A period went by without a frame: the counter may be one further when the next arrives.
+    pub fn no_new_data(&mut self) {
+        self.no_new = self.no_new.saturating_add(1);
+        self.max_delta = self.max_delta.saturating_add(1).min(COUNTER_MASK);
+    }
+
+    /// Checks a received frame.
+    pub fn check(&mut self, data: &[u8; FRAME_BYTES]) -> CheckStatus {
+        let [crc, header, ..] = *data;
+        if crc != crc_of(data, &self.data_ids) {
+            return CheckStatus::WrongCrc;
+        }
+        let counter = header & COUNTER_MASK;
+        let Some(last) = self.last else {
+            self.last = Some(counter);
+            self.max_delta = self.max_delta_init;
+            return CheckStatus::Initial;
+        };
+        let delta = counter.wrapping_sub(last) & COUNTER_MASK;
+        if delta == 0 {
+            self.no_new = self.no_new.saturating_add(1);
+            return CheckStatus::Repeated;
+        }
+        let in_sequence = delta <= self.max_delta;
+        self.max_delta = self.max_delta_init;
+        self.last = Some(counter);
+        let broken = core::mem::take(&mut self.no_new) > MAX_NO_NEW;
+        if !in_sequence {
+            self.sync = SYNC_FRAMES;
+            return CheckStatus::WrongSequence;
+        }
+        if broken {
+            self.sync = SYNC_FRAMES;
+        }
+        if self.sync > 0 {
+            self.sync -= 1;
+            return CheckStatus::Sync;
+        }
+        if delta == 1 {
+            CheckStatus::Ok
+        } else {
+            CheckStatus::OkSomeLost
+        }
+    }
+}

@@ -1,0 +1,276 @@
+//! The mode machine: what the controller is allowed to do, given what is broken.
+//!
+//! It is a pure function of the health of the inputs, counted in ticks, and it has the last word: whatever a strategy wants passes
+//! through [`permitted`]. De-energised (all valves closed: stiff spring, high damping) is the safe state, so every doubt
+//! ends there. Closing is never delayed: a fault that is seen in a tick shapes the command of that tick.
+//!
+//! ```text
+//!                    healthy for 20 ticks
+//!     +----------+ -----------------------> +--------+ <------------------------+
+//!     | StartUp  |                          | Normal |   healthy for 200 ticks  |
+//!     +----------+ <---------+              +--------+ -----------------> +----------+
+//!       |  | severe          |                |  |     one axle affected  | Degraded |
+//!       |  +--------->+------+--+ <-----------+  |                        +----------+
+//!       |             |  Safe   | <--------------|----------------------------+  |
+//!       |             +---------+    severe      |           severe              |
+//!       |  healthy for  |   | third entry, or    |                               |
+//!       |  200 ticks:   |   | 2000 ticks in Safe |                               |
+//!       |  to StartUp   |   v                    v                               v
+//!       +-------------------> Latched  <---- solenoid or internal fault (from anywhere)
+//! ```
+//!
+//! *Severe*: readings are missing on both axles. *One axle affected*: any reading of one axle is missing.
+//! From `StartUp` a severe fault leads to `Safe` only after it was once healthy: before the first complete set of sensors
+//! the machine just waits, with the valves closed. `Latched` ends only with a new [`State`], that is a restart.
+//!
+//! | mode | springs (valve 3) | bypass valves 1, 2 |
+//! |---|---|---|
+//! | Normal | strategy | strategy |
+//! | Degraded | closed, all four: roll stiffness and balance of the safe state | strategy on the healthy axle, closed on the other |
+//! | StartUp, Safe, Latched | closed | closed |
+
+use crate::timing::ticks;
+use crate::valves::{BYPASS_1, BYPASS_2, CORNERS, SPRING, ValveCommand};
+
+/// Ticks of health from `StartUp` to `Normal`.
+pub const START_UP_TICKS: u16 = ticks(100);
+/// Ticks of health from `Degraded` to `Normal` and from `Safe` to `StartUp`.
+pub const RECOVERY_TICKS: u16 = ticks(1_000);
+/// Ticks in `Safe` after which it latches.
+pub const LATCH_TICKS: u16 = ticks(10_000);
+/// Entry into `Safe` that latches.
+pub const LATCH_ENTRIES: u8 = 3;
+
+/// What the controller is doing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Mode {
+    /// Waiting for a complete and plausible set of sensors. Valves closed.
+    #[default]
+    StartUp,
+    /// The strategy decides.
+    Normal,
+    /// One axle's sensors are incomplete: limp. Springs stiff, dampers by strategy on the other axle.
+    Degraded,
+    /// Valves closed; recovers when everything is healthy again.
+    Safe,
+    /// Valves closed until restart.
+    Latched,
+}
+
+impl Mode {
+    /// Number on the bus.
+    pub const fn raw(self) -> u8 {
+        match self {
+            Self::StartUp => 0,
+            Self::Normal => 1,
+            Self::Degraded => 2,
+            Self::Safe => 3,
+            Self::Latched => 4,
+        }
+    }
+
+    /// From the number on the bus.
+    pub const fn from_raw(raw: u8) -> Option<Self> {
+        Some(match raw {
+            0 => Self::StartUp,
+            1 => Self::Normal,
+            2 => Self::Degraded,
+            3 => Self::Safe,
+            4 => Self::Latched,
+            _ => return None,
+        })
+    }
+}
+
+/// What was found to be wrong. The first cause of leaving `Normal` (or of not reaching it) is kept until all is well.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum FaultCode {
+    /// Nothing.
+    #[default]
+    None,
+    /// A reading is flagged by its sensor, not finite, or outside its range.
+    SensorRange,
+    /// A reading changes faster than the hardware can.
+    SensorRate,
+    /// A reading does not change while its neighbours do.
+    SensorStuck,
+    /// One pressure of a strut disagrees with the others at rest.
+    SensorVote,
+    /// Displacement and gas volumes of a strut disagree.
+    OilBalance,
+    /// A sensor message is late or not trustworthy.
+    MessageLost,
+    /// No sensor message arrives any more.
+    BusSilent,
+    /// A solenoid could not be switched.
+    Solenoid,
+    /// The controller's own arithmetic gave no number.
+    Internal,
+}
+
+impl FaultCode {
+    /// Number on the bus.
+    pub const fn raw(self) -> u8 {
+        match self {
+            Self::None => 0,
+            Self::SensorRange => 1,
+            Self::SensorRate => 2,
+            Self::SensorStuck => 3,
+            Self::SensorVote => 4,
+            Self::OilBalance => 5,
+            Self::MessageLost => 6,
+            Self::BusSilent => 7,
+            Self::Solenoid => 8,
+            Self::Internal => 9,
+        }
+    }
+
+    /// From the number on the bus.
+    pub const fn from_raw(raw: u8) -> Option<Self> {
+        Some(match raw {
+            0 => Self::None,
+            1 => Self::SensorRange,
+            2 => Self::SensorRate,
+            3 => Self::SensorStuck,
+            4 => Self::SensorVote,
+            5 => Self::OilBalance,
+            6 => Self::MessageLost,
+            7 => Self::BusSilent,
+            8 => Self::Solenoid,
+            9 => Self::Internal,
+            _ => return None,
+        })
+    }
+}
+
+/// Health of one tick's inputs, as the plausibility checks leave it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Health {
+    /// Corners with at least one reading that may not be used.
+    pub affected: [bool; CORNERS],
+    /// Why (the gravest cause present), [`FaultCode::None`] if healthy.
+    pub cause: FaultCode,
+}
+
+impl Health {
+    /// (front, rear)
+    fn axles(&self) -> (bool, bool) {
+        let [fl, fr, rl, rr] = self.affected;
+        (fl || fr, rl || rr)
+    }
+}
+
+/// Memory of the mode machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct State {
+    mode: Mode,
+    first_cause: FaultCode,
+    /// Healthy ticks in a row.
+    healthy: u16,
+    /// Ticks in `Safe`.
+    dwell: u16,
+    safe_entries: u8,
+    was_normal: bool,
+}
+
+impl State {
+    /// Present mode.
+    pub const fn mode(&self) -> Mode {
+        self.mode
+    }
+
+    /// First cause of the present trouble; `None` in `Normal`.
+    pub const fn first_cause(&self) -> FaultCode {
+        self.first_cause
+    }
+
+    fn enter_safe(&mut self) {
+        self.dwell = 0;
+        self.safe_entries = self.safe_entries.saturating_add(1);
+        self.mode = if self.safe_entries >= LATCH_ENTRIES {
+            Mode::Latched
+        } else {
+            Mode::Safe
+        };
+    }
+
+    /// One tick.
+    pub fn step(&mut self, health: &Health) -> Mode {
+        if self.mode == Mode::Latched {
+            return self.mode;
+        }
+        let (front, rear) = health.axles();
+        let terminal = matches!(health.cause, FaultCode::Solenoid | FaultCode::Internal);
+        let severe = front && rear;
+        let healthy = !front && !rear && !terminal;
+        self.healthy = if healthy { self.healthy.saturating_add(1) } else { 0 };
+        if !healthy && self.first_cause == FaultCode::None {
+            self.first_cause = health.cause;
+        }
+        if terminal {
+            self.first_cause = health.cause;
+            self.mode = Mode::Latched;
+            return self.mode;
+        }
+        match self.mode {
+            Mode::StartUp => {
+                if severe && self.was_normal {
+                    self.enter_safe();
+                } else if self.healthy >= START_UP_TICKS {
+                    self.become_normal();
+                }
+            }
+            Mode::Normal => {
+                if severe {
+                    self.enter_safe();
+                } else if !healthy {
+                    self.mode = Mode::Degraded;
+                }
+            }
+            Mode::Degraded => {
+                if severe {
+                    self.enter_safe();
+                } else if self.healthy >= RECOVERY_TICKS {
+                    self.become_normal();
+                }
+            }
+            Mode::Safe => {
+                self.dwell = self.dwell.saturating_add(1);
+                if self.healthy >= RECOVERY_TICKS {
+                    self.mode = Mode::StartUp;
+                    self.healthy = 0;
+                } else if self.dwell >= LATCH_TICKS {
+                    self.mode = Mode::Latched;
+                }
+            }
+            Mode::Latched => {}
+        }
+        self.mode
+    }
+
+    fn become_normal(&mut self) {
+        self.mode = Mode::Normal;
+        self.first_cause = FaultCode::None;
+        self.was_normal = true;
+    }
+}
+
+/// The part of a wanted command that a mode permits. `affected` as in [`Health`].
+pub fn permitted(mode: Mode, affected: &[bool; CORNERS], wanted: ValveCommand) -> ValveCommand {
+    match mode {
+        Mode::Normal => wanted,
+        Mode::Degraded => {
+            let [fl, fr, rl, rr] = *affected;
+            let (front, rear) = (fl || fr, rl || rr);
+            let mut command = wanted;
+            for (corner, axle_affected) in [front, front, rear, rear].into_iter().enumerate() {
+                command = command.with(corner, SPRING, false);
+                if axle_affected {
+                    command = command.with(corner, BYPASS_1, false).with(corner, BYPASS_2, false);
+                }
+            }
+            command
+        }
+        Mode::StartUp | Mode::Safe | Mode::Latched => ValveCommand::SAFE,
+    }
+}

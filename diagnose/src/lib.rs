@@ -1,1 +1,28 @@
-//! `oleo-diagnose`
+//! Finds the physics a model left out.
+//!
+//! The user's words: *when simulation and real recordings differ, the tool should locate the mismatch, say what physics
+//! was left out, model it and show the fit improve.* [`Campaign`] reads recordings and the belief about a specimen;
+//! [`select::select`] finds what is missing; the report says where, what, and how much better the model became.
+//!
+//! ```text
+//! recording --> campaign --> specimen (strut | gas spring | cylinder: one trait)
+//!                               |
+//!              problem (blocks, residuals in noise units, sensitivities of free runs)
+//!                               |
+//!              fit (calibration within tolerance, always) --> screen (all candidates) --> select (held-out blocks)
+//!                               |
+//!              locate (which relation, when, under which condition) --> report (json, page, model.toml)
+//! ```
+
+pub mod campaign;
+pub mod error;
+pub mod fit;
+pub mod parameter;
+pub mod problem;
+pub mod recording;
+pub mod screen;
+pub mod select;
+pub mod specimen;
+
+pub use campaign::Campaign;
+pub use error::DiagnoseError;

@@ -30,6 +30,7 @@ mod valve;
 
 pub use damper::{DamperTable, Pack};
 pub use effects::*;
+pub use friction::advance_friction;
 pub use gas::{Gas, GasState, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K};
 pub use input::{Motion, Segment, smooth_displacement};
 pub use model::{
@@ -38,5 +39,5 @@ pub use model::{
 pub use network::{Strut, StrutOutput};
 pub use nitrogen::Nitrogen;
 pub use replay::{Inputs, Prediction, replay};
-pub use sensor::COLUMNS;
+pub use sensor::{COLUMNS, record as record_column};
 pub use valve::ValveMotion;

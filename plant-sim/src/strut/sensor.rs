@@ -9,7 +9,7 @@ pub const COLUMNS: [&str; 6] = ["displacement_m", "force_N", "p1_Pa", "p2_Pa", "
 /// Make of a true signal what the column's instrument records: lag, skew, gain, drift, sign, offset, in this order.
 ///
 /// `times_s` increase. The first-order lag is exact for a signal that is linear between samples.
-pub(super) fn record(effects: &Effects, column: &str, times_s: &[f64], signal: &mut [f64]) {
+pub fn record(effects: &Effects, column: &str, times_s: &[f64], signal: &mut [f64]) {
     let of = |map: &Option<super::effects::SensorEffect>| map.as_ref().and_then(|m| m.get(column).copied());
     if let Some(tau) = of(&effects.sensor_lag).filter(|t| *t > 0.0) {
         let mut state = signal.first().copied().unwrap_or(0.0);

@@ -1,0 +1,69 @@
+//! dev
+use std::sync::atomic::AtomicBool;
+fn main() {
+    let stop = AtomicBool::new(false);
+    for folder in std::env::args().skip(1) {
+        let t0 = std::time::Instant::now();
+        let c = match oleo_diagnose::Campaign::open(std::path::Path::new(&folder)) {
+            Ok(c) => c,
+            Err(e) => {
+                println!("{e}");
+                continue;
+            }
+        };
+        let p = oleo_diagnose::problem::Problem::new(&*c.specimen, &stop);
+        println!("== {} read {:.2?}", c.name, t0.elapsed());
+        let quiet = std::env::var("QUIET").is_ok();
+        let s = oleo_diagnose::select::select(&p, &|m, f| {
+            if !quiet {
+                println!("   {m} {f:.2} {:.1?}", t0.elapsed())
+            }
+        })
+        .unwrap();
+        let names = |i: usize| c.specimen.candidates()[i].name();
+        let h = p.hypothesis(&s.best.point);
+        let dev = s.best.deviations();
+        if !quiet {
+            for (k, par) in p.parameters(&s.best.point.effects).iter().enumerate() {
+                println!(
+                    "   {:28} z {:8.3} +- {:.3}  value {:.5e}",
+                    par.key,
+                    s.best.point.z[k],
+                    dev[k],
+                    par.value(s.best.point.z[k])
+                );
+            }
+            let mut t = s.trials.clone();
+            t.sort_by(|a, b| a.alone.total_cmp(&b.alone));
+            for t in t.iter().take(12) {
+                println!("     alone {:.4} {}", t.alone, names(t.candidate));
+            }
+            let mut t = s.trials.clone();
+            t.retain(|t| t.added.is_some());
+            t.sort_by(|a, b| a.added.unwrap().total_cmp(&b.added.unwrap()));
+            for t in t.iter().take(6) {
+                println!("     added {:.4} {}", t.added.unwrap(), names(t.candidate));
+            }
+        }
+        println!(
+            "{} ratio {:.4} -> {:.4}  {:?} incomplete {} time {:.1?}",
+            c.name,
+            s.noise_ratio.0,
+            s.noise_ratio.1,
+            s.chosen
+                .iter()
+                .map(|c| format!(
+                    "{} gain {:.0}±{:.0} rival {:?}{}",
+                    names(c.candidate),
+                    c.gain,
+                    c.gain_error,
+                    c.rival.map(|r| (names(r.0), r.1 as i64, r.2 as i64)),
+                    if c.is_ambiguous() { " AMBIGUOUS" } else { "" }
+                ))
+                .collect::<Vec<_>>(),
+            s.incomplete,
+            t0.elapsed()
+        );
+        let _ = h;
+    }
+}

@@ -1,0 +1,52 @@
+//! What can be wrong with what the user gave us, each as one line: what, where, what to do.
+
+use std::path::PathBuf;
+
+/// A campaign that cannot be diagnosed, or a result that cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum DiagnoseError {
+    /// A file or folder cannot be read or written.
+    #[error("{}: {what}", path.display())]
+    File {
+        /// The file or folder.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        what: String,
+    },
+    /// A line of a file is wrong.
+    #[error("{}, line {line}: {what}", path.display())]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// Line number, the header is 1.
+        line: u64,
+        /// What is wrong and what to do.
+        what: String,
+    },
+    /// The model file is wrong; the text already names file and place.
+    #[error("{0}")]
+    Model(String),
+    /// The model cannot be simulated on a recording.
+    #[error("recording {recording}: {what}")]
+    Simulation {
+        /// Name of the recording.
+        recording: String,
+        /// Why.
+        what: String,
+    },
+    /// The caller asked to stop.
+    #[error("stopped on request; nothing was written")]
+    Interrupted,
+    /// The result could not be written.
+    #[error("{0}")]
+    Output(String),
+}
+
+impl DiagnoseError {
+    pub(crate) fn file(path: impl Into<PathBuf>, what: impl Into<String>) -> Self {
+        Self::File {
+            path: path.into(),
+            what: what.into(),
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! Least squares by damped Gauss-Newton steps on per-block normal equations.
+//!
+//! The published Levenberg-Marquardt crate wants one dense Jacobian; ten recordings of five channels and twenty-five
+//! parameters would be re-laid-out for it at every step, and the per-block sums that held-out figures and intervals are
+//! made of would have to be formed again. The step itself is Marquardt's (J. SIAM 11(2), 1963), with bounds by freezing.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::error::DiagnoseError;
+use crate::problem::{Normal, Point, Problem};
+
+/// How hard to try.
+#[derive(Debug, Clone, Copy)]
+pub struct Effort {
+    /// Most Gauss-Newton steps.
+    pub steps: usize,
+    /// Stop when a step gains less than this part of the cost.
+    pub tolerance: f64,
+}
+
+impl Effort {
+    /// To convergence.
+    pub const FULL: Self = Self {
+        steps: 14,
+        tolerance: 2e-5,
+    };
+    /// Enough to rank candidates.
+    pub const QUICK: Self = Self {
+        steps: 4,
+        tolerance: 1e-3,
+    };
+}
+
+/// A fitted point with its normal equations.
+#[derive(Debug, Clone)]
+pub struct Fit {
+    /// Where.
+    pub point: Point,
+    /// Normal equations of every block, at the point.
+    pub normals: Vec<Normal>,
+    /// Diagonal of the prior's normal matrix.
+    pub prior: DVector<f64>,
+    /// Total cost with the prior.
+    pub cost: f64,
+}
+
+/// Fits all parameters of the structure from a starting point.
+///
+/// # Errors
+/// A start that cannot be simulated, or the wish to stop. Steps into impossible regions are only shortened.
+pub fn fit(problem: &Problem<'_>, start: Point, effort: Effort) -> Result<Fit, DiagnoseError> {
+    let parameters = problem.parameters(&start.effects);
+    let prior = DVector::from_iterator(
+        parameters.len(),
+        parameters.iter().map(|p| if p.prior { 1.0 } else { 0.0 }),
+    );
+    let ranges: Vec<(f64, f64)> = parameters.iter().map(|p| p.z_range()).collect();
+    let mut point = start;
+    for (z, range) in point.z.iter_mut().zip(&ranges) {
+        *z = z.clamp(range.0, range.1);
+    }
+    let mut normals = problem.linearise(&point)?;
+    let mut cost = total(&normals) + problem.prior_cost(&point);
+    let mut damping = 1e-4;
+    for _ in 0..effort.steps {
+        let (h, g) = sum(&normals, &prior, &point.z);
+        let mut accepted = None;
+        for _ in 0..7 {
+            let Some(step) = bounded_step(&h, &g, damping, &point.z, &ranges) else {
+                damping *= 10.0;
+                continue;
+            };
+            let mut trial = point.clone();
+            for ((z, d), range) in trial.z.iter_mut().zip(step.iter()).zip(&ranges) {
+                *z = (*z + d).clamp(range.0, range.1);
+            }
+            if trial == point {
+                break;
+            }
+            match problem.cost(&trial) {
+                Ok(trial_cost) if trial_cost < cost => {
+                    accepted = Some((trial, trial_cost));
+                    damping = (damping * 0.1_f64).max(1e-9);
+                    break;
+                }
+                Ok(_) | Err(DiagnoseError::Simulation { .. }) => damping *= 10.0,
+                Err(stop) => return Err(stop),
+            }
+        }
+        let Some((trial, trial_cost)) = accepted else { break };
+        let gain = cost - trial_cost;
+        point = trial;
+        cost = trial_cost;
+        normals = problem.linearise(&point)?;
+        if gain < effort.tolerance * cost {
+            break;
+        }
+    }
+    Ok(Fit {
+        point,
+        normals,
+        prior,
+        cost,
+    })
+}
+
+/// Sum of the blocks' costs.
+#[must_use]
+pub fn total(normals: &[Normal]) -> f64 {
+    normals.iter().map(|n| n.cost).sum()
+}
+
+pub(crate) fn sum(normals: &[Normal], prior: &DVector<f64>, z: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+    let p = prior.len();
+    let (mut h, mut g) = (DMatrix::zeros(p, p), DVector::zeros(p));
+    for n in normals {
+        h += &n.h;
+        g += &n.g;
+    }
+    for k in 0..p {
+        h[(k, k)] += prior[k];
+        g[k] -= prior[k] * z[k];
+    }
+    (h, g)
+}
+
+/// Damped Newton step; coordinates that would leave their range are frozen at its edge and the rest solved again.
+pub(crate) fn bounded_step(
+    h: &DMatrix<f64>,
+    g: &DVector<f64>,
+    damping: f64,
+    z: &[f64],
+    ranges: &[(f64, f64)],
+) -> Option<DVector<f64>> {
+    let p = z.len();
+    let mut fixed: Vec<Option<f64>> = vec![None; p];
+    for _ in 0..=p {
+        let free: Vec<usize> = (0..p).filter(|&k| fixed[k].is_none()).collect();
+        let mut a = DMatrix::zeros(free.len(), free.len());
+        let mut b = DVector::zeros(free.len());
+        for (i, &fi) in free.iter().enumerate() {
+            b[i] = g[fi] - (0..p).filter_map(|k| fixed[k].map(|d| h[(fi, k)] * d)).sum::<f64>();
+            for (j, &fj) in free.iter().enumerate() {
+                a[(i, j)] = h[(fi, fj)];
+            }
+            a[(i, i)] += damping * (h[(fi, fi)] + 1e-3);
+        }
+        let solution = a.cholesky()?.solve(&b);
+        let mut step = DVector::zeros(p);
+        (0..p).for_each(|k| step[k] = fixed[k].unwrap_or(0.0));
+        let mut clipped = false;
+        for (i, &k) in free.iter().enumerate() {
+            step[k] = solution[i];
+            let there = (z[k] + step[k]).clamp(ranges[k].0, ranges[k].1);
+            if there != z[k] + step[k] {
+                fixed[k] = Some(there - z[k]);
+                clipped = true;
+            }
+        }
+        if !clipped {
+            return Some(step);
+        }
+    }
+    None
+}
+
+impl Fit {
+    /// Cost of every block when its fold had no say in the fit, in the linear approximation around this fit.
+    #[must_use]
+    pub fn held_out(&self, problem: &Problem<'_>) -> Vec<f64> {
+        let mut costs = vec![0.0; self.normals.len()];
+        for fold in 0..problem.folds {
+            let step = self.step_without(|k| problem.blocks[k].fold == fold);
+            for (k, normal) in self
+                .normals
+                .iter()
+                .enumerate()
+                .filter(|(k, _)| problem.blocks[*k].fold == fold)
+            {
+                costs[k] = match &step {
+                    Some(d) => (normal.cost - 2.0 * normal.g.dot(d) + d.dot(&(&normal.h * d))).max(0.0),
+                    None => normal.cost,
+                };
+            }
+        }
+        costs
+    }
+
+    /// The change of coordinates when the selected blocks are left out; `None` if the rest does not determine them.
+    /// Coordinates at their bound stay there.
+    #[must_use]
+    pub fn step_without(&self, left_out: impl Fn(usize) -> bool) -> Option<DVector<f64>> {
+        let kept: Vec<Normal> = self
+            .normals
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| !left_out(*k))
+            .map(|(_, n)| n.clone())
+            .collect();
+        let (mut h, mut g) = sum(&kept, &self.prior, &self.point.z);
+        // Only the difference that leaving out makes: the gradient left at the full fit is rounding and bounds.
+        let (_, full) = sum(&self.normals, &self.prior, &self.point.z);
+        g -= full;
+        for k in 0..self.prior.len() {
+            h[(k, k)] += 1e-6 * h[(k, k)] + 1e-6;
+        }
+        Some(h.cholesky()?.solve(&g))
+    }
+
+    /// Standard deviation of every coordinate, from blocks: residuals of a free run are coloured, so the usual formula
+    /// is far too narrow. Sandwich `H^-1 (sum g_b g_b') H^-1` (White, Econometrica 50(1), 1982) with neighbouring blocks
+    /// as the independent unit, never smaller than the formula for white noise.
+    #[must_use]
+    pub fn deviations(&self) -> DVector<f64> {
+        let p = self.prior.len();
+        match self.covariance() {
+            Some(c) => DVector::from_iterator(p, (0..p).map(|k| c[(k, k)].max(0.0).sqrt())),
+            None => DVector::from_element(p, f64::INFINITY),
+        }
+    }
+
+    /// Covariance of the coordinates as described at [`Self::deviations`].
+    #[must_use]
+    pub fn covariance(&self) -> Option<DMatrix<f64>> {
+        let p = self.prior.len();
+        let (h, _) = sum(&self.normals, &self.prior, &self.point.z);
+        let mut damped = h.clone();
+        (0..p).for_each(|k| damped[(k, k)] += 1e-9 * h[(k, k)] + 1e-12);
+        let inverse = damped.cholesky()?.inverse();
+        let mut meat = DMatrix::zeros(p, p);
+        for n in &self.normals {
+            meat += &n.g * n.g.transpose();
+        }
+        for k in 0..p {
+            meat[(k, k)] += self.prior[k];
+        }
+        let blocks = self.normals.len() as f64;
+        let robust = &inverse * meat * &inverse * (blocks / (blocks - 1.0).max(1.0));
+        let scale = |k: usize| (inverse[(k, k)] / robust[(k, k)].max(1e-300)).max(1.0).sqrt();
+        Some(DMatrix::from_fn(p, p, |i, j| robust[(i, j)] * scale(i) * scale(j)))
+    }
+}

@@ -1,0 +1,132 @@
+//! A number that a fit may change: its unit, its range, and how far it may be off before that means something.
+//!
+//! Fits work in a coordinate `z` of order one, so that steps, damping and convergence need no knowledge of units. For a
+//! calibration value `z` is the deviation over its prior standard deviation, half of the stated tolerance.
+
+/// How `z` maps to the value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Scale {
+    /// `value = start + scale z`.
+    Linear(f64),
+    /// `value = start exp(scale z)`: for positive quantities known to an order of magnitude.
+    Log(f64),
+}
+
+/// One fitted number.
+#[derive(Debug, Clone)]
+pub struct Parameter {
+    /// Name with unit, as in the report.
+    pub key: String,
+    /// Value at `z = 0`.
+    pub start: f64,
+    /// Map between `z` and value.
+    pub scale: Scale,
+    /// Smallest value.
+    pub lower: f64,
+    /// Largest value.
+    pub upper: f64,
+    /// Calibration: `z` is normal with standard deviation 1 before the recordings are seen.
+    pub prior: bool,
+    /// Changes only what an instrument shows, so the physics need not be simulated again.
+    pub instrument_only: bool,
+}
+
+/// Calibration may use a little more than the stated tolerance before it is no longer called calibration.
+const TOLERANCE_BOUND: f64 = 1.1;
+
+impl Parameter {
+    /// Deviation from nominal within a tolerance (relative or in the value's unit).
+    #[must_use]
+    pub fn calibration(key: impl Into<String>, tolerance: f64) -> Self {
+        Self {
+            key: key.into(),
+            start: 0.0,
+            scale: Scale::Linear(0.5 * tolerance),
+            lower: -TOLERANCE_BOUND * tolerance,
+            upper: TOLERANCE_BOUND * tolerance,
+            prior: true,
+            instrument_only: false,
+        }
+    }
+
+    /// Free value on a linear scale.
+    #[must_use]
+    pub fn linear(key: impl Into<String>, start: f64, scale: f64, range: (f64, f64)) -> Self {
+        Self {
+            key: key.into(),
+            start,
+            scale: Scale::Linear(scale),
+            lower: range.0,
+            upper: range.1,
+            prior: false,
+            instrument_only: false,
+        }
+    }
+
+    /// Free positive value on a logarithmic scale.
+    #[must_use]
+    pub fn log(key: impl Into<String>, start: f64, range: (f64, f64)) -> Self {
+        Self {
+            scale: Scale::Log(0.5),
+            ..Self::linear(key, start, 1.0, range)
+        }
+    }
+
+    /// The same, touching only the instrument.
+    #[must_use]
+    pub fn on_instrument(self) -> Self {
+        Self {
+            instrument_only: true,
+            ..self
+        }
+    }
+
+    /// Value at `z`.
+    #[must_use]
+    pub fn value(&self, z: f64) -> f64 {
+        match self.scale {
+            Scale::Linear(s) => self.start + s * z,
+            Scale::Log(s) => self.start * libm::exp(s * z),
+        }
+        .clamp(self.lower, self.upper)
+    }
+
+    /// `z` of a value.
+    #[must_use]
+    pub fn z(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Linear(s) => (value - self.start) / s,
+            Scale::Log(s) => libm::log(value / self.start) / s,
+        }
+    }
+
+    /// Range of `z`.
+    #[must_use]
+    pub fn z_range(&self) -> (f64, f64) {
+        let (a, b) = (self.z(self.lower), self.z(self.upper));
+        (a.min(b), a.max(b))
+    }
+
+    /// `d value / d z` at `z`.
+    #[must_use]
+    pub fn slope(&self, z: f64) -> f64 {
+        match self.scale {
+            Scale::Linear(s) => s,
+            Scale::Log(s) => s * self.start * libm::exp(s * z),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn maps_are_inverse() {
+        let p = Parameter::log("tau_s", 3.0, (0.1, 50.0));
+        assert!((p.z(p.value(0.7)) - 0.7).abs() < 1e-12);
+        let c = Parameter::calibration("volume", 0.01);
+        assert!((c.value(2.0) - 0.01).abs() < 1e-15);
+        assert_eq!(c.value(99.0), 0.011);
+    }
+}

@@ -1,0 +1,216 @@
+//! A gas spring: one chamber, one pressure. The adiabat (or isotherm) is the belief; what may be missing is heat
+//! transfer, and, as rivals that would look like it, a polytropic exponent, a leak and the faults of the instrument.
+
+use oleo_plant_sim::specimen::{GasHeatTransferTerm, GasSpringModel};
+
+use super::{Candidate, Channel, Hypothesis, Series, Specimen, instrument};
+use crate::parameter::Parameter;
+use crate::recording::{ColumnKind, ColumnSpec, Recording};
+
+/// Noise assumed where the model file states none: a tenth of a psi, the resolution of common gauges.
+const DEFAULT_NOISE_PA: f64 = 690.0;
+
+/// A gas spring with its recordings.
+pub struct GasSpring {
+    model: GasSpringModel,
+    recordings: Vec<Recording>,
+    channels: Vec<Channel>,
+    calibration: Vec<Parameter>,
+    candidates: Vec<Candidate>,
+}
+
+/// Columns of a gas spring's recording.
+#[must_use]
+pub fn columns() -> Vec<ColumnSpec> {
+    vec![
+        ColumnSpec {
+            name: "displacement_m".into(),
+            kind: ColumnKind::Input,
+        },
+        ColumnSpec {
+            name: "p_Pa".into(),
+            kind: ColumnKind::Output,
+        },
+    ]
+}
+
+impl GasSpring {
+    /// Puts model and recordings together.
+    #[must_use]
+    pub fn new(model: GasSpringModel, recordings: Vec<Recording>) -> Self {
+        let tolerance = |key: &str, otherwise: f64| model.tolerance.get(key).copied().unwrap_or(otherwise);
+        let mut calibration = vec![
+            Parameter::calibration("volume_at_zero", tolerance("volume_at_zero", 0.02)),
+            Parameter::calibration("initial_pressure", tolerance("initial_pressure", 0.01)),
+            Parameter::calibration("initial_temperature_difference_K", tolerance("temperature_K", 5.0)),
+        ];
+        let spread = |c: usize| {
+            recordings
+                .iter()
+                .map(|r| {
+                    let (low, high) = r.columns[c]
+                        .iter()
+                        .fold((f64::MAX, f64::MIN), |(a, b), &v| (a.min(v), b.max(v)));
+                    high - low
+                })
+                .fold(0.0, f64::max)
+        };
+        let noise = model.noise.get("p_Pa").copied().unwrap_or(DEFAULT_NOISE_PA);
+        let duration = recordings
+            .iter()
+            .map(|r| r.time_s[r.len() - 1] - r.time_s[0])
+            .fold(0.0, f64::max);
+        let interval = recordings.iter().map(Recording::interval_s).fold(0.0, f64::max);
+        let still = (spread(1) < 8.0 * noise).then(|| {
+            "the pressure moves by less than eight times its noise; record strokes of a tenth of the volume".to_owned()
+        });
+        let plain = |id, label: &str, parameter, starts| Candidate {
+            id,
+            place: "chamber".into(),
+            label: label.to_owned(),
+            parameters: vec![parameter],
+            starts,
+            instrument: false,
+            group: "",
+            untestable: still.clone(),
+        };
+        let mut candidates = Vec::new();
+        match &model.effects.gas_heat_transfer {
+            Some(_) => calibration.push(Parameter::calibration(
+                "time_constant",
+                tolerance("time_constant", 0.08),
+            )),
+            None => candidates.push(Candidate {
+                group: "gas process",
+                ..plain(
+                    "gas_heat_transfer",
+                    "",
+                    Parameter::log("time_constant_s", 10.0, (0.02, 3000.0)),
+                    vec![vec![1.0], vec![60.0]],
+                )
+            }),
+        }
+        if model.effects.gas_heat_transfer.is_none() {
+            candidates.push(Candidate {
+                group: "gas process",
+                ..plain(
+                    "unlisted",
+                    "polytropic exponent",
+                    Parameter::linear("polytropic_exponent", 1.2, 0.05, (1.0, 1.67)),
+                    vec![],
+                )
+            });
+        }
+        if model.effects.gas_leak_rate_1_s.is_none() {
+            let rate = 0.1 / duration.max(1.0);
+            candidates.push(plain(
+                "unlisted",
+                "gas lost",
+                Parameter::linear("rate_1_s", 0.0, 0.1 * rate, (-10.0 * rate, 10.0 * rate)),
+                vec![],
+            ));
+        }
+        candidates.extend(
+            instrument::faults("p_Pa", spread(1), duration, interval)
+                .into_iter()
+                .map(|mut c| {
+                    c.untestable.clone_from(&still);
+                    c
+                }),
+        );
+        let channels = vec![Channel {
+            name: "p_Pa".into(),
+            noise,
+        }];
+        Self {
+            model,
+            recordings,
+            channels,
+            calibration,
+            candidates,
+        }
+    }
+
+    fn applied(&self, hypothesis: &Hypothesis) -> GasSpringModel {
+        let mut model = self.model.clone();
+        let c = &hypothesis.calibration;
+        model.chamber.volume_at_zero_m3 *= 1.0 + c[0];
+        model.gas.initial_pressure_error = (1.0 + model.gas.initial_pressure_error) * (1.0 + c[1]) - 1.0;
+        model.gas.initial_temperature_difference_k += c[2];
+        if let (Some(heat), Some(error)) = (model.effects.gas_heat_transfer.as_mut(), c.get(3)) {
+            heat.time_constant_s *= 1.0 + error;
+        }
+        for (index, values) in &hypothesis.effects {
+            let candidate = &self.candidates[*index];
+            let value = values[0];
+            let column = |effect: &mut Option<oleo_plant_sim::strut::SensorEffect>| {
+                effect.get_or_insert_default().insert("p_Pa".into(), value);
+            };
+            match (candidate.id, candidate.label.as_str()) {
+                ("gas_heat_transfer", _) => {
+                    model.effects.gas_heat_transfer = Some(GasHeatTransferTerm { time_constant_s: value });
+                }
+                ("unlisted", "gas lost") => model.effects.gas_leak_rate_1_s = Some(value),
+                ("unlisted", _) => model.effects.polytropic_exponent = Some(value),
+                ("sensor_lag", _) => column(&mut model.effects.sensor_lag),
+                ("sensor_skew", _) => column(&mut model.effects.sensor_skew),
+                ("sensor_gain", _) => column(&mut model.effects.sensor_gain),
+                _ => column(&mut model.effects.sensor_drift),
+            }
+        }
+        model
+    }
+}
+
+impl Specimen for GasSpring {
+    fn kind(&self) -> &'static str {
+        "gas spring"
+    }
+    fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+    fn recordings(&self) -> usize {
+        self.recordings.len()
+    }
+    fn recording_name(&self, recording: usize) -> &str {
+        &self.recordings[recording].name
+    }
+    fn time_s(&self, recording: usize) -> &[f64] {
+        &self.recordings[recording].time_s
+    }
+    fn measured(&self, recording: usize, _channel: usize) -> &[f64] {
+        &self.recordings[recording].columns[1]
+    }
+    fn calibration(&self) -> &[Parameter] {
+        &self.calibration
+    }
+    fn candidates(&self) -> &[Candidate] {
+        &self.candidates
+    }
+    fn simulate(&self, hypothesis: &Hypothesis, recording: usize) -> Result<Series, String> {
+        let r = &self.recordings[recording];
+        Ok(vec![self.applied(hypothesis).pressure_pa(
+            &r.time_s,
+            &r.columns[0],
+            r.columns[1][0],
+        )?])
+    }
+    fn observe(&self, hypothesis: &Hypothesis, recording: usize, truth: &Series) -> Series {
+        vec![
+            self.applied(hypothesis)
+                .shown(&self.recordings[recording].time_s, truth[0].clone()),
+        ]
+    }
+    fn model_toml(&self, hypothesis: &Hypothesis) -> Result<String, String> {
+        self.applied(hypothesis).to_toml()
+    }
+    fn states(&self, recording: usize) -> Vec<(&'static str, Vec<f64>)> {
+        let r = &self.recordings[recording];
+        let motion = oleo_plant_sim::specimen::smooth_motion(&r.time_s, &r.columns[0], 5.0 * r.interval_s());
+        vec![
+            ("displacement, m", r.columns[0].clone()),
+            ("speed, m/s", motion.speed_m_s),
+            ("pressure, Pa", r.columns[1].clone()),
+        ]
+    }
+}

@@ -1,0 +1,97 @@
+//! What the machinery needs to know of a specimen: what is measured, what may be off, what may be missing, and what a
+//! model with all that predicts. Struts, gas springs and cylinders differ only here.
+
+pub mod cylinder;
+pub mod gas_spring;
+pub mod instrument;
+pub mod strut;
+
+use crate::parameter::Parameter;
+
+/// A measured quantity that the model predicts.
+#[derive(Debug, Clone)]
+pub struct Channel {
+    /// Column name with unit.
+    pub name: String,
+    /// Standard deviation of its white noise, in the unit of the column.
+    pub noise: f64,
+}
+
+/// A piece of physics that the model may lack: a kind of element at a place.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    /// Id of the vocabulary, `unlisted` for laws without a name.
+    pub id: &'static str,
+    /// Place of the vocabulary.
+    pub place: String,
+    /// What to call it where `id` does not distinguish (laws without a name).
+    pub label: String,
+    /// Numbers to fit; none for a term that is simply there or not.
+    pub parameters: Vec<Parameter>,
+    /// Other starting points, in values, tried beside the parameters' own.
+    pub starts: Vec<Vec<f64>>,
+    /// True for the instruments, which are judged before physics.
+    pub instrument: bool,
+    /// Candidates of the same non-empty group exclude each other.
+    pub group: &'static str,
+    /// Why the recordings cannot show it, where they cannot.
+    pub untestable: Option<String>,
+}
+
+impl Candidate {
+    /// Id and place in one word, unique.
+    #[must_use]
+    pub fn name(&self) -> String {
+        if self.label.is_empty() {
+            format!("{}@{}", self.id, self.place)
+        } else {
+            format!("{}@{} ({})", self.id, self.place, self.label)
+        }
+    }
+}
+
+/// A model to simulate: calibration values, and the candidates present with their values.
+#[derive(Debug, Clone, Default)]
+pub struct Hypothesis {
+    /// Values of [`Specimen::calibration`], same order.
+    pub calibration: Vec<f64>,
+    /// Index into [`Specimen::candidates`] and the values of its parameters.
+    pub effects: Vec<(usize, Vec<f64>)>,
+}
+
+/// One series a channel, each as long as the recording.
+pub type Series = Vec<Vec<f64>>;
+
+/// A specimen with its recordings and the belief about it.
+pub trait Specimen: Sync {
+    /// Its kind, as in the model file.
+    fn kind(&self) -> &'static str;
+    /// What is compared.
+    fn channels(&self) -> &[Channel];
+    /// Number of recordings.
+    fn recordings(&self) -> usize;
+    /// Name of a recording.
+    fn recording_name(&self, recording: usize) -> &str;
+    /// Sample times, s.
+    fn time_s(&self, recording: usize) -> &[f64];
+    /// Measured series of a channel.
+    fn measured(&self, recording: usize, channel: usize) -> &[f64];
+    /// Values that may be off within tolerance.
+    fn calibration(&self) -> &[Parameter];
+    /// Physics that may be missing.
+    fn candidates(&self) -> &[Candidate];
+    /// The true quantities under a hypothesis, before any instrument. A message where it cannot be simulated.
+    ///
+    /// # Errors
+    /// Values outside the range in which the model exists.
+    fn simulate(&self, hypothesis: &Hypothesis, recording: usize) -> Result<Series, String>;
+    /// What the instruments show of it.
+    fn observe(&self, hypothesis: &Hypothesis, recording: usize, truth: &Series) -> Series;
+    /// The model file with the hypothesis in it.
+    ///
+    /// # Errors
+    /// A law that the model file cannot hold.
+    fn model_toml(&self, hypothesis: &Hypothesis) -> Result<String, String>;
+    /// Quantities over which residuals are shown and explained, per recording: name with unit and series.
+    fn states(&self, recording: usize) -> Vec<(&'static str, Vec<f64>)>;
+}

@@ -1,0 +1,242 @@
+//! The vocabulary of the recordings as candidates: id, place, parameters with ranges, and when recordings cannot show it.
+//!
+//! A term that the model already has is not a candidate; its numbers are calibration.
+
+use oleo_plant_sim::strut::{COLUMNS, StrutModel};
+
+use super::excitation::Excitation;
+use super::{CHANNELS, laws};
+use crate::parameter::Parameter;
+use crate::specimen::{Candidate, instrument};
+
+/// Everything that may be missing from `model`.
+#[must_use]
+pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate> {
+    let e = &model.effects;
+    let mut all = Vec::new();
+    let still = (!excitation.moves).then(|| "the strut does not move; record moves of at least 10 mm".to_owned());
+    let mut add =
+        |id: &'static str, place: &str, parameters: Vec<Parameter>, starts: Vec<Vec<f64>>, cannot: Option<String>| {
+            all.push(Candidate {
+                id,
+                place: place.to_owned(),
+                label: String::new(),
+                parameters,
+                starts,
+                instrument: false,
+                group: if id == "damping_fade" { "damping_fade" } else { "" },
+                untestable: still.clone().or(cannot),
+            });
+        };
+    if e.oil_compressibility.is_none() {
+        add(
+            "oil_compressibility",
+            "main-chamber",
+            vec![Parameter::log("bulk_modulus_Pa", 1.4e9, (5e7, 1e11))],
+            vec![],
+            None,
+        );
+    }
+    if e.entrained_air.is_none() {
+        let exponent = Parameter::linear("polytropic_exponent", 1.2, 0.1, (1.0, 1.4));
+        add(
+            "entrained_air",
+            "main-chamber",
+            vec![Parameter::log("volume_fraction", 5e-3, (1e-6, 0.3)), exponent],
+            vec![],
+            None,
+        );
+    }
+    if e.gas_heat_transfer.is_none() {
+        let tau = |i: usize| Parameter::log(format!("time_constant_{i}_s"), 5.0, (0.02, 300.0));
+        let shared = if excitation.valve3_holding_s > 0.0 {
+            vec![vec![1.0, 1.5]]
+        } else {
+            vec![]
+        };
+        add("gas_heat_transfer", "accumulators", vec![tau(1), tau(2)], shared, None);
+    }
+    if e.real_gas.is_none() {
+        add("real_gas", "accumulators", vec![], vec![], None);
+    }
+    if e.gas_charge_error.is_none() {
+        for i in 1..=2 {
+            let error = Parameter::linear(format!("relative_error_{i}"), 0.0, 0.02, (-0.7, 2.0));
+            add(
+                "gas_charge_error",
+                &format!("accumulator-{i}"),
+                vec![error],
+                vec![],
+                None,
+            );
+        }
+    }
+    if e.seal_friction.is_none() {
+        let parameters = vec![
+            Parameter::log("coulomb_force_N", 60.0, (0.5, 1e4)),
+            Parameter::linear("breakaway_over_coulomb", 1.3, 0.2, (1.0, 4.0)),
+            Parameter::log("stribeck_speed_m_s", 0.02, (1e-3, 0.5)),
+        ];
+        add("seal_friction", "main-seal", parameters, vec![], None);
+    }
+    if e.side_load_friction.is_none() {
+        add(
+            "side_load_friction",
+            "main-seal",
+            vec![Parameter::log("coefficient", 0.01, (1e-5, 0.5))],
+            vec![],
+            None,
+        );
+    }
+    if e.accumulator_piston_friction.is_none() {
+        for i in 1..=2 {
+            let pressure = Parameter::log(format!("pressure_{i}_Pa"), 3e4, (100.0, 3e6));
+            add(
+                "accumulator_piston_friction",
+                &format!("accumulator-{i}"),
+                vec![pressure],
+                vec![vec![2e5]],
+                None,
+            );
+        }
+    }
+    if e.damper_leakage.is_none() {
+        for i in 1..=2 {
+            let leak = Parameter::log(format!("flow_coefficient_{i}"), 5e-8, (1e-10, 1e-5));
+            add(
+                "damper_leakage",
+                &format!("path-{i}"),
+                vec![leak],
+                vec![],
+                slow(excitation, i),
+            );
+        }
+    }
+    if e.line_resistance.is_none() {
+        for i in 1..=2 {
+            let resistance = Parameter::log(format!("resistance_{i}_Pa_s_m3"), 1e8, (1e5, 1e11));
+            add(
+                "line_resistance",
+                &format!("path-{i}"),
+                vec![resistance],
+                vec![],
+                slow(excitation, i),
+            );
+        }
+    }
+    if e.line_inertance.is_none() {
+        let inertance = Parameter::log("inertance_2_kg_m4", 3e6, (1e4, 1e9));
+        add("line_inertance", "path-2", vec![inertance], vec![], slow(excitation, 2));
+    }
+    let switched = excitation.edges.iter().any(|&n| n > 0);
+    let no_edges = (!switched).then(|| "no valve is switched; record steps at several pressure differences".to_owned());
+    let polynomial = &model.valve_timing.response_polynomial_s;
+    if e.valve_delay.is_none() && polynomial.iter().skip(1).all(|c| *c == 0.0) {
+        let parameters = vec![
+            Parameter::linear("c0_s", polynomial[0], 0.005, (0.0, 0.5)),
+            Parameter::linear("c1_s_MPa", 0.0, 0.002, (-0.05, 0.05)),
+            Parameter::linear("c2_s_MPa2", 0.0, 2e-4, (-0.005, 0.005)),
+        ];
+        add("valve_delay", "valve-1..3", parameters, vec![], no_edges.clone());
+    }
+    if e.valve_transition.is_none() {
+        add("valve_transition", "valve-1..3", vec![], vec![], no_edges);
+    }
+    if e.valve3_leakage.is_none() {
+        let cannot = (excitation.valve3_holding_s < 0.5).then(|| {
+            "valve 3 is never closed against a pressure difference; close it at 30 mm of jounce and hold 5 s".to_owned()
+        });
+        add(
+            "valve3_leakage",
+            "valve-3",
+            vec![Parameter::log("flow_coefficient", 1e-9, (1e-13, 1e-6))],
+            vec![],
+            cannot,
+        );
+    }
+    if e.bump_stop.is_none() {
+        let (low, high) = excitation.displacement_m;
+        let (low, high) = ((-low).max(1e-3), high.max(1e-3));
+        let parameters = vec![
+            Parameter::linear("bump_clearance_m", 0.85 * high, 0.05 * high, (0.2 * high, 1.2 * high)),
+            Parameter::linear("rebound_clearance_m", 0.85 * low, 0.05 * low, (0.2 * low, 1.2 * low)),
+            Parameter::log("stiffness_N_m", 1e5, (1e2, 1e8)),
+            Parameter::linear("progression_N_m3", 0.0, 1e8, (0.0, 1e13)),
+        ];
+        let at = |a: f64, b: f64| vec![a * high, b * low, 1e5, 0.0];
+        add(
+            "bump_stop",
+            "end-stop",
+            parameters,
+            vec![at(0.7, 0.7), at(0.5, 1.1), at(1.1, 0.5), at(0.6, 0.95)],
+            None,
+        );
+    }
+    if e.mount_compliance.is_none() {
+        add(
+            "mount_compliance",
+            "mount",
+            vec![Parameter::log("stiffness_N_m", 1e7, (1e5, 1e10))],
+            vec![],
+            None,
+        );
+    }
+    if e.damping_fade.is_none() {
+        let cooling = || Parameter::log("cooling_time_s", 60.0, (1.0, 1e5));
+        let fade = |i: usize| Parameter::log(format!("fade_{i}_per_J"), 5e-5, (1e-8, 1e-2));
+        add(
+            "damping_fade",
+            "path-1",
+            vec![fade(1), cooling()],
+            vec![],
+            slow(excitation, 1),
+        );
+        add(
+            "damping_fade",
+            "path-2",
+            vec![fade(2), cooling()],
+            vec![],
+            slow(excitation, 2),
+        );
+        let both = slow(excitation, 1).or(slow(excitation, 2));
+        add(
+            "damping_fade",
+            "path-1+path-2",
+            vec![fade(1), fade(2), cooling()],
+            vec![],
+            both,
+        );
+    }
+    for (k, column) in COLUMNS.iter().enumerate() {
+        let size = if k == 0 {
+            (excitation.displacement_m.1 - excitation.displacement_m.0).max(1e-6)
+        } else {
+            excitation.departure[k - 1]
+        };
+        let mut faults = instrument::faults(column, size, excitation.duration_s, excitation.interval_s);
+        faults.push(Candidate {
+            id: "sensor_sign",
+            parameters: vec![],
+            ..faults[0].clone()
+        });
+        for mut fault in faults {
+            if k == 0 {
+                fault.parameters.iter_mut().for_each(|p| p.instrument_only = false);
+            }
+            fault.untestable.clone_from(&still);
+            all.push(fault);
+        }
+    }
+    debug_assert_eq!(CHANNELS[0], COLUMNS[1]);
+    all.extend(laws::candidates(excitation, &still));
+    all
+}
+
+/// Flow effects need a pressure drop to be seen.
+fn slow(excitation: &Excitation, path: usize) -> Option<String> {
+    (excitation.drop_pa[path - 1] < 1e5).then(|| {
+        format!(
+            "the drop across damper {path} never reaches 0.1 MPa; record sines above 0.2 m/s with valve {path} closed"
+        )
+    })
+}

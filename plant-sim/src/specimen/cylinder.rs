@@ -1,0 +1,278 @@
+//! A cylinder on a test machine: pressures on areas, friction of its seals, its moving mass.
+//!
+//! `F = sum(A_i p_i) + friction(v, p) + m a`. Displacement positive in the direction that compresses, friction positive
+//! against it. The friction is the strut's (Coulomb and Stribeck with Dahl presliding), and may grow with pressure:
+//! lip seals are pressed on by what they seal.
+
+use serde::{Deserialize, Serialize};
+
+use super::{SpecimenName, toml_message, within};
+use crate::strut::{Effects, SealFriction, SensorEffect, SideLoadFriction, advance_friction, record_column};
+
+/// A pressure acting on an area.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderChamber {
+    /// Column of the pressure.
+    pub column: String,
+    /// Area, m2; negative for the side that pushes the other way.
+    pub area_m2: f64,
+}
+
+/// Friction of the cylinder's seal. Where only the part that grows with pressure is present the Coulomb force is zero.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderSeal {
+    /// Coulomb force, N.
+    #[serde(rename = "coulomb_force_N")]
+    pub coulomb_force_n: f64,
+    /// Presliding stiffness, N/m.
+    #[serde(rename = "presliding_stiffness_N_m")]
+    pub presliding_stiffness_n_m: f64,
+}
+
+/// Terms a cylinder may have.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderEffects {
+    /// Friction of the seal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seal_friction: Option<CylinderSeal>,
+    /// Friction over `sum |A_i p_i|`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub side_load_friction: Option<SideLoadFriction>,
+    /// Unlisted: moving mass, kg.
+    #[serde(rename = "moving_mass_kg", skip_serializing_if = "Option::is_none")]
+    pub moving_mass_kg: Option<f64>,
+    /// Unlisted: viscous friction, N s/m.
+    #[serde(rename = "viscous_friction_N_s_m", skip_serializing_if = "Option::is_none")]
+    pub viscous_friction_n_s_m: Option<f64>,
+    /// Unlisted: force over displacement, N/m.
+    #[serde(rename = "parallel_stiffness_N_m", skip_serializing_if = "Option::is_none")]
+    pub parallel_stiffness_n_m: Option<f64>,
+    /// First-order lag of a column, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_lag: Option<SensorEffect>,
+    /// Relative gain error of a column.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_gain: Option<SensorEffect>,
+    /// Drift of a column, unit per second.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_drift: Option<SensorEffect>,
+    /// Time by which a column is late, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_skew: Option<SensorEffect>,
+    /// Offsets of columns: calibration.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_offset: Option<SensorEffect>,
+}
+
+/// The `model.toml` of a cylinder.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CylinderModel {
+    /// Name and kind.
+    pub specimen: SpecimenName,
+    /// Chambers.
+    pub chamber: Vec<CylinderChamber>,
+    /// Terms.
+    #[serde(default)]
+    pub effects: CylinderEffects,
+    /// How far values may be off: `area` relative, `force_offset_N`, `pressure_offset_Pa`.
+    #[serde(default)]
+    pub tolerance: SensorEffect,
+    /// Standard deviation of the noise by column.
+    #[serde(default)]
+    pub noise: SensorEffect,
+}
+
+/// Displacement freed of noise, with its derivatives.
+#[derive(Debug, Clone, Default)]
+pub struct SmoothedMotion {
+    /// m.
+    pub displacement_m: Vec<f64>,
+    /// m/s.
+    pub speed_m_s: Vec<f64>,
+    /// m/s2.
+    pub acceleration_m_s2: Vec<f64>,
+}
+
+/// Local parabolas over `half_window_s` on either side (Savitzky & Golay, Anal. Chem. 36(8), 1964, for uneven steps).
+#[must_use]
+pub fn smooth_motion(time_s: &[f64], displacement_m: &[f64], half_window_s: f64) -> SmoothedMotion {
+    let n = time_s.len();
+    let mut motion = SmoothedMotion::default();
+    let (mut from, mut to) = (0, 0);
+    for k in 0..n {
+        while time_s[k] - time_s[from] > half_window_s {
+            from += 1;
+        }
+        while to < n && time_s[to] - time_s[k] <= half_window_s {
+            to += 1;
+        }
+        // Normal equations of c0 + c1 s + c2 s^2 with s in units of the half window.
+        let mut s = [0.0; 5];
+        let mut b = [0.0; 3];
+        for j in from..to {
+            let u = (time_s[j] - time_s[k]) / half_window_s;
+            let powers = [1.0, u, u * u, u * u * u, u * u * u * u];
+            s.iter_mut().zip(powers).for_each(|(s, p)| *s += p);
+            b.iter_mut().zip(powers).for_each(|(b, p)| *b += p * displacement_m[j]);
+        }
+        let m = nalgebra::Matrix3::new(s[0], s[1], s[2], s[1], s[2], s[3], s[2], s[3], s[4]);
+        let c = match m.try_inverse() {
+            Some(inverse) if to - from > 4 => inverse * nalgebra::Vector3::new(b[0], b[1], b[2]),
+            _ => nalgebra::Vector3::new(displacement_m[k], 0.0, 0.0),
+        };
+        motion.displacement_m.push(c[0]);
+        motion.speed_m_s.push(c[1] / half_window_s);
+        motion
+            .acceleration_m_s2
+            .push(2.0 * c[2] / (half_window_s * half_window_s));
+    }
+    motion
+}
+
+impl CylinderModel {
+    /// Reads and checks a model file.
+    ///
+    /// # Errors
+    /// One line: source, line or key, what.
+    pub fn from_toml(text: &str, source: &str) -> Result<Self, String> {
+        let model: Self = toml::from_str(text).map_err(|e| toml_message(text, source, &e))?;
+        if model.chamber.is_empty() {
+            return Err(format!("{source}, key chamber: at least one is needed"));
+        }
+        for chamber in &model.chamber {
+            within(source, "chamber.area_m2", chamber.area_m2.abs(), 1e-8, 10.0)?;
+        }
+        Ok(model)
+    }
+
+    /// The model as a file.
+    ///
+    /// # Errors
+    /// Never for a model that was read; the serialiser's message otherwise.
+    pub fn to_toml(&self) -> Result<String, String> {
+        toml::to_string_pretty(self).map_err(|e| e.to_string())
+    }
+
+    /// Force on the cylinder from motion and pressures (one series a chamber), before the load cell, N.
+    #[must_use]
+    pub fn force_n(&self, time_s: &[f64], motion: &SmoothedMotion, pressures: &[Vec<f64>]) -> Vec<f64> {
+        let effects = &self.effects;
+        let pressures: Vec<Vec<f64>> = self
+            .chamber
+            .iter()
+            .zip(pressures)
+            .map(|(c, p)| self.corrected(time_s, &c.column, p))
+            .collect();
+        let seal = effects.seal_friction.as_ref().map(|s| SealFriction {
+            coulomb_force_n: s.coulomb_force_n,
+            breakaway_force_n: s.coulomb_force_n,
+            stribeck_speed_m_s: 1.0,
+            presliding_stiffness_n_m: s.presliding_stiffness_n_m,
+        });
+        let mut friction = 0.0;
+        (0..time_s.len())
+            .map(|k| {
+                let (mut net, mut pressing) = (0.0, 0.0);
+                for (chamber, p) in self.chamber.iter().zip(&pressures) {
+                    net += chamber.area_m2 * p[k];
+                    pressing += (chamber.area_m2 * p[k].max(0.0)).abs();
+                }
+                if k > 0 {
+                    let stroke = motion.displacement_m[k] - motion.displacement_m[k - 1];
+                    let duration = time_s[k] - time_s[k - 1];
+                    friction = advance_friction(
+                        friction,
+                        stroke,
+                        duration,
+                        pressing,
+                        seal.as_ref(),
+                        effects.side_load_friction.as_ref(),
+                    );
+                }
+                net + friction
+                    + effects.moving_mass_kg.unwrap_or(0.0) * motion.acceleration_m_s2[k]
+                    + effects.viscous_friction_n_s_m.unwrap_or(0.0) * motion.speed_m_s[k]
+                    + effects.parallel_stiffness_n_m.unwrap_or(0.0) * motion.displacement_m[k]
+            })
+            .collect()
+    }
+
+    /// A measured pressure put right: what the instrument did is undone (offset, gain, drift, skew).
+    fn corrected(&self, time_s: &[f64], column: &str, series: &[f64]) -> Vec<f64> {
+        let of = |effect: &Option<SensorEffect>| effect.as_ref().and_then(|e| e.get(column).copied()).unwrap_or(0.0);
+        let (offset, gain, drift) = (
+            of(&self.effects.sensor_offset),
+            of(&self.effects.sensor_gain),
+            of(&self.effects.sensor_drift),
+        );
+        let delay = of(&self.effects.sensor_skew);
+        let mut series: Vec<f64> = series
+            .iter()
+            .zip(time_s)
+            .map(|(p, t)| (p - offset - drift * (t - time_s[0])) / (1.0 + gain))
+            .collect();
+        if delay != 0.0 {
+            let early = SensorEffect::from([(column.to_owned(), -delay)]);
+            let early = Effects {
+                sensor_skew: Some(early),
+                ..Effects::default()
+            };
+            record_column(&early, column, time_s, &mut series);
+        }
+        series
+    }
+
+    /// What the load cell shows of the force.
+    #[must_use]
+    pub fn shown(&self, time_s: &[f64], mut force_n: Vec<f64>) -> Vec<f64> {
+        let e = &self.effects;
+        let instruments = Effects {
+            sensor_lag: e.sensor_lag.clone(),
+            sensor_gain: e.sensor_gain.clone(),
+            sensor_drift: e.sensor_drift.clone(),
+            sensor_skew: e.sensor_skew.clone(),
+            sensor_offset: e.sensor_offset.clone(),
+            ..Effects::default()
+        };
+        record_column(&instruments, "force_N", time_s, &mut force_n);
+        force_n
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_is_its_own_smoothing() {
+        let t: Vec<f64> = (0..200).map(|k| f64::from(k) * 0.01).collect();
+        let x: Vec<f64> = t.iter().map(|t| 0.1 + 0.2 * t + 0.3 * t * t).collect();
+        let m = smooth_motion(&t, &x, 0.05);
+        assert!((m.displacement_m[100] - x[100]).abs() < 1e-12);
+        assert!((m.speed_m_s[100] - 0.8).abs() < 1e-9 && (m.acceleration_m_s2[100] - 0.6).abs() < 1e-7);
+    }
+
+    #[test]
+    fn friction_that_grows_with_pressure_widens_the_loop() {
+        let mut model = CylinderModel::from_toml(
+            "[specimen]\nname='a'\nkind='cylinder'\n[[chamber]]\ncolumn='p_Pa'\narea_m2=0.001\n",
+            "test",
+        )
+        .unwrap();
+        model.effects.seal_friction = Some(CylinderSeal {
+            coulomb_force_n: 10.0,
+            presliding_stiffness_n_m: 1e6,
+        });
+        model.effects.side_load_friction = Some(SideLoadFriction { coefficient: 0.02 });
+        let t: Vec<f64> = (0..400).map(|k| f64::from(k) * 0.01).collect();
+        let x: Vec<f64> = t.iter().map(|t| 0.01 * libm::sin(*t * 3.0)).collect();
+        let f = model.force_n(&t, &smooth_motion(&t, &x, 0.03), &[vec![1e6; 400]]);
+        // Pressure force 1000 N, friction 10 + 0.02 * 1000 N on either side.
+        let (low, high) = f.iter().fold((f64::MAX, f64::MIN), |(a, b), &v| (a.min(v), b.max(v)));
+        assert!((high - 1030.0).abs() < 0.1 && (low - 970.0).abs() < 0.1, "{low} {high}");
+    }
+}

@@ -1,0 +1,273 @@
+//! A chamber of nitrogen closed by a piston, and nothing else.
+//!
+//! `V = V_0 - A x`, ideal gas of constant mass. Isothermal, adiabatic, or in between through the energy equation with a
+//! thermal time constant of Els & Grobbelaar (SAE 930265), as in the strut:
+//! `m c_v dT/dt = -p dV/dt - m c_v (T - T_ambient) / tau`.
+//! Units SI; pressure absolute.
+
+use serde::{Deserialize, Serialize};
+
+use super::{SpecimenName, toml_message, within};
+use crate::strut::{Effects, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K, SensorEffect, record_column};
+
+/// The chamber.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpringChamber {
+    /// Piston area, m2.
+    pub area_m2: f64,
+    /// Gas volume at displacement zero, m3.
+    pub volume_at_zero_m3: f64,
+}
+
+/// What the gas is taken to do where no heat transfer is modelled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum GasProcess {
+    /// Stays at its first temperature.
+    Isothermal,
+    /// Exchanges no heat.
+    Adiabatic,
+}
+
+/// The gas.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GasSpringGas {
+    /// `nitrogen`.
+    pub species: String,
+    /// Process without heat transfer.
+    pub process: GasProcess,
+    /// Ambient temperature, K.
+    #[serde(rename = "temperature_K")]
+    pub temperature_k: f64,
+    /// Gas temperature at the first sample less ambient, K.
+    #[serde(
+        rename = "initial_temperature_difference_K",
+        default,
+        skip_serializing_if = "is_zero"
+    )]
+    pub initial_temperature_difference_k: f64,
+    /// Pressure at the first sample over the measured one, less 1.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub initial_pressure_error: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature serde wants")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+/// Heat exchanged with the wall.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GasHeatTransferTerm {
+    /// Thermal time constant, s.
+    pub time_constant_s: f64,
+}
+
+/// Terms a gas spring may have.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GasSpringEffects {
+    /// Gas neither isothermal nor adiabatic.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gas_heat_transfer: Option<GasHeatTransferTerm>,
+    /// Unlisted: gas lost, `dm/dt = -rate m`, 1/s.
+    #[serde(rename = "gas_leak_rate_1_s", skip_serializing_if = "Option::is_none")]
+    pub gas_leak_rate_1_s: Option<f64>,
+    /// Unlisted: a fixed polytropic exponent in place of the process.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub polytropic_exponent: Option<f64>,
+    /// First-order lag of a column, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_lag: Option<SensorEffect>,
+    /// Relative gain error of a column.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_gain: Option<SensorEffect>,
+    /// Drift of a column, unit per second.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_drift: Option<SensorEffect>,
+    /// Time by which a column is late, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_skew: Option<SensorEffect>,
+}
+
+/// The `model.toml` of a gas spring.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GasSpringModel {
+    /// Name and kind.
+    pub specimen: SpecimenName,
+    /// Geometry.
+    pub chamber: SpringChamber,
+    /// Gas.
+    pub gas: GasSpringGas,
+    /// Terms.
+    #[serde(default)]
+    pub effects: GasSpringEffects,
+    /// How far values may be off: `volume_at_zero`, `initial_pressure` relative, `temperature_K` in K.
+    #[serde(default)]
+    pub tolerance: SensorEffect,
+    /// Standard deviation of the noise by column.
+    #[serde(default)]
+    pub noise: SensorEffect,
+}
+
+impl GasSpringModel {
+    /// Reads and checks a model file.
+    ///
+    /// # Errors
+    /// One line: source, line or key, what.
+    pub fn from_toml(text: &str, source: &str) -> Result<Self, String> {
+        let model: Self = toml::from_str(text).map_err(|e| toml_message(text, source, &e))?;
+        within(source, "chamber.area_m2", model.chamber.area_m2, 1e-6, 1.0)?;
+        within(
+            source,
+            "chamber.volume_at_zero_m3",
+            model.chamber.volume_at_zero_m3,
+            1e-7,
+            10.0,
+        )?;
+        within(source, "gas.temperature_K", model.gas.temperature_k, 200.0, 400.0)?;
+        if model.gas.species != "nitrogen" {
+            return Err(format!(
+                "{source}, key gas.species: '{}' is not known; nitrogen is",
+                model.gas.species
+            ));
+        }
+        if let Some(heat) = &model.effects.gas_heat_transfer {
+            within(
+                source,
+                "effects.gas_heat_transfer.time_constant_s",
+                heat.time_constant_s,
+                1e-3,
+                1e6,
+            )?;
+        }
+        Ok(model)
+    }
+
+    /// The model as a file.
+    ///
+    /// # Errors
+    /// Never for a model that was read; the serialiser's message otherwise.
+    pub fn to_toml(&self) -> Result<String, String> {
+        toml::to_string_pretty(self).map_err(|e| e.to_string())
+    }
+
+    /// Absolute pressure at every sample, from the displacement and the first measured pressure, before instruments.
+    ///
+    /// # Errors
+    /// A stroke that would leave no gas volume.
+    pub fn pressure_pa(
+        &self,
+        time_s: &[f64],
+        displacement_m: &[f64],
+        first_pressure_pa: f64,
+    ) -> Result<Vec<f64>, String> {
+        let gas = &self.gas;
+        let volume = |x: f64| self.chamber.volume_at_zero_m3 - self.chamber.area_m2 * x;
+        let smallest = displacement_m.iter().map(|&x| volume(x)).fold(f64::INFINITY, f64::min);
+        if smallest <= 0.0 {
+            return Err(format!(
+                "the stroke leaves a gas volume of {smallest} m3; volume_at_zero_m3 or area_m2 is wrong"
+            ));
+        }
+        let ambient = gas.temperature_k;
+        let mut temperature = ambient + gas.initial_temperature_difference_k;
+        let mut v = volume(displacement_m[0]);
+        let first = first_pressure_pa * (1.0 + gas.initial_pressure_error);
+        let mut mass_r = first * v / temperature;
+        let exponent = match (
+            &self.effects.gas_heat_transfer,
+            self.effects.polytropic_exponent,
+            gas.process,
+        ) {
+            (Some(_), _, _) | (None, None, GasProcess::Adiabatic) => NITROGEN_R_J_KG_K / NITROGEN_CV_J_KG_K,
+            (None, Some(n), _) => n - 1.0,
+            (None, None, GasProcess::Isothermal) => 0.0,
+        };
+        let leak = self.effects.gas_leak_rate_1_s.unwrap_or(0.0);
+        let mut pressure = Vec::with_capacity(time_s.len());
+        pressure.push(first);
+        for k in 1..time_s.len() {
+            let dt = time_s[k] - time_s[k - 1];
+            let next = volume(displacement_m[k]);
+            // Strang splitting: half a step of heat exchange, the adiabatic change of volume, half a step; each exact.
+            let keep = self
+                .effects
+                .gas_heat_transfer
+                .as_ref()
+                .map_or(1.0, |h| libm::exp(-0.5 * dt / h.time_constant_s));
+            temperature = ambient + (temperature - ambient) * keep;
+            temperature *= libm::pow(v / next, exponent);
+            temperature = ambient + (temperature - ambient) * keep;
+            mass_r *= libm::exp(-leak * dt);
+            v = next;
+            pressure.push(mass_r * temperature / v);
+        }
+        Ok(pressure)
+    }
+
+    /// What the pressure sensor shows of the true pressure.
+    #[must_use]
+    pub fn shown(&self, time_s: &[f64], mut pressure_pa: Vec<f64>) -> Vec<f64> {
+        let e = &self.effects;
+        let instruments = Effects {
+            sensor_lag: e.sensor_lag.clone(),
+            sensor_gain: e.sensor_gain.clone(),
+            sensor_drift: e.sensor_drift.clone(),
+            sensor_skew: e.sensor_skew.clone(),
+            ..Effects::default()
+        };
+        record_column(&instruments, "p_Pa", time_s, &mut pressure_pa);
+        pressure_pa
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn model() -> GasSpringModel {
+        GasSpringModel::from_toml(
+            "[specimen]\nname='a'\nkind='gas spring'\n[chamber]\narea_m2=0.01\nvolume_at_zero_m3=0.05\n[gas]\n\
+             species='nitrogen'\nprocess='adiabatic'\ntemperature_K=293.15\n",
+            "test",
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn adiabatic_is_the_closed_form() {
+        let t: Vec<f64> = (0..101).map(f64::from).collect();
+        let x: Vec<f64> = t.iter().map(|t| 0.02 * t).collect();
+        let p = model().pressure_pa(&t, &x, 1e6).unwrap();
+        let gamma = 1.0 + NITROGEN_R_J_KG_K / NITROGEN_CV_J_KG_K;
+        assert!((p[100] / (1e6 * libm::pow(0.05 / 0.03, gamma)) - 1.0).abs() < 1e-10);
+    }
+
+    #[test]
+    fn a_held_piston_relaxes_with_the_time_constant_to_the_isotherm() {
+        let mut m = model();
+        m.effects.gas_heat_transfer = Some(GasHeatTransferTerm { time_constant_s: 5.0 });
+        let t: Vec<f64> = (0..10_001).map(|k| f64::from(k) * 0.01).collect();
+        let x: Vec<f64> = t.iter().map(|t| if *t < 0.005 { 0.0 } else { 1.0 }).collect();
+        let p = m.pressure_pa(&t, &x, 1e6).unwrap();
+        let isotherm = 1e6 * 0.05 / 0.04;
+        assert!((p[10_000] / isotherm - 1.0).abs() < 1e-6);
+        let ratio = (p[1001] - isotherm) / (p[501] - isotherm);
+        assert!((ratio - libm::exp(-1.0)).abs() < 1e-6, "{ratio}");
+    }
+
+    #[test]
+    fn too_long_a_stroke_is_an_error() {
+        assert!(
+            model()
+                .pressure_pa(&[0.0, 1.0], &[0.0, 6.0], 1e6)
+                .unwrap_err()
+                .contains("volume_at_zero_m3")
+        );
+    }
+}

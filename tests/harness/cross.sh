@@ -38,3 +38,10 @@ cross_cargo() (
     export PATH RUSTC=/usr/bin/rustc
     exec /usr/bin/cargo "$@" --locked -Zbuild-std=core --target $BOARD
 )
+
+# Builds firmware/bench for this machine, into $bench_binary.
+host_bench() (
+    cd firmware || exit 1
+    CARGO_TARGET_DIR=$FIRMWARE_TARGET cargo build --release --locked -p oleo-bench --target "$(rustc --print host-tuple)"
+)
+bench_binary=$FIRMWARE_TARGET/$(rustc --print host-tuple)/release/oleo-bench

@@ -1,0 +1,106 @@
+//! The controller over a synthetic drive: the valve words it commands, and the instructions it takes.
+//!
+//! One program for two machines. On the emulated Cortex-M4F it counts instructions of each tick; on the host it is what
+//! callgrind looks at. Both print the hash of all valve words, which must be the same: the promise that what is
+//! simulated on a desk is what drives in the vehicle.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+mod drive;
+#[cfg_attr(target_os = "none", path = "board.rs")]
+#[cfg_attr(not(target_os = "none"), path = "host.rs")]
+mod machine;
+
+use core::hint::black_box;
+use drive::{Drive, TICKS};
+use machine::{Counter, leave, say};
+use oleo_controller::can::{Frame, PlantEnd};
+use oleo_controller::{Configuration, Inputs, Node, Outputs, State, tick};
+
+/// Goal for the tick, instructions on the Cortex-M4F.
+const GOAL: u32 = 3_000;
+
+#[cfg_attr(target_os = "none", cortex_m_rt::entry)]
+fn main() -> ! {
+    let Some(counter) = Counter::start() else { leave(false) };
+    let configuration = Configuration::defender110();
+    let mut drive = Drive::new();
+    let mut plant = PlantEnd::new();
+    let mut node = Node::new(configuration.clone());
+    let mut state = State::new(&configuration);
+    let mut words = Fnv1a::new();
+    let mut costs = [[0_u32; TICKS as usize]; 3];
+    let [tick_costs, node_costs, receive_costs] = &mut costs;
+    let mut modes = [0_u16; 16];
+
+    for index in 0..usize::from(TICKS) {
+        let number = drive.tick();
+        let inputs = drive.inputs();
+        let frames = plant.encode(number, &inputs);
+
+        tick_costs[index] = counter.instructions(|| {
+            black_box(controller_tick(&configuration, &mut state, &inputs));
+        });
+        receive_costs[index] = counter.instructions(|| node_receive(&mut node, &frames));
+        let mut outputs = Outputs::default();
+        node_costs[index] = counter.instructions(|| outputs = node_tick(&mut node));
+
+        words.take(outputs.command.word());
+        modes[outputs.mode as usize & 15] += 1;
+    }
+
+    say!("ticks {}", TICKS);
+    say!("valve words hash {:016x}", words.0);
+    for (mode, ticks) in modes.iter().enumerate().filter(|(_, ticks)| **ticks > 0) {
+        say!("mode {} for {} ticks", mode, ticks);
+    }
+    let mut within = true;
+    for (name, costs) in ["tick", "node tick", "receive six frames"].into_iter().zip(&mut costs) {
+        costs.sort_unstable();
+        let (min, median, max) = (costs[0], costs[costs.len() / 2], costs[costs.len() - 1]);
+        if max > 0 {
+            say!("{}: {} min, {} median, {} max instructions", name, min, median, max);
+            within &= name != "tick" || max <= GOAL;
+        }
+    }
+    if !within {
+        say!("above the goal of {} instructions a tick", GOAL);
+    }
+    leave(true)
+}
+
+/// The pure function, on its own in the image so that a profiler finds it.
+#[inline(never)]
+fn controller_tick(configuration: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
+    tick(black_box(configuration), black_box(state), black_box(inputs))
+}
+
+/// The same with the bus around it: time-outs, command and status frames.
+#[inline(never)]
+fn node_tick(node: &mut Node) -> Outputs {
+    let (outputs, frames) = node.tick();
+    black_box(frames);
+    outputs
+}
+
+/// Check and decode one tick's frames.
+#[inline(never)]
+fn node_receive(node: &mut Node, frames: &[Frame]) {
+    for frame in black_box(frames) {
+        black_box(node.receive(frame.id, &frame.data));
+    }
+}
+
+/// FNV-1a, 64 bit, over the words' bytes, low byte first (draft-eastlake-fnv).
+struct Fnv1a(u64);
+
+impl Fnv1a {
+    fn new() -> Self {
+        Fnv1a(0xcbf2_9ce4_8422_2325)
+    }
+
+    fn take(&mut self, word: u16) {
+        for byte in word.to_le_bytes() {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! Twelve solenoids on one port: PE4..PE15, high = energised, each with a pull-down resistor on the board.
+//!
+//! They share a port so that one write turns all of them off, from wherever something goes wrong. At reset the pins
+//! are inputs, so the resistors keep the valves closed: stiff spring, high damping.
+
+use core::convert::Infallible;
+use embedded_hal::digital::{ErrorType, OutputPin};
+use stm32f4::stm32f405::{GPIOE, RCC};
+
+/// Number of solenoids: four corners of three valves.
+pub const COUNT: usize = 12;
+const FIRST_PIN: u8 = 4;
+const ALL: u32 = ((1 << COUNT) - 1) << FIRST_PIN;
+
+/// One solenoid driver input; off until told otherwise.
+pub struct Solenoid {
+    mask: u32,
+}
+
+/// Makes the port's twelve pins outputs and hands them out in the order of the command word's bits. Takes the port, so
+/// that nobody else has it.
+pub fn take(_port: GPIOE, rcc: &RCC) -> [Solenoid; COUNT] {
+    rcc.ahb1enr().modify(|_, w| w.gpioeen().enabled());
+    all_off();
+    let port = registers();
+    for pin in FIRST_PIN..FIRST_PIN + COUNT as u8 {
+        port.moder().modify(|_, w| w.moder(pin).output());
+    }
+    core::array::from_fn(|index| Solenoid {
+        mask: 1 << (FIRST_PIN as usize + index),
+    })
+}
+
+/// Turns all twelve off with a single write. For fault handlers too: needs no state and cannot fail.
+pub fn all_off() {
+    write(ALL << 16);
+}
+
+impl ErrorType for Solenoid {
+    type Error = Infallible;
+}
+
+impl OutputPin for Solenoid {
+    fn set_low(&mut self) -> Result<(), Infallible> {
+        write(self.mask << 16);
+        Ok(())
+    }
+
+    fn set_high(&mut self) -> Result<(), Infallible> {
+        write(self.mask);
+        Ok(())
+    }
+}
+
+/// The bit set/reset register changes only the pins whose bits are one: no reading back, so no race with a handler.
+fn write(bits: u32) {
+    #[allow(unsafe_code)]
+    // SAFETY: every pattern is valid in BSRR; only the masks of PE4..PE15 are ever passed.
+    registers().bsrr().write(|w| unsafe { w.bits(bits) });
+}
+
+fn registers() -> &'static stm32f4::stm32f405::gpioi::RegisterBlock {
+    #[allow(unsafe_code)]
+    // SAFETY: a fixed, always mapped peripheral; each pin's bits are written by its `Solenoid` or cleared by `all_off`.
+    unsafe {
+        &*GPIOE::ptr()
+    }
+}

@@ -2,7 +2,36 @@
 //!
 //! A [`Road`] is a height for every station and lateral position, defined everywhere, so that no simulation ends
 //! because a surface did. Vehicles only know the trait; where heights come from (a measured file, a standard's
-//! spectrum, an obstacle) is decided here and nowhere else.
+//! spectrum, an obstacle) is decided here and nowhere else. [`from_name_or_path`] is the door for a command line.
+//!
+//! ```text
+//!  file.crg -> crg -> grid ----+                      names: belgian, apg-left, apg-right, apg-both,
+//!  file.csv -> profile_file ---+-> entry (smooth) ->         iso-a .. iso-f, flat, or a path
+//!  spectrum table -> random ---+
+//!  obstacle, flat -----------------------------------> Road
+//! ```
+
+mod apg;
+pub mod belgian;
+pub mod crg;
+mod entry;
+mod error;
+mod grid;
+pub mod iso8608;
+mod named;
+mod profile_file;
+mod random;
+pub mod spectrum;
+mod tracks;
+
+pub use apg::{ApgObstacle, Side};
+pub use entry::{ENTRY_M, EnteredSmoothly};
+pub use error::RoadError;
+pub use grid::GridRoad;
+pub use named::{NAMES, from_name_or_path};
+pub use profile_file::profile_from_csv;
+pub use random::{TrackSpectrum, synthesise};
+pub use tracks::TwoTracks;
 
 /// A road surface.
 ///
@@ -22,3 +51,6 @@ impl Road for Flat {
         0.0
     }
 }
+
+/// Half the distance between the tracks of the built-in roads and of two-track files, m: the Defender 110's.
+pub const HALF_TRACK_M: f64 = 0.743;

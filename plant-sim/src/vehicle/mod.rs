@@ -15,7 +15,7 @@
 mod contact;
 pub mod equations;
 pub mod linear;
-mod parameter_file;
+pub(crate) mod parameter_file;
 mod parameters;
 mod ride;
 pub mod suspension;

@@ -18,7 +18,7 @@ pub struct ParameterError {
 }
 
 /// Closed range a value must lie in.
-type Limits = (f64, f64);
+pub(crate) type Limits = (f64, f64);
 
 const MASS_KG: Limits = (1.0, 1e5);
 const INERTIA_KG_M2: Limits = (0.1, 1e6);
@@ -128,7 +128,7 @@ impl VehicleParameters {
 /// The controller's tick, s, which the plant's step must divide.
 const TICK_S: f64 = 0.005;
 
-fn within(
+pub(crate) fn within(
     table: &'static str,
     key: &'static str,
     value: f64,
@@ -145,7 +145,7 @@ fn within(
 }
 
 /// One line from a TOML error, with the key it is about where that can be seen.
-fn describe(text: &str, error: &toml::de::Error) -> String {
+pub(crate) fn describe(text: &str, error: &toml::de::Error) -> String {
     let message = error.message().replace('\n', " ");
     let key = error.span().and_then(|span| {
         let line = text.lines().nth(line_at(text, span.start) - 1)?;
@@ -159,12 +159,12 @@ fn describe(text: &str, error: &toml::de::Error) -> String {
 }
 
 /// Line, from 1, of a byte offset.
-fn line_at(text: &str, offset: usize) -> usize {
+pub(crate) fn line_at(text: &str, offset: usize) -> usize {
     1 + text.bytes().take(offset).filter(|&byte| byte == b'\n').count()
 }
 
 /// Line, from 1, of `key` in `[table]`; 1 where it is not written in that form.
-fn line_of(text: &str, table: &str, key: &str) -> usize {
+pub(crate) fn line_of(text: &str, table: &str, key: &str) -> usize {
     let header = format!("[{table}]");
     let mut inside = false;
     for (index, line) in text.lines().enumerate() {

@@ -4,14 +4,16 @@
 # 1. rustup's target, where it is installed or can be downloaded;
 # 2. Debian's rustc-web and cargo-web with the library source rust-web-src: core is then built from source, with
 #    the linker of the host's toolchain.
+# OLEO_CROSS=rustup or OLEO_CROSS=debian takes that way only.
 readonly BOARD=thumbv7em-none-eabihf
 readonly FIRMWARE_TARGET=$CARGO_TARGET_DIR/firmware
 
 rustup_has_board() { rustup target list --installed 2> /dev/null | grep -qx $BOARD; }
+rustup_adds_board() { timeout 120 rustup target add $BOARD > "$OLEO_LOGS/rustup.log" 2>&1 && rustup_has_board; }
 
 # Finds the way once; says it, or why there is none, in $cross_how.
 cross_find() {
-    if rustup_has_board || { timeout 120 rustup target add $BOARD > "$OLEO_LOGS/rustup.log" 2>&1 && rustup_has_board; }; then
+    if [ "${OLEO_CROSS:-rustup}" = rustup ] && { rustup_has_board || rustup_adds_board; }; then
         cross_how="rustup target $BOARD, $(rustc --version)"
         cross_way=rustup
         return 0

@@ -179,6 +179,11 @@ impl State {
         self.mode
     }
 
+    /// Whether `Normal` was ever reached.
+    pub const fn was_normal(&self) -> bool {
+        self.was_normal
+    }
+
     /// First cause of the present trouble; `None` in `Normal`.
     pub const fn first_cause(&self) -> FaultCode {
         self.first_cause

@@ -13,10 +13,16 @@
 
 pub mod can;
 pub mod configuration;
+pub mod dwell;
 pub mod estimate;
 pub mod failsafe;
+pub mod filter;
 pub mod node;
+pub mod plausibility;
+pub mod port;
 pub mod reading;
+pub mod solenoids;
+pub mod spring;
 pub mod strategy;
 pub mod tick;
 pub mod timing;
@@ -27,6 +33,7 @@ pub use estimate::Estimate;
 pub use failsafe::{FaultCode, Mode};
 pub use node::Node;
 pub use reading::{Inputs, Reading};
-pub use strategy::Strategy;
+pub use solenoids::Solenoids;
+pub use strategy::{DamperPolicy, Strategy};
 pub use tick::{Outputs, State, tick};
 pub use valves::ValveCommand;

@@ -111,7 +111,7 @@ impl Node {
     /// A node that has heard nothing: valves closed, mode start-up.
     pub fn new(configuration: Configuration) -> Self {
         Self {
-            state: State::new(&configuration),
+            state: State::new(),
             configuration,
             receivers: SENSOR_MESSAGES.map(|contract| Receiver::new(&contract)),
             inputs: Inputs::default(),

@@ -1,0 +1,152 @@
+//! First-order sections from which all filters here are built.
+//!
+//! Coefficients are computed once, from physical units, when the configuration is built; a tick then only multiplies and
+//! adds. All sections are exact at steady state and unconditionally stable (0 < alpha < 1).
+
+use crate::timing::TICK_S;
+
+/// `y += alpha (x - y)`, the step-invariant form of a first-order lag: `alpha = 1 - exp(-T / tau)`.
+///
+/// ```
+/// use oleo_controller::filter::LowPass;
+/// let filter = LowPass::from_time_constant_s(0.1);
+/// let mut y = 0.0;
+/// for _ in 0..20 { filter.step(&mut y, 1.0); } // 20 ticks are 0.1 s
+/// assert!((y - (1.0 - (-1.0f32).exp())).abs() < 1e-5);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LowPass {
+    alpha: f32,
+}
+
+impl LowPass {
+    /// Lag with a time constant, s (> 0).
+    pub fn from_time_constant_s(time_constant_s: f32) -> Self {
+        Self {
+            alpha: -libm::expm1f(-TICK_S / time_constant_s),
+        }
+    }
+
+    /// Lag with a corner frequency, Hz (> 0).
+    pub fn from_corner_hz(corner_hz: f32) -> Self {
+        Self::from_time_constant_s(1.0 / (2.0 * core::f32::consts::PI * corner_hz))
+    }
+
+    /// One tick; returns the new output, which is the state.
+    pub fn step(&self, state: &mut f32, input: f32) -> f32 {
+        *state += self.alpha * (input - *state);
+        *state
+    }
+}
+
+/// Derivative behind two first-order lags of the same corner: a plain difference would turn each 0.01 mm step of the displacement signal
+/// into 2 mm/s of speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Derivative {
+    lag: LowPass,
+}
+
+/// State of [`Derivative`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DerivativeState {
+    lagged: f32,
+    rate: f32,
+    started: bool,
+}
+
+impl Derivative {
+    /// Both corners at this frequency, Hz.
+    pub fn from_corner_hz(corner_hz: f32) -> Self {
+        Self {
+            lag: LowPass::from_corner_hz(corner_hz),
+        }
+    }
+
+    /// One tick; the derivative per second. The first sample gives 0.
+    pub fn step(&self, state: &mut DerivativeState, input: f32) -> f32 {
+        if !state.started {
+            *state = DerivativeState {
+                lagged: input,
+                rate: 0.0,
+                started: true,
+            };
+        }
+        let before = state.lagged;
+        let slope = (self.lag.step(&mut state.lagged, input) - before) * (1.0 / TICK_S);
+        self.lag.step(&mut state.rate, slope)
+    }
+}
+
+/// Integrator that forgets: `v = k (v + a T)`, an integrator above its corner and zero at rest, so that a constant error of
+/// an estimated acceleration does not run away.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeakyIntegrator {
+    keep: f32,
+}
+
+impl LeakyIntegrator {
+    /// Integrates above a corner frequency, Hz.
+    pub fn from_corner_hz(corner_hz: f32) -> Self {
+        Self {
+            keep: libm::expf(-TICK_S * 2.0 * core::f32::consts::PI * corner_hz),
+        }
+    }
+
+    /// One tick; returns the new output, which is the state.
+    pub fn step(&self, state: &mut f32, input: f32) -> f32 {
+        *state = self.keep * (*state + input * TICK_S);
+        *state
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Amplitude of the response to a sine of amplitude 1, after settling.
+    fn gain(frequency_hz: f32, mut filter: impl FnMut(f32) -> f32) -> f32 {
+        let mut peak = 0.0f32;
+        for n in 0..8000 {
+            let y = filter(libm::sinf(
+                2.0 * core::f32::consts::PI * frequency_hz * n as f32 * TICK_S,
+            ));
+            if n > 6000 {
+                peak = peak.max(y.abs());
+            }
+        }
+        peak
+    }
+
+    #[test]
+    fn low_pass_is_3_db_down_at_its_corner() {
+        let (filter, mut state) = (LowPass::from_corner_hz(1.0), 0.0);
+        assert!((gain(1.0, |x| filter.step(&mut state, x)) - core::f32::consts::FRAC_1_SQRT_2).abs() < 0.02);
+    }
+
+    #[test]
+    fn derivative_of_a_slow_sine() {
+        let (filter, mut state) = (Derivative::from_corner_hz(18.0), DerivativeState::default());
+        let omega = 2.0 * core::f32::consts::PI;
+        assert!((gain(1.0, |x| filter.step(&mut state, x)) / omega - 1.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn derivative_at_its_corner_is_6_db_down() {
+        // Two lags at 18 Hz: the analogue gain is one half; the step-invariant form is within a tenth of it at 200 Hz sampling.
+        let (filter, mut state) = (Derivative::from_corner_hz(18.0), DerivativeState::default());
+        let omega = 2.0 * core::f32::consts::PI * 18.0;
+        let measured = gain(18.0, |x| filter.step(&mut state, x)) / omega;
+        assert!((measured - 0.5).abs() < 0.06, "{measured}");
+    }
+
+    #[test]
+    fn leaky_integrator_integrates_and_forgets() {
+        let (filter, mut state) = (LeakyIntegrator::from_corner_hz(0.2), 0.0);
+        let omega = 2.0 * core::f32::consts::PI * 1.5;
+        assert!((gain(1.5, |x| filter.step(&mut state, x)) * omega - 1.0).abs() < 0.03);
+        for _ in 0..4000 {
+            filter.step(&mut state, 0.0);
+        }
+        assert!(state.abs() < 1e-6);
+    }
+}

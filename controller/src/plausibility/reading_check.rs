@@ -1,0 +1,145 @@
+//! One reading by itself: is it there, finite, in range, and no faster than the hardware?
+//!
+//! A single bad sample is bridged with the last good one; three in a row (or three bad for every nine good) make the reading faulty,
+//! and it takes twelve good ones more than bad to be believed again: a counter that goes up by 4 and down by 1.
+
+use crate::failsafe::FaultCode;
+use crate::reading::Reading;
+
+const UP: u8 = 4;
+const LIMIT: u8 = 12;
+
+/// Range, and largest change within a tick, in the reading's unit.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    pub least: f32,
+    pub most: f32,
+    pub step: f32,
+}
+
+/// State of the check. Starts as faulty: a sensor is believed after it has delivered.
+#[derive(Clone, Copy, Debug)]
+pub struct ReadingCheck {
+    last: f32,
+    bad: u8,
+    faulty: bool,
+    cause: FaultCode,
+    /// Ticks since the last good sample.
+    age: u8,
+}
+
+impl Default for ReadingCheck {
+    fn default() -> Self {
+        Self {
+            last: 0.0,
+            bad: LIMIT,
+            faulty: true,
+            cause: FaultCode::SensorRange,
+            age: u8::MAX,
+        }
+    }
+}
+
+impl ReadingCheck {
+    /// Last good value.
+    pub fn value(&self) -> f32 {
+        self.last
+    }
+
+    /// One tick; what is wrong, if the reading is to be replaced.
+    pub fn step(&mut self, reading: Reading, message_lost: bool, limits: &Limits) -> FaultCode {
+        let in_range = reading.value().filter(|&v| v >= limits.least && v <= limits.most);
+        // The longer ago the last good sample, the further the value may have gone.
+        let reach = limits.step * (f32::from(self.age) + 1.0);
+        match in_range {
+            Some(value) if (value - self.last).abs() <= reach || self.age == u8::MAX => {
+                self.last = value;
+                self.age = 0;
+                self.bad = self.bad.saturating_sub(1);
+                if self.bad == 0 {
+                    self.faulty = false;
+                }
+            }
+            other => {
+                self.age = self.age.saturating_add(1);
+                // The node has waited already before it called a message lost.
+                self.bad = if message_lost {
+                    LIMIT
+                } else {
+                    self.bad.saturating_add(UP).min(LIMIT)
+                };
+                if self.bad == LIMIT {
+                    self.faulty = true;
+                    self.cause = if message_lost {
+                        FaultCode::MessageLost
+                    } else if other.is_some() {
+                        FaultCode::SensorRate
+                    } else {
+                        FaultCode::SensorRange
+                    };
+                }
+            }
+        }
+        if self.faulty { self.cause } else { FaultCode::None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: Limits = Limits {
+        least: -1.0,
+        most: 1.0,
+        step: 0.1,
+    };
+
+    fn healthy() -> ReadingCheck {
+        let mut check = ReadingCheck::default();
+        for _ in 0..LIMIT {
+            check.step(Reading::new(0.5), false, &LIMITS);
+        }
+        check
+    }
+
+    #[test]
+    fn believed_after_twelve() {
+        let mut check = ReadingCheck::default();
+        for n in 1..=LIMIT {
+            let fault = check.step(Reading::new(0.5), false, &LIMITS);
+            assert_eq!(fault == FaultCode::None, n == LIMIT, "sample {n}");
+        }
+    }
+
+    #[test]
+    fn third_bad_sample_in_a_row_and_the_value_is_held() {
+        for (bad, cause) in [
+            (Reading::INVALID, FaultCode::SensorRange),
+            (Reading::new(f32::NAN), FaultCode::SensorRange),
+            (Reading::new(1.01), FaultCode::SensorRange),
+            (Reading::new(-0.9), FaultCode::SensorRate),
+        ] {
+            let mut check = healthy();
+            assert_eq!(check.step(bad, false, &LIMITS), FaultCode::None);
+            assert_eq!(check.step(bad, false, &LIMITS), FaultCode::None);
+            assert_eq!(check.step(bad, false, &LIMITS), cause);
+            assert_eq!(check.value(), 0.5);
+        }
+    }
+
+    #[test]
+    fn a_lost_message_needs_no_second_opinion() {
+        assert_eq!(healthy().step(Reading::INVALID, true, &LIMITS), FaultCode::MessageLost);
+    }
+
+    #[test]
+    fn a_real_jump_is_accepted_in_time() {
+        let mut check = healthy();
+        let mut n = 0;
+        while check.value() != -0.5 {
+            check.step(Reading::new(-0.5), false, &LIMITS);
+            n += 1;
+        }
+        assert_eq!(n, 10); // 1.0 at 0.1 a tick
+    }
+}

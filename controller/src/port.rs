@@ -1,0 +1,254 @@
+//! The node on a real CAN peripheral: `embedded_can::nb::Can`, polled, never blocking.
+//!
+//! A controller must not wait for its bus: what cannot be sent now waits in a queue of a few frames, of which the oldest is dropped when it is full, since
+//! an old command is worth less than a new one. Reception takes at most as many frames a call as the queue of a whole
+//! tick could hold, so that a babbling neighbour cannot keep the controller from deciding.
+
+use crate::can::{FRAME_BYTES, Frame};
+use crate::node::Node;
+use crate::tick::Outputs;
+use embedded_can::{Frame as _, Id, StandardId, nb::Can};
+use heapless::Deque;
+
+/// Frames read in one call of [`Port::poll`]: more than a 1 Mbit/s bus delivers in a tick (5000 bit times, 47 for the shortest frame).
+pub const MOST_RECEIVED: usize = 128;
+
+/// Frames that wait for the transmitter.
+pub const SEND_QUEUE: usize = 4;
+
+/// What went wrong at the peripheral. Wrapping counters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PortCounters {
+    /// Receive or transmit errors that the peripheral reported.
+    pub errors: u32,
+    /// Frames dropped because the transmitter did not take them in time.
+    pub dropped: u32,
+}
+
+/// A node and its CAN peripheral.
+#[derive(Debug)]
+pub struct Port<C: Can> {
+    can: C,
+    node: Node,
+    queue: Deque<Frame, SEND_QUEUE>,
+    counters: PortCounters,
+}
+
+impl<C: Can> Port<C> {
+    /// Nothing sent, nothing received.
+    pub fn new(can: C, node: Node) -> Self {
+        Self {
+            can,
+            node,
+            queue: Deque::new(),
+            counters: PortCounters::default(),
+        }
+    }
+
+    /// Moves waiting frames in and out. Call it as often as there is time; returns at once. Extended, remote and foreign frames are ignored.
+    pub fn poll(&mut self) {
+        for _ in 0..MOST_RECEIVED {
+            match self.can.receive() {
+                Ok(frame) => {
+                    if let (Id::Standard(id), false) = (frame.id(), frame.is_remote_frame()) {
+                        self.node.receive(id.as_raw(), frame.data());
+                    }
+                }
+                Err(nb::Error::WouldBlock) => break,
+                Err(nb::Error::Other(_)) => {
+                    // The frame is gone; the counters of its message will tell. Trying again at once could go on for ever.
+                    self.counters.errors = self.counters.errors.wrapping_add(1);
+                    break;
+                }
+            }
+        }
+        self.send();
+    }
+
+    /// One period: reads what has come, decides, and hands the frames to the transmitter. Call it every
+    /// [`crate::timing::TICK_MS`].
+    pub fn tick(&mut self) -> Outputs {
+        self.poll();
+        let (outputs, frames) = self.node.tick();
+        for frame in frames {
+            if self.queue.is_full() {
+                self.queue.pop_front();
+                self.counters.dropped = self.counters.dropped.wrapping_add(1);
+            }
+            // There is room now.
+            let _ = self.queue.push_back(frame);
+        }
+        self.send();
+        outputs
+    }
+
+    /// The output stage failed to switch a solenoid: the next tick latches.
+    pub fn report_solenoid_failure(&mut self) {
+        self.node.report_solenoid_failure();
+    }
+
+    /// Error counts since the start.
+    pub fn counters(&self) -> PortCounters {
+        self.counters
+    }
+
+    /// The node.
+    pub fn node(&self) -> &Node {
+        &self.node
+    }
+
+    /// The peripheral.
+    pub fn can_mut(&mut self) -> &mut C {
+        &mut self.can
+    }
+
+    fn send(&mut self) {
+        while let Some(frame) = self.queue.front() {
+            let Some(out) = to_peripheral::<C>(frame.id, &frame.data) else {
+                self.queue.pop_front();
+                continue;
+            };
+            match self.can.transmit(&out) {
+                // A frame that ours displaced from a mailbox has lower priority; it belongs to an older tick and is let go.
+                Ok(displaced) => {
+                    if displaced.is_some() {
+                        self.counters.dropped = self.counters.dropped.wrapping_add(1);
+                    }
+                    self.queue.pop_front();
+                }
+                Err(nb::Error::WouldBlock) => break,
+                Err(nb::Error::Other(_)) => {
+                    self.counters.errors = self.counters.errors.wrapping_add(1);
+                    break;
+                }
+            }
+        }
+    }
+}
+
+fn to_peripheral<C: Can>(id: u16, data: &[u8; FRAME_BYTES]) -> Option<C::Frame> {
+    C::Frame::new(StandardId::new(id)?, data)
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+    use crate::can::{COMMAND, PlantEnd};
+    use crate::{Configuration, Inputs, Mode};
+    use std::collections::VecDeque;
+    use std::vec::Vec;
+
+    #[derive(Clone, Debug)]
+    struct TestFrame {
+        id: Id,
+        data: Vec<u8>,
+    }
+
+    impl embedded_can::Frame for TestFrame {
+        fn new(id: impl Into<Id>, data: &[u8]) -> Option<Self> {
+            Some(Self {
+                id: id.into(),
+                data: data.to_vec(),
+            })
+        }
+        fn new_remote(_: impl Into<Id>, _: usize) -> Option<Self> {
+            None
+        }
+        fn is_extended(&self) -> bool {
+            matches!(self.id, Id::Extended(_))
+        }
+        fn is_remote_frame(&self) -> bool {
+            false
+        }
+        fn id(&self) -> Id {
+            self.id
+        }
+        fn dlc(&self) -> usize {
+            self.data.len()
+        }
+        fn data(&self) -> &[u8] {
+            &self.data
+        }
+    }
+
+    #[derive(Debug, Default)]
+    struct TestCan {
+        incoming: VecDeque<Result<TestFrame, ()>>,
+        sent: Vec<TestFrame>,
+        room: usize,
+    }
+
+    impl Can for TestCan {
+        type Frame = TestFrame;
+        type Error = embedded_can::ErrorKind;
+        fn transmit(&mut self, frame: &TestFrame) -> nb::Result<Option<TestFrame>, Self::Error> {
+            if self.room == 0 {
+                return Err(nb::Error::WouldBlock);
+            }
+            self.room -= 1;
+            self.sent.push(frame.clone());
+            Ok(None)
+        }
+        fn receive(&mut self) -> nb::Result<TestFrame, Self::Error> {
+            match self.incoming.pop_front() {
+                Some(Ok(frame)) => Ok(frame),
+                Some(Err(())) => Err(nb::Error::Other(embedded_can::ErrorKind::Crc)),
+                None => Err(nb::Error::WouldBlock),
+            }
+        }
+    }
+
+    fn port() -> Port<TestCan> {
+        Port::new(
+            TestCan {
+                room: usize::MAX,
+                ..TestCan::default()
+            },
+            Node::new(Configuration::defender110()),
+        )
+    }
+
+    #[test]
+    fn frames_reach_the_node_and_commands_the_bus() {
+        let (mut port, mut plant) = (port(), PlantEnd::new());
+        let inputs = Inputs::from_values([0.0; 4], [[2.0e6; 4]; 4]);
+        let mut mode = Mode::StartUp;
+        for n in 0..60 {
+            for frame in plant.encode(n, &inputs) {
+                let frame = TestFrame::new(StandardId::new(frame.id).unwrap(), &frame.data).unwrap();
+                port.can_mut().incoming.push_back(Ok(frame));
+            }
+            mode = port.tick().mode;
+        }
+        assert_eq!(mode, Mode::Normal);
+        let commands = port
+            .can
+            .sent
+            .iter()
+            .filter(|f| f.id == Id::Standard(StandardId::new(COMMAND.id).unwrap()))
+            .count();
+        assert_eq!((commands, port.can.sent.len()), (60, 63));
+    }
+
+    #[test]
+    fn a_blocked_transmitter_costs_old_frames_not_time() {
+        let mut port = port();
+        port.can_mut().room = 0;
+        for _ in 0..20 {
+            port.tick();
+        }
+        assert_eq!(port.counters().dropped, 21 - SEND_QUEUE as u32);
+        port.can_mut().room = usize::MAX;
+        port.poll();
+        assert_eq!(port.can.sent.len(), SEND_QUEUE);
+    }
+
+    #[test]
+    fn a_receive_error_does_not_spin() {
+        let mut port = port();
+        port.can_mut().incoming.extend([Err(()), Err(()), Err(())]);
+        port.poll();
+        assert_eq!((port.counters().errors, port.can.incoming.len()), (1, 2));
+    }
+}

@@ -1,0 +1,191 @@
+//! Valve 3 at any displacement: when to close and open it, and what its closing traps.
+//!
+//! The report's first model could change springs at the reference position only. The reason is oil: closing valve 3 keeps in
+//! accumulator 2 whatever is in it then, and opening it joins two volumes of different pressure. Both follow from the
+//! measured pressures (absolute; `k` charge pressure, `V1`, `V2` gas volumes at static position, `A` piston area, isothermal as in the report):
+//!
+//! ```text
+//!   closing   gas left behind        V4 = V2 k / p4
+//!             shift of ride height   x_t = (V2 - V4) / A = V2 (1 - k / p4) / A          (+ lower)
+//!   opening   common pressure        p = (V1' p1 + V4 p4) / (V1' + V4),  V1' = V1 k / p1
+//!             force step             dF = A (p - p1) = A (p4 - p1) V4 / (V1' + V4)
+//! ```
+//!
+//! Rules, for each strut. The pressures are taken where they will be when the valve acts, 60 ms ahead.
+//!
+//! - Close when `|x_t|` is below its bound (8 mm); handling waits up to 150 ms for that, a roll-over guard not at all, comfort 1 s.
+//! - Open when `|dF|` is below its bound (5 % of static load) at both struts of the axle, so that left and right change together; after 1 s
+//!   open anyway, but throttled: valve 2 stays closed, so that the volumes equalise through damper 2, until p3 and p4 are within 0.2 MPa.
+//! - Not again within 0.5 s, except to close in an emergency.
+//!
+//! What an emergency traps is not bounded; it is reported ([`Springs::trapped_shift_m`]) and goes at the next opening.
+
+use crate::configuration::Configuration;
+use crate::filter::DerivativeState;
+use crate::plausibility::Trusted;
+use crate::strategy::Urgency;
+use crate::timing::ticks;
+use crate::valves::CORNERS;
+
+/// Where pressures are extrapolated to: the middle of the valves' 40 to 90 ms.
+const AHEAD_S: f32 = 0.06;
+const HANDLING_PATIENCE_TICKS: u16 = ticks(150);
+const COMFORT_PATIENCE_TICKS: u16 = ticks(1_000);
+const DWELL_TICKS: u16 = ticks(500);
+/// After this p4 follows an opened valve.
+const SETTLE_TICKS: u16 = ticks(200);
+/// A throttled opening ends here even where the pressures stay apart (a sensor's offset must not hold the damper for ever).
+const LONGEST_THROTTLE_TICKS: u16 = ticks(1_000);
+const EQUAL_PA: f32 = 0.2e6;
+/// Absolute pressure below which an accumulator counts as empty.
+const LEAST_PA: f32 = 2.0e4;
+
+use crate::plausibility::ATMOSPHERE_PA;
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Corner {
+    open: bool,
+    throttled: bool,
+    /// Ticks since the last change, saturating.
+    since: u16,
+    /// Ticks for which a change has been wanted.
+    waiting: u16,
+    p1_rate: DerivativeState,
+    p4_rate: DerivativeState,
+    trapped_shift_m: f32,
+    opening_step_n: f32,
+}
+
+/// State of the four spring valves.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Springs {
+    corners: [Corner; CORNERS],
+}
+
+impl Springs {
+    /// One tick: whether valve 3 is to be open at each corner. `closed_by_force`: the mode machine keeps all closed.
+    pub fn step(
+        &mut self,
+        c: &Configuration,
+        trusted: &Trusted,
+        static_load_n: &[f32; CORNERS],
+        soft: bool,
+        urgency: Urgency,
+    ) -> [bool; CORNERS] {
+        for ((corner, pressure), &charge) in self
+            .corners
+            .iter_mut()
+            .zip(&trusted.pressure_pa)
+            .zip(&trusted.charge_pa)
+        {
+            corner.observe(c, pressure, charge, soft);
+        }
+        let [fl, fr, rl, rr] = &mut self.corners;
+        let [wfl, wfr, wrl, wrr] = *static_load_n;
+        for (left, right, left_load_n, right_load_n) in [(fl, fr, wfl, wfr), (rl, rr, wrl, wrr)] {
+            if soft {
+                let smooth = left.opens_smoothly(c, left_load_n) && right.opens_smoothly(c, right_load_n);
+                left.open_if_due(smooth);
+                right.open_if_due(smooth);
+            } else {
+                left.close_if_due(c, urgency);
+                right.close_if_due(c, urgency);
+            }
+        }
+        self.corners.each_ref().map(|corner| corner.open)
+    }
+
+    /// All valves are closed by the mode machine: nothing is decided, and the next opening is careful.
+    pub fn forced_closed(&mut self, c: &Configuration, trusted: &Trusted) {
+        for ((corner, pressure), &charge) in self
+            .corners
+            .iter_mut()
+            .zip(&trusted.pressure_pa)
+            .zip(&trusted.charge_pa)
+        {
+            corner.observe(c, pressure, charge, false);
+            if corner.open {
+                corner.change(false);
+            }
+        }
+    }
+
+    /// Corners whose opening is throttled through damper 2: valve 2 is to stay closed.
+    pub fn throttled(&self) -> [bool; CORNERS] {
+        self.corners.each_ref().map(|corner| corner.throttled)
+    }
+
+    /// Corners whose valve 3 has been open for long enough that p4 follows p1.
+    pub fn settled_open(&self) -> [bool; CORNERS] {
+        self.corners
+            .each_ref()
+            .map(|corner| corner.open && corner.since >= SETTLE_TICKS && !corner.throttled)
+    }
+
+    /// Shift of the ride height that the oil behind each closed valve 3 causes, m, lower positive; what closing would
+    /// trap where it is open.
+    pub fn trapped_shift_m(&self) -> [f32; CORNERS] {
+        self.corners.each_ref().map(|corner| corner.trapped_shift_m)
+    }
+}
+
+impl Corner {
+    fn change(&mut self, open: bool) {
+        self.open = open;
+        self.since = 0;
+        self.waiting = 0;
+        self.throttled = false;
+    }
+
+    fn observe(&mut self, c: &Configuration, &[p1, _, p3, p4]: &[f32; 4], charge_pa: f32, soft: bool) {
+        self.since = self.since.saturating_add(1);
+        self.waiting = if soft == self.open {
+            0
+        } else {
+            self.waiting.saturating_add(1)
+        };
+        let [v1, v2] = c.gas_volume_m3;
+        let p1_ahead = (p1 + ATMOSPHERE_PA + AHEAD_S * c.pressure_rate.step(&mut self.p1_rate, p1)).max(LEAST_PA);
+        let p4_ahead = (p4 + ATMOSPHERE_PA + AHEAD_S * c.pressure_rate.step(&mut self.p4_rate, p4)).max(LEAST_PA);
+        let gas4 = v2 * charge_pa / p4_ahead;
+        self.trapped_shift_m = (v2 - gas4) * c.per_piston_area;
+        if !self.open {
+            let gas1 = v1 * charge_pa / p1_ahead;
+            self.opening_step_n =
+                c.piston_area_m2 * (p4_ahead - p1_ahead) * gas4 / (gas1 + gas4).max(f32::MIN_POSITIVE);
+        }
+        if self.throttled
+            && ((p3 - p4).abs() < EQUAL_PA && self.since >= SETTLE_TICKS || self.since >= LONGEST_THROTTLE_TICKS)
+        {
+            self.throttled = false;
+        }
+    }
+
+    fn opens_smoothly(&self, c: &Configuration, static_load_n: f32) -> bool {
+        self.open || self.opening_step_n.abs() <= c.opening_step_share * static_load_n
+    }
+
+    fn open_if_due(&mut self, smooth: bool) {
+        if self.open || self.since < DWELL_TICKS {
+            return;
+        }
+        if smooth {
+            self.change(true);
+        } else if self.waiting >= COMFORT_PATIENCE_TICKS {
+            self.change(true);
+            self.throttled = true;
+        }
+    }
+
+    fn close_if_due(&mut self, c: &Configuration, urgency: Urgency) {
+        let patience = match urgency {
+            Urgency::Emergency => 0,
+            Urgency::Handling => HANDLING_PATIENCE_TICKS,
+            Urgency::Comfort => COMFORT_PATIENCE_TICKS,
+        };
+        let rested = self.since >= DWELL_TICKS || urgency == Urgency::Emergency;
+        if self.open && rested && (self.waiting > patience || self.trapped_shift_m.abs() <= c.trapped_shift_m) {
+            self.change(false);
+        }
+    }
+}

@@ -1,6 +1,9 @@
 //! `oleo-plant-sim`
 
+pub mod handling;
 pub mod measures;
 pub mod road;
+pub mod specimen;
 pub mod strut;
+pub mod strut_first;
 pub mod vehicle;

@@ -1,0 +1,284 @@
+//! What a traced run would have looked like on a wire: bits, arbitration, latency, utilisation.
+//!
+//! The buses of this crate deliver at once. A CAN wire sends one frame at a time, lowest identifier first, with a stuff bit
+//! after every five equal bits. From the trace this works out, for a bit rate, when each frame would have ended.
+//!
+//! The bit sequence is that of ISO 11898-1 (SOF, identifier, RTR, IDE, r0, DLC, data, CRC-15: stuffed; then CRC delimiter, ACK,
+//! ACK delimiter, EOF and interframe space: 13 bits more). The bound on latency is the sufficient response-time test of
+//! Davis, Burns, Bril & Lukkien, "Controller Area Network (CAN) schedulability analysis: refuted, revisited and revised",
+//! Real-Time Systems 35 (2007), equation 14: `w = max(B, C_m) + sum over higher priorities of ceil((w + tau) / T_k) C_k`.
+
+use oleo_controller::can::bus_load::worst_case_bits;
+use oleo_controller::can::{Contract, MESSAGES};
+
+use crate::Frame;
+use crate::bus::{Direction, TraceEntry};
+
+/// Bits after the stuffed part: CRC delimiter, ACK slot, ACK delimiter, 7 EOF, 3 interframe space.
+const UNSTUFFED_BITS: u32 = 13;
+
+/// Length of a frame on the wire, bit times: exact, stuff bits included, with the interframe space.
+pub fn wire_bits(frame: &Frame) -> u32 {
+    let mut stream = BitStream::default();
+    stream.push(0, 1);
+    let id = frame.raw_id();
+    let remote = u32::from(frame.is_remote());
+    if frame.is_extended() {
+        stream.push(id >> 18, 11);
+        stream.push(0b11, 2); // SRR, IDE recessive
+        stream.push(id & 0x3_FFFF, 18);
+        stream.push(remote, 1);
+        stream.push(0, 2); // r1, r0
+    } else {
+        stream.push(id, 11);
+        stream.push(remote, 1);
+        stream.push(0, 2); // IDE, r0
+    }
+    stream.push(frame.dlc() as u32, 4);
+    for byte in frame.data() {
+        stream.push(u32::from(*byte), 8);
+    }
+    stream.push(u32::from(stream.crc), 15);
+    stream.bits + stream.stuffed + UNSTUFFED_BITS
+}
+
+/// Counts bits and stuff bits, and keeps the CRC of x^15+x^14+x^10+x^8+x^7+x^4+x^3+1.
+#[derive(Default)]
+struct BitStream {
+    bits: u32,
+    stuffed: u32,
+    last: u32,
+    run: u32,
+    crc: u16,
+}
+
+impl BitStream {
+    fn push(&mut self, value: u32, count: u32) {
+        for place in (0..count).rev() {
+            let bit = (value >> place) & 1;
+            self.bits += 1;
+            let invert = bit as u16 ^ (self.crc >> 14);
+            self.crc = (self.crc << 1) & 0x7FFF ^ if invert & 1 == 1 { 0x4599 } else { 0 };
+            if self.bits > 1 && bit == self.last {
+                self.run += 1;
+            } else {
+                (self.run, self.last) = (1, bit);
+            }
+            if self.run == 5 {
+                // The inserted bit is the opposite and starts a run of its own.
+                self.stuffed += 1;
+                (self.run, self.last) = (1, 1 - bit);
+            }
+        }
+    }
+}
+
+/// Latency of one message at one bit rate, from ready to sent, microseconds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MessageTiming {
+    /// Which message.
+    pub contract: Contract,
+    /// Frames seen.
+    pub frames: u64,
+    /// Mean latency.
+    pub mean_us: f64,
+    /// Longest latency seen.
+    pub max_us: f64,
+    /// Longest latency possible (see the module), with all messages of the database and worst-case stuffing.
+    pub bound_us: f64,
+}
+
+/// A traced run on a wire of a given rate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WireModel {
+    /// bit/s.
+    pub bit_rate: u32,
+    /// Share of time the wire is busy, 0 to 1, with the stuff bits that occurred.
+    pub utilisation: f64,
+    /// Share in the busiest tick.
+    pub peak_utilisation: f64,
+    /// By message of the database.
+    pub messages: Vec<MessageTiming>,
+    /// End of each trace entry's frame, microseconds since the start of the run; same order as the trace.
+    pub end_us: Vec<u64>,
+}
+
+impl WireModel {
+    /// Plays a trace onto a wire. The plant's frames of a tick are ready when it begins; the controller's when the last
+    /// of those has arrived. `trace` must be in order of ticks.
+    pub fn of(trace: &[TraceEntry], bit_rate: u32, tick_us: u32, ticks: u32) -> Self {
+        let bit_us = 1e6 / f64::from(bit_rate);
+        let mut end_us = vec![0; trace.len()];
+        let mut timing = MESSAGES.map(|contract| {
+            let bound_us = response_bound_bits(&contract, bit_rate).map_or(f64::INFINITY, |bits| bits * bit_us);
+            MessageTiming {
+                contract,
+                frames: 0,
+                mean_us: 0.0,
+                max_us: 0.0,
+                bound_us,
+            }
+        });
+        let (mut free_us, mut busy_us, mut peak_us) = (0.0f64, 0.0, 0.0f64);
+        let mut begin = 0;
+        for group in trace.chunk_by(|a, b| a.tick == b.tick) {
+            let tick_start_us = group
+                .first()
+                .map_or(0.0, |entry| f64::from(entry.tick) * f64::from(tick_us));
+            let mut busy_in_tick_us = 0.0;
+            let mut ready_us = tick_start_us;
+            for direction in [Direction::Sent, Direction::Received] {
+                let mut queue: Vec<usize> = (0..group.len()).filter(|i| group[*i].direction == direction).collect();
+                queue.sort_by_key(|i| arbitration_key(&group[*i].frame));
+                free_us = free_us.max(ready_us);
+                for index in queue {
+                    let frame = &group[index].frame;
+                    let length_us = f64::from(wire_bits(frame)) * bit_us;
+                    free_us += length_us;
+                    busy_in_tick_us += length_us;
+                    end_us[begin + index] = free_us as u64;
+                    let message = timing.iter_mut().find(|m| Some(m.contract.id) == frame.standard_id());
+                    if let Some(message) = message {
+                        let latency_us = free_us - ready_us;
+                        message.frames += 1;
+                        message.mean_us += latency_us;
+                        message.max_us = message.max_us.max(latency_us);
+                    }
+                }
+                ready_us = free_us;
+            }
+            busy_us += busy_in_tick_us;
+            peak_us = peak_us.max(busy_in_tick_us);
+            begin += group.len();
+        }
+        for message in &mut timing {
+            message.mean_us /= message.frames.max(1) as f64;
+        }
+        Self {
+            bit_rate,
+            utilisation: busy_us / (f64::from(ticks.max(1)) * f64::from(tick_us)),
+            peak_utilisation: peak_us / f64::from(tick_us),
+            messages: timing.to_vec(),
+            end_us,
+        }
+    }
+}
+
+/// Order of arbitration: the dominant bit wins, a standard frame beats an extended one of the same first 11 bits.
+fn arbitration_key(frame: &Frame) -> (u32, bool, u32) {
+    let id = frame.raw_id();
+    if frame.is_extended() {
+        (id >> 18, true, id)
+    } else {
+        (id, false, 0)
+    }
+}
+
+/// Longest response of a message in bit times; `None` if it does not converge within its period.
+fn response_bound_bits(message: &Contract, bit_rate: u32) -> Option<f64> {
+    let length = |m: &Contract| f64::from(worst_case_bits(m.length));
+    let period = |m: &Contract| f64::from(m.period_ms) * 1e-3 * f64::from(bit_rate);
+    let blocking = MESSAGES
+        .iter()
+        .filter(|m| m.id > message.id)
+        .map(length)
+        .fold(length(message), f64::max);
+    let mut waiting = blocking;
+    loop {
+        let interference: f64 = MESSAGES
+            .iter()
+            .filter(|m| m.id < message.id)
+            .map(|m| ((waiting + 1.0) / period(m)).ceil() * length(m))
+            .sum();
+        let next = blocking + interference;
+        if next + length(message) > period(message) {
+            return None;
+        }
+        if next == waiting {
+            return Some(next + length(message));
+        }
+        waiting = next;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{extended, standard, tests::any_frame};
+    use proptest::prelude::*;
+
+    #[test]
+    fn published_lengths() {
+        // Without any stuff bit: 1+11+1+2+4+64+15+13 = 111 and with 29 bits 131 bit times.
+        let plain = Frame::whole(standard(0x555), [0x55; 8]);
+        let stuffed = |frame: &Frame| wire_bits(frame) - 13;
+        assert!((98..=103).contains(&stuffed(&plain)), "{}", stuffed(&plain));
+        let wide = Frame::whole(extended(0x1555_5555), [0x55; 8]);
+        assert!((118..=124).contains(&stuffed(&wide)), "{}", stuffed(&wide));
+        // All zero: a stuff bit after five, then after each further four of the same.
+        let zeros = Frame::whole(standard(0), [0; 8]);
+        assert!(wire_bits(&zeros) > 111 + 12);
+    }
+
+    #[test]
+    fn crc_of_a_known_frame() {
+        // CRC-15/CAN of reveng's catalogue: check value of "123456789" is 0x059E.
+        let mut stream = BitStream::default();
+        b"123456789".iter().for_each(|byte| stream.push(u32::from(*byte), 8));
+        assert_eq!(stream.crc, 0x059E);
+    }
+
+    proptest! {
+        #[test]
+        fn never_longer_than_the_worst_case(frame in any_frame()) {
+            prop_assume!(!frame.is_extended());
+            let bytes = frame.data().len();
+            prop_assert!(wire_bits(&frame) <= worst_case_bits(bytes));
+            prop_assert!(wire_bits(&frame) >= 47 + 8 * bytes as u32);
+        }
+    }
+
+    fn tick_of_eight(tick: u32) -> Vec<TraceEntry> {
+        let entry = |direction, id| TraceEntry {
+            tick,
+            wall_us: 0,
+            direction,
+            frame: Frame::whole(standard(id), [0x5A; 8]),
+        };
+        let mut trace: Vec<_> = [0x115, 0x110, 0x111, 0x112, 0x113, 0x114]
+            .map(|id| entry(Direction::Sent, id))
+            .into();
+        trace.push(entry(Direction::Received, 0x0A0));
+        trace
+    }
+
+    #[test]
+    fn lower_identifiers_go_first_and_the_answer_after_the_question() {
+        let trace: Vec<_> = (0..3).flat_map(tick_of_eight).collect();
+        let wire = WireModel::of(&trace, 500_000, 5000, 3);
+        assert_eq!(wire.end_us.len(), trace.len());
+        assert!(wire.end_us[0] > wire.end_us[5], "0x115 was queued first and sent last");
+        assert!(wire.end_us[6] > wire.end_us[0]);
+        assert!(wire.end_us[7] > 5000 && wire.end_us[7] < 7000);
+        let bits: u32 = trace.iter().map(|entry| wire_bits(&entry.frame)).sum();
+        assert!((wire.utilisation - f64::from(bits) / 500_000.0 / 0.015).abs() < 1e-9);
+        assert!((wire.peak_utilisation - wire.utilisation).abs() < 1e-9);
+        for message in &wire.messages {
+            assert!(message.max_us <= message.bound_us, "{}", message.contract.name);
+        }
+    }
+
+    #[test]
+    fn bound_by_hand() {
+        // The command has the highest priority: it waits for one frame and then takes its own time.
+        assert_eq!(
+            response_bound_bits(&oleo_controller::can::COMMAND, 500_000),
+            Some(270.0)
+        );
+        // Status: lowest; all seven others once, its own length as blocking (push-through), and itself.
+        assert_eq!(
+            response_bound_bits(&oleo_controller::can::STATUS, 500_000),
+            Some(135.0 * 9.0)
+        );
+    }
+}

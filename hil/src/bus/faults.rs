@@ -1,0 +1,328 @@
+//! A bus that misbehaves on purpose, the same way every time.
+//!
+//! Each [`Injection`] disturbs some messages during some ticks with some probability. Every injection has a random stream of its own
+//! (ChaCha8, seeded by the scenario), so adding one does not change what the others do. It acts on the messages of
+//! the vehicle's database only: strangers' frames and the loop's own pass.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use oleo_controller::can::MESSAGES;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::{Bus, BusCounters, BusError};
+use crate::Frame;
+
+/// What happens to a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Disturbance {
+    /// It vanishes.
+    Drop,
+    /// This many of its bits, 1 or more, are inverted at random places of the data.
+    Corrupt {
+        /// How many; a bit drawn twice is inverted twice.
+        bits: u8,
+    },
+    /// It arrives this many ticks later, after that tick's other frames were sent.
+    Delay {
+        /// How much later.
+        ticks: u16,
+    },
+    /// It arrives twice.
+    Duplicate,
+}
+
+/// Which frames: by identifier.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Target {
+    /// Every message of the database.
+    All,
+    /// The six sensor messages.
+    Sensors,
+    /// What the controller sends.
+    Controller,
+    /// One message.
+    Id(u16),
+}
+
+impl Target {
+    fn includes(self, id: u16) -> bool {
+        let from_controller = [oleo_controller::can::COMMAND.id, oleo_controller::can::STATUS.id].contains(&id);
+        match self {
+            Self::All => true,
+            Self::Sensors => !from_controller,
+            Self::Controller => from_controller,
+            Self::Id(only) => only == id,
+        }
+    }
+}
+
+/// One kind of disturbance during one stretch of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Injection {
+    /// Which messages.
+    pub target: Target,
+    /// First tick concerned.
+    pub from_tick: u32,
+    /// First tick no longer concerned.
+    pub until_tick: u32,
+    /// Share of those frames that is disturbed, 0 to 1.
+    pub probability: f64,
+    /// How.
+    pub disturbance: Disturbance,
+}
+
+/// What was done to frames so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct InjectionCounts {
+    /// Frames that vanished.
+    pub dropped: u64,
+    /// Frames altered.
+    pub corrupted: u64,
+    /// Frames delivered late.
+    pub delayed: u64,
+    /// Frames delivered twice.
+    pub duplicated: u64,
+}
+
+/// Decorator that disturbs frames in both directions.
+#[derive(Debug)]
+pub struct FaultInjector<B> {
+    inner: B,
+    tick: u32,
+    injections: Vec<(Injection, ChaCha8Rng)>,
+    late_sent: VecDeque<(u32, Frame)>,
+    late_received: VecDeque<(u32, Frame)>,
+    ready: VecDeque<Frame>,
+    counts: InjectionCounts,
+}
+
+/// How often a frame goes on, and what it then is.
+enum Fate {
+    Copies(u8, Frame),
+    Late(u16, Frame),
+}
+
+impl<B: Bus> FaultInjector<B> {
+    /// Wraps `inner`; `seed` fixes all randomness.
+    pub fn new(inner: B, injections: &[Injection], seed: u64) -> Self {
+        let stream = |(index, injection): (usize, &Injection)| {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            rng.set_stream(index as u64);
+            (*injection, rng)
+        };
+        Self {
+            inner,
+            tick: 0,
+            injections: injections.iter().enumerate().map(stream).collect(),
+            late_sent: VecDeque::with_capacity(64),
+            late_received: VecDeque::with_capacity(64),
+            ready: VecDeque::with_capacity(64),
+            counts: InjectionCounts::default(),
+        }
+    }
+
+    /// What has been done so far.
+    pub fn counts(&self) -> InjectionCounts {
+        self.counts
+    }
+
+    /// The bus behind.
+    pub fn inner(&self) -> &B {
+        &self.inner
+    }
+
+    /// The bus behind.
+    pub fn inner_mut(&mut self) -> &mut B {
+        &mut self.inner
+    }
+
+    fn fate(&mut self, frame: &Frame) -> Fate {
+        let (mut frame, mut copies) = (*frame, 1);
+        let ours = frame
+            .standard_id()
+            .filter(|id| MESSAGES.iter().any(|message| message.id == *id));
+        let Some(id) = ours else { return Fate::Copies(1, frame) };
+        let tick = self.tick;
+        for (injection, rng) in &mut self.injections {
+            let concerned =
+                injection.target.includes(id) && (injection.from_tick..injection.until_tick).contains(&tick);
+            if !concerned || !happens(rng, injection.probability) {
+                continue;
+            }
+            match injection.disturbance {
+                Disturbance::Drop => {
+                    self.counts.dropped += 1;
+                    return Fate::Copies(0, frame);
+                }
+                Disturbance::Corrupt { bits } => {
+                    self.counts.corrupted += 1;
+                    for _ in 0..bits {
+                        // 64 divides 2^32: no bias.
+                        frame = frame.with_flipped_bit((rng.next_u32() % 64) as usize);
+                    }
+                }
+                Disturbance::Delay { ticks } => {
+                    self.counts.delayed += 1;
+                    return Fate::Late(ticks, frame);
+                }
+                Disturbance::Duplicate => {
+                    self.counts.duplicated += 1;
+                    copies = 2;
+                }
+            }
+        }
+        Fate::Copies(copies, frame)
+    }
+}
+
+/// True with a probability; certain and impossible events use no randomness.
+fn happens(rng: &mut ChaCha8Rng, probability: f64) -> bool {
+    probability >= 1.0 || (probability > 0.0 && f64::from(rng.next_u32()) < probability * 4_294_967_296.0)
+}
+
+/// Takes the frames that are due out of a queue in which all were delayed at different times.
+fn due(queue: &mut VecDeque<(u32, Frame)>, tick: u32) -> Option<Frame> {
+    let position = queue.iter().position(|(due, _)| *due <= tick)?;
+    queue.remove(position).map(|(_, frame)| frame)
+}
+
+impl<B: Bus> Bus for FaultInjector<B> {
+    fn begin_tick(&mut self, tick: u32) {
+        self.tick = tick;
+        self.inner.begin_tick(tick);
+        while let Some(frame) = due(&mut self.late_received, tick) {
+            self.ready.push_back(frame);
+        }
+    }
+
+    fn send(&mut self, frame: &Frame) -> Result<(), BusError> {
+        // The sync frame that ends a tick comes last, so what is late goes out before it.
+        if crate::sync::is_sync(frame) {
+            while let Some(late) = due(&mut self.late_sent, self.tick) {
+                self.inner.send(&late)?;
+            }
+        }
+        match self.fate(frame) {
+            Fate::Copies(copies, frame) => (0..copies).try_for_each(|_| self.inner.send(&frame)),
+            Fate::Late(ticks, frame) => {
+                self.late_sent
+                    .push_back((self.tick.saturating_add(u32::from(ticks)), frame));
+                Ok(())
+            }
+        }
+    }
+
+    fn receive(&mut self, wait: Duration) -> Result<Option<Frame>, BusError> {
+        loop {
+            if let Some(frame) = self.ready.pop_front() {
+                return Ok(Some(frame));
+            }
+            let Some(frame) = self.inner.receive(wait)? else {
+                return Ok(None);
+            };
+            match self.fate(&frame) {
+                Fate::Copies(copies, frame) => self.ready.extend((0..copies).map(|_| frame)),
+                Fate::Late(ticks, frame) => {
+                    self.late_received
+                        .push_back((self.tick.saturating_add(u32::from(ticks)), frame));
+                }
+            }
+        }
+    }
+
+    fn counters(&self) -> BusCounters {
+        self.inner.counters()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bus::{InProcess, in_process_pair};
+    use crate::frame::standard;
+    use crate::sync::{Role, Sync};
+
+    fn with(disturbance: Disturbance, target: Target, probability: f64) -> (FaultInjector<InProcess>, InProcess) {
+        let (a, b) = in_process_pair();
+        let injection = Injection {
+            target,
+            from_tick: 2,
+            until_tick: 4,
+            probability,
+            disturbance,
+        };
+        (FaultInjector::new(a, &[injection], 7), b)
+    }
+
+    fn sensor(tick: u32) -> Frame {
+        Frame::whole(standard(0x110), [tick as u8; 8])
+    }
+
+    /// What arrives at the far end, by tick of arrival.
+    fn run(bus: &mut FaultInjector<InProcess>, far: &mut InProcess) -> Vec<Vec<Frame>> {
+        let tick = |tick| {
+            bus.begin_tick(tick);
+            bus.send(&sensor(tick)).unwrap();
+            bus.send(&Sync::TickDone { tick, sent: 0 }.encode(Role::Plant)).unwrap();
+            let arrivals = std::iter::from_fn(|| far.receive(Duration::ZERO).unwrap());
+            arrivals.filter(|frame| !crate::sync::is_sync(frame)).collect()
+        };
+        (0..6).map(tick).collect()
+    }
+
+    #[test]
+    fn each_disturbance_within_its_interval() {
+        let (mut bus, mut far) = with(Disturbance::Drop, Target::Sensors, 1.0);
+        let lengths: Vec<_> = run(&mut bus, &mut far).iter().map(Vec::len).collect();
+        assert_eq!(lengths, [1, 1, 0, 0, 1, 1]);
+
+        let (mut bus, mut far) = with(Disturbance::Duplicate, Target::All, 1.0);
+        let lengths: Vec<_> = run(&mut bus, &mut far).iter().map(Vec::len).collect();
+        assert_eq!(lengths, [1, 1, 2, 2, 1, 1]);
+
+        let (mut bus, mut far) = with(Disturbance::Delay { ticks: 2 }, Target::Id(0x110), 1.0);
+        let arrived = run(&mut bus, &mut far);
+        assert_eq!(arrived[4], [sensor(4), sensor(2)]);
+        assert_eq!(arrived[5], [sensor(5), sensor(3)]);
+
+        let (mut bus, mut far) = with(Disturbance::Corrupt { bits: 1 }, Target::All, 1.0);
+        let arrived = run(&mut bus, &mut far);
+        let flipped: u32 = arrived[2][0].data().iter().map(|byte| (byte ^ 2).count_ones()).sum();
+        assert_eq!((flipped, arrived[1][0]), (1, sensor(1)));
+        assert_eq!(bus.counts().corrupted, 2);
+    }
+
+    #[test]
+    fn only_the_target_and_both_directions() {
+        let (mut bus, mut far) = with(Disturbance::Drop, Target::Controller, 1.0);
+        assert!(run(&mut bus, &mut far).iter().all(|tick| tick.len() == 1));
+        bus.begin_tick(2);
+        far.send(&Frame::whole(standard(0x0A0), [0; 8])).unwrap();
+        far.send(&Frame::whole(standard(0x7DF), [0; 8])).unwrap();
+        assert_eq!(
+            bus.receive(Duration::ZERO).unwrap().unwrap().raw_id(),
+            0x7DF,
+            "a stranger's frame passes"
+        );
+        assert_eq!(bus.receive(Duration::ZERO).unwrap(), None);
+        assert_eq!(bus.counts().dropped, 1);
+    }
+
+    #[test]
+    fn the_same_seed_does_the_same() {
+        let lengths = || {
+            let (mut bus, mut far) = with(Disturbance::Drop, Target::All, 0.5);
+            (0..50)
+                .map(|_| run(&mut bus, &mut far).iter().map(Vec::len).sum())
+                .collect::<Vec<usize>>()
+        };
+        assert_eq!(lengths(), lengths());
+        let total: usize = lengths().iter().sum();
+        assert!(
+            (230..270).contains(&total),
+            "{total} of 300, half of the 100 concerned expected to be gone"
+        );
+    }
+}

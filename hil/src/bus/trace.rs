@@ -1,0 +1,123 @@
+//! Writes down every frame that passes: the memory of a run, from which logs, bus load and modes are worked out later.
+//!
+//! In the loop an entry costs a copy of some 32 bytes. Frames of [`crate::sync`] are left out: they would not be on a
+//! vehicle's bus.
+
+use std::time::{Duration, Instant};
+
+use super::{Bus, BusCounters, BusError};
+use crate::{Frame, sync};
+
+/// Which way a frame went, seen from the end that keeps the trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Sent by this end.
+    Sent,
+    /// Received by this end.
+    Received,
+}
+
+/// One frame on the wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TraceEntry {
+    /// Tick during which it passed.
+    pub tick: u32,
+    /// Microseconds since the start, where the run has a wall clock (real time); 0 in lockstep.
+    pub wall_us: u32,
+    /// Which way.
+    pub direction: Direction,
+    /// What.
+    pub frame: Frame,
+}
+
+/// Decorator that keeps [`TraceEntry`]s.
+#[derive(Debug)]
+pub struct Trace<B> {
+    inner: B,
+    tick: u32,
+    started: Option<Instant>,
+    entries: Vec<TraceEntry>,
+}
+
+impl<B: Bus> Trace<B> {
+    /// Wraps `inner`. `capacity` frames fit without allocation; with `wall_clock` entries carry the time since now.
+    pub fn new(inner: B, capacity: usize, wall_clock: bool) -> Self {
+        let started = wall_clock.then(Instant::now);
+        Self {
+            inner,
+            tick: 0,
+            started,
+            entries: Vec::with_capacity(capacity),
+        }
+    }
+
+    /// What passed so far, in order.
+    pub fn entries(&self) -> &[TraceEntry] {
+        &self.entries
+    }
+
+    /// Takes the entries out.
+    pub fn take_entries(&mut self) -> Vec<TraceEntry> {
+        std::mem::take(&mut self.entries)
+    }
+
+    fn note(&mut self, direction: Direction, frame: &Frame) {
+        if sync::is_sync(frame) {
+            return;
+        }
+        let wall_us = self.started.map_or(0, |start| start.elapsed().as_micros() as u32);
+        self.entries.push(TraceEntry {
+            tick: self.tick,
+            wall_us,
+            direction,
+            frame: *frame,
+        });
+    }
+}
+
+impl<B: Bus> Bus for Trace<B> {
+    fn begin_tick(&mut self, tick: u32) {
+        self.tick = tick;
+        self.inner.begin_tick(tick);
+    }
+
+    fn send(&mut self, frame: &Frame) -> Result<(), BusError> {
+        self.inner.send(frame)?;
+        self.note(Direction::Sent, frame);
+        Ok(())
+    }
+
+    fn receive(&mut self, wait: Duration) -> Result<Option<Frame>, BusError> {
+        let frame = self.inner.receive(wait)?;
+        if let Some(frame) = &frame {
+            self.note(Direction::Received, frame);
+        }
+        Ok(frame)
+    }
+
+    fn counters(&self) -> BusCounters {
+        self.inner.counters()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bus::in_process_pair;
+    use crate::frame::standard;
+
+    #[test]
+    fn both_directions_are_kept_with_their_tick_and_sync_frames_are_not() {
+        let (a, mut b) = in_process_pair();
+        let mut a = Trace::new(a, 4, false);
+        let frame = Frame::whole(standard(0x110), [7; 8]);
+        a.begin_tick(3);
+        a.send(&frame).unwrap();
+        a.send(&sync::Sync::End.encode(sync::Role::Plant)).unwrap();
+        b.send(&frame).unwrap();
+        a.begin_tick(4);
+        assert_eq!(a.receive(Duration::ZERO).unwrap(), Some(frame));
+        let seen: Vec<_> = a.entries().iter().map(|e| (e.tick, e.direction)).collect();
+        assert_eq!(seen, [(3, Direction::Sent), (4, Direction::Received)]);
+    }
+}

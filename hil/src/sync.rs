@@ -1,0 +1,183 @@
+//! Frames that keep two nodes in step. They are machinery of the simulation, not messages of the vehicle.
+//!
+//! A node in lockstep must know that the other has said all it has to say in a tick, also when a fault has eaten the
+//! last message. So each ends its tick with a `TickDone` that no fault touches and that counts what was sent, which shows
+//! frames that a slow reader lost. Wall-clock time decides nothing, except that a partner silent for seconds is gone.
+//!
+//! ```text
+//!   plant                                 controller
+//!     Hello  (repeated until heard)  <->    Hello               either may start first
+//!     six sensor frames, TickDone n   ->
+//!                                    <-     command (status), TickDone n
+//!     ... n + 1 ...
+//!     End                             ->
+//!                                    <-     Tally               what the controller's side of the bus lost
+//! ```
+//!
+//! Identifiers are extended and of the lowest priority, so no vehicle message can be mistaken for one.
+
+use crate::Frame;
+use crate::frame::extended;
+
+/// Which node a sync frame comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Sensors, vehicle and valves.
+    Plant,
+    /// The suspension controller.
+    Controller,
+}
+
+impl Role {
+    /// The node opposite.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Plant => Self::Controller,
+            Self::Controller => Self::Plant,
+        }
+    }
+
+    /// As on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Plant => "plant",
+            Self::Controller => "controller",
+        }
+    }
+}
+
+const PLANT_ID: u32 = 0x1FFF_01E0;
+const CONTROLLER_ID: u32 = 0x1FFF_01E1;
+
+/// Version of this exchange; nodes of different versions do not start.
+const VERSION: u8 = 1;
+
+/// What the nodes must agree on before they start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Terms {
+    /// Position of the strategy in `strategy::NAMES` of the scenario.
+    pub strategy: u8,
+    /// 0 lockstep, 1 real time.
+    pub clock: u8,
+}
+
+/// Content of a sync frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sync {
+    /// "I am here", and whether the other one was heard.
+    Hello {
+        /// What the run needs both to agree on.
+        terms: Terms,
+        /// The sender has had a `Hello` of the receiver.
+        heard: bool,
+    },
+    /// All frames of a tick are on the bus.
+    TickDone {
+        /// Which tick.
+        tick: u32,
+        /// Frames sent since the start, modulo 65536, without sync frames.
+        sent: u16,
+    },
+    /// The plant's run is over.
+    End,
+    /// The controller's answer to `End`.
+    Tally {
+        /// Frames that did not reach the controller, saturating.
+        lost: u16,
+        /// Frames that failed its end-to-end check, saturating.
+        e2e_errors: u16,
+    },
+}
+
+/// Whether a frame belongs to this exchange, whoever sent it.
+pub fn is_sync(frame: &Frame) -> bool {
+    frame.is_extended() && matches!(frame.raw_id(), PLANT_ID | CONTROLLER_ID)
+}
+
+impl Sync {
+    /// As a frame of `role`.
+    pub fn encode(self, role: Role) -> Frame {
+        let id = match role {
+            Role::Plant => PLANT_ID,
+            Role::Controller => CONTROLLER_ID,
+        };
+        let [t0, t1, t2, t3];
+        let data = match self {
+            Self::Hello { terms, heard } => [1, VERSION, u8::from(heard), terms.strategy, terms.clock, 0, 0, 0],
+            Self::TickDone { tick, sent } => {
+                [t0, t1, t2, t3] = tick.to_le_bytes();
+                let [s0, s1] = sent.to_le_bytes();
+                [2, 0, s0, s1, t0, t1, t2, t3]
+            }
+            Self::End => [3, 0, 0, 0, 0, 0, 0, 0],
+            Self::Tally { lost, e2e_errors } => {
+                let ([l0, l1], [e0, e1]) = (lost.to_le_bytes(), e2e_errors.to_le_bytes());
+                [4, 0, l0, l1, e0, e1, 0, 0]
+            }
+        };
+        Frame::whole(extended(id), data)
+    }
+
+    /// The content of a frame sent by `role`; `None` for every other frame.
+    pub fn decode(frame: &Frame, role: Role) -> Option<Self> {
+        let id = match role {
+            Role::Plant => PLANT_ID,
+            Role::Controller => CONTROLLER_ID,
+        };
+        if !frame.is_extended() || frame.raw_id() != id {
+            return None;
+        }
+        let &[kind, b1, b2, b3, b4, b5, b6, b7] = <&[u8; 8]>::try_from(frame.data()).ok()?;
+        Some(match kind {
+            1 if b1 == VERSION => Self::Hello {
+                terms: Terms {
+                    strategy: b3,
+                    clock: b4,
+                },
+                heard: b2 != 0,
+            },
+            2 => Self::TickDone {
+                tick: u32::from_le_bytes([b4, b5, b6, b7]),
+                sent: u16::from_le_bytes([b2, b3]),
+            },
+            3 => Self::End,
+            4 => Self::Tally {
+                lost: u16::from_le_bytes([b2, b3]),
+                e2e_errors: u16::from_le_bytes([b4, b5]),
+            },
+            _ => return None,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn what_is_sent_is_understood(tick: u32, sent: u16, strategy: u8, clock: u8, heard: bool) {
+            let all = [
+                Sync::Hello { terms: Terms { strategy, clock }, heard },
+                Sync::TickDone { tick, sent },
+                Sync::End,
+                Sync::Tally { lost: sent, e2e_errors: tick as u16 },
+            ];
+            for sync in all {
+                for role in [Role::Plant, Role::Controller] {
+                    let frame = sync.encode(role);
+                    prop_assert!(is_sync(&frame));
+                    prop_assert_eq!(Sync::decode(&frame, role), Some(sync));
+                    prop_assert_eq!(Sync::decode(&frame, role.other()), None);
+                }
+            }
+        }
+
+        #[test]
+        fn other_frames_are_not_taken(frame in crate::frame::tests::any_frame()) {
+            prop_assume!(!is_sync(&frame));
+            prop_assert_eq!(Sync::decode(&frame, Role::Plant), None);
+        }
+    }
+}

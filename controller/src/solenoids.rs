@@ -108,24 +108,26 @@ mod tests {
         broken: &'a Cell<bool>,
     }
 
+    impl Pin<'_> {
+        fn set(&self, high: bool) -> Result<(), ErrorKind> {
+            if self.broken.get() {
+                return Err(ErrorKind::Other);
+            }
+            self.level.set(high);
+            Ok(())
+        }
+    }
+
     impl ErrorType for Pin<'_> {
         type Error = ErrorKind;
     }
 
     impl OutputPin for Pin<'_> {
         fn set_low(&mut self) -> Result<(), ErrorKind> {
-            if self.broken.get() {
-                Err(ErrorKind::Other)
-            } else {
-                Ok(self.level.set(false))
-            }
+            self.set(false)
         }
         fn set_high(&mut self) -> Result<(), ErrorKind> {
-            if self.broken.get() {
-                Err(ErrorKind::Other)
-            } else {
-                Ok(self.level.set(true))
-            }
+            self.set(true)
         }
     }
 

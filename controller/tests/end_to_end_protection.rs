@@ -1,0 +1,96 @@
+//! Profile 2 against published and independently computed vectors, and the receiver's rules as sequences.
+
+use oleo_controller::can::{CheckStatus, Checker, Contract, PRESSURE, Protector};
+use proptest::prelude::*;
+
+/// The data ids of the examples in AUTOSAR's protocol specification: 1 to 16.
+fn example_contract() -> Contract {
+    Contract {
+        data_ids: core::array::from_fn(|i| i as u8 + 1),
+        ..PRESSURE[0]
+    }
+}
+
+/// First entry: AUTOSAR FO "E2E Protocol Specification", protocol example (eight zero bytes, counter 1: CRC 0x1B). The others: the Python
+/// package `autosar-e2e` 0.6 (an independent implementation), `e2e_p02_protect(data, bytes(range(1, 17)))`.
+#[test]
+fn published_vectors() {
+    let mut protector = Protector::new(&example_contract());
+    for expected in [0x1B, 0x98] {
+        let mut data = [0; 8];
+        protector.protect(&mut data);
+        assert_eq!(data[0], expected);
+    }
+}
+
+fn frames(n: usize) -> Vec<[u8; 8]> {
+    let mut protector = Protector::new(&PRESSURE[0]);
+    (0..n)
+        .map(|i| {
+            let mut data = [0, 0x50, i as u8, 3, 4, 5, 6, 7];
+            protector.protect(&mut data);
+            data
+        })
+        .collect()
+}
+
+fn statuses(received: &[usize]) -> Vec<CheckStatus> {
+    let frames = frames(64);
+    let mut checker = Checker::new(&PRESSURE[0]);
+    received.iter().map(|&i| checker.check(&frames[i])).collect()
+}
+
+#[test]
+fn sequences() {
+    use CheckStatus::{Initial, Ok, OkSomeLost, Repeated, Sync, WrongSequence};
+    for (received, expected) in [
+        (vec![0, 1, 2, 3], vec![Initial, Ok, Ok, Ok]),
+        (vec![0, 1, 3, 6], vec![Initial, Ok, OkSomeLost, OkSomeLost]),
+        (vec![0, 1, 1, 2], vec![Initial, Ok, Repeated, Ok]),
+        (vec![0, 1, 5, 6, 7, 8], vec![Initial, Ok, WrongSequence, Sync, Sync, Ok]),
+        (vec![5, 6, 5, 6, 7, 8], vec![Initial, Ok, WrongSequence, Sync, Sync, Ok]), // played back
+        (vec![14, 15, 16, 17], vec![Initial, Ok, Ok, Ok]),                          // counter wraps
+    ] {
+        assert_eq!(statuses(&received), expected, "{received:?}");
+    }
+}
+
+#[test]
+fn after_a_silence_the_counter_may_be_further_but_must_prove_itself() {
+    let frames = frames(32);
+    let mut checker = Checker::new(&PRESSURE[0]);
+    checker.check(&frames[0]);
+    checker.check(&frames[1]);
+    for _ in 0..2 {
+        checker.no_new_data();
+    }
+    assert_eq!(checker.check(&frames[4]), CheckStatus::OkSomeLost, "two lost");
+    for _ in 0..9 {
+        checker.no_new_data();
+    }
+    assert_eq!(checker.check(&frames[14]), CheckStatus::Sync);
+    assert_eq!(checker.check(&frames[15]), CheckStatus::Sync);
+    assert_eq!(checker.check(&frames[16]), CheckStatus::Ok);
+}
+
+#[test]
+fn another_message_s_frame_fails() {
+    let frames = frames(16);
+    for other in &PRESSURE[1..] {
+        for frame in &frames {
+            assert_eq!(Checker::new(other).check(frame), CheckStatus::WrongCrc);
+        }
+    }
+}
+
+proptest! {
+    /// CRC8H2F has Hamming distance 4 at this length (Koopman): up to three flipped bits are always seen.
+    #[test]
+    fn up_to_three_flipped_bits_are_seen(n in 0usize..16, bits in prop::collection::btree_set(0usize..64, 1..4)) {
+        let mut frame = frames(16)[n];
+        for bit in bits {
+            frame[bit / 8] ^= 1 << (bit % 8);
+        }
+        prop_assert_eq!(Checker::new(&PRESSURE[0]).check(&frame), CheckStatus::WrongCrc);
+    }
+}

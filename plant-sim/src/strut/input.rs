@@ -35,7 +35,7 @@ const LENGTHS: [usize; 13] = [4, 5, 6, 8, 11, 15, 20, 27, 36, 48, 64, 86, 114];
 const CUBIC: usize = 3;
 const QUINTIC: usize = 5;
 /// A fit passes when its residual variance is at most this many standard deviations above the noise's.
-const TEST_SIGMAS: f64 = 2.0;
+const TEST_SIGMAS: f64 = 3.5;
 
 /// Orthonormal polynomials on an even grid, by Gram-Schmidt.
 struct Basis {
@@ -175,6 +175,7 @@ pub fn smooth_displacement(displacement_m: &[f64], interval_s: f64, noise_m: f64
     let mut value = vec![0.0; n];
     let mut left = vec![0.0; n];
     let mut right = vec![0.0; n];
+    let mut smooth = vec![false; n];
     let mut hints = [[0; 2]; 2];
     for i in 0..n {
         let mut best: Option<Fit> = None;
@@ -200,6 +201,7 @@ pub fn smooth_displacement(displacement_m: &[f64], interval_s: f64, noise_m: f64
             // Three quarters of what just passes: there the bias is below the noise, not equal to it.
             let fit = found.and_then(|&(b, a)| {
                 let (b, a) = ((3 * b).div_ceil(4), (3 * a).div_ceil(4));
+                smooth[i] |= b + a >= 2 * bases.degree;
                 bases.fit(x, i - b, i + a + 1, i, noise_m)
             });
             if let Some(f) = fit {
@@ -227,6 +229,30 @@ pub fn smooth_displacement(displacement_m: &[f64], interval_s: f64, noise_m: f64
         left[i] = from_left.map_or_else(|| if i > 0 { x[i] - x[i - 1] } else { 0.0 }, |f| f.slope);
         right[i] = from_right.map_or_else(|| if i + 1 < n { x[i + 1] - x[i] } else { 0.0 }, |f| f.slope);
     }
+    // Where the neighbourhood is short, a cubic through the speeds may overshoot and come back, which turns friction
+    // round that never turned: there the motion between two samples is kept monotone (Fritsch & Carlson 1980).
+    let monotone = |speed: f64, chord: f64| {
+        if speed * chord <= 0.0 {
+            0.0
+        } else {
+            speed.abs().min(3.0 * chord.abs()).copysign(chord)
+        }
+    };
+    for i in (0..n).filter(|i| !smooth[*i]) {
+        if i > 0 {
+            left[i] = monotone(left[i], value[i] - value[i - 1]);
+        }
+        if i + 1 < n {
+            right[i] = monotone(right[i], value[i + 1] - value[i]);
+        }
+    }
+    // Held still: exactly still. What is left of the noise would creep presliding friction back to nothing.
+    for (from, to) in holds(x, noise_m) {
+        let mean = x[from..to].iter().sum::<f64>() / (to - from) as f64;
+        value[from..to].fill(mean);
+        left[from + 1..to].fill(0.0);
+        right[from..to - 1].fill(0.0);
+    }
     let segments = (1..n)
         .map(|i| Segment {
             to_m: value[i],
@@ -238,6 +264,40 @@ pub fn smooth_displacement(displacement_m: &[f64], interval_s: f64, noise_m: f64
         start_m: value[0],
         segments,
     }
+}
+
+/// Shortest stretch that is called a hold, samples.
+const SHORTEST_HOLD: usize = 16;
+
+/// Stretches `from..to` in which the displacement does not change but for its noise.
+fn holds(x: &[f64], noise: f64) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
+    let mut from = 0;
+    while from + SHORTEST_HOLD <= x.len() {
+        let mut sum = 0.0;
+        let mut to = from;
+        while to < x.len() && (to < from + 4 || (x[to] - sum / (to - from) as f64).abs() <= 4.0 * noise) {
+            sum += x[to];
+            to += 1;
+        }
+        let n = (to - from) as f64;
+        let (mean, middle) = (sum / n, 0.5 * (n - 1.0));
+        let (mut square, mut slope) = (0.0, 0.0);
+        for (i, v) in x[from..to].iter().enumerate() {
+            square += (v - mean) * (v - mean);
+            slope += (v - mean) * (i as f64 - middle);
+        }
+        // Standard deviation of `slope` is noise * sqrt(sum of squares of the abscissa).
+        let trend = noise * (n * (n * n - 1.0) / 12.0).sqrt();
+        let quiet = square <= noise * noise * (n - 1.0 + TEST_SIGMAS * (2.0 * n).sqrt()) && slope.abs() <= 3.0 * trend;
+        if to - from >= SHORTEST_HOLD && quiet {
+            found.push((from, to));
+            from = to;
+        } else {
+            from += SHORTEST_HOLD / 4;
+        }
+    }
+    found
 }
 
 fn as_recorded(x: &[f64], interval_s: f64) -> Motion {
@@ -293,6 +353,19 @@ mod tests {
             (s / 1800.0).sqrt()
         };
         assert!(rms(false) < 0.3 * rms(true), "{} {}", rms(false), rms(true));
+    }
+
+    #[test]
+    fn a_hold_is_still() {
+        let dt = 0.002;
+        let x = noisy(|t| if t < 1.0 { 0.02 } else { 0.02 + 0.3 * (t - 1.0) }, 1000, dt);
+        let motion = smooth_displacement(&x, dt, NOISE);
+        let moved = motion.segments[..480]
+            .iter()
+            .filter(|s| s.from_m_s != 0.0 || s.to_m_s != 0.0)
+            .count();
+        assert!(moved < 30, "{moved}");
+        assert_eq!(holds(&x, NOISE).iter().filter(|(from, _)| *from > 505).count(), 0);
     }
 
     #[test]

@@ -24,26 +24,24 @@
 //!
 //! # Misprints and gaps of the printed appendix
 //!
-//! Found by deriving the equations again from its T, U, F and virtual work; the rows of `F_[2]` themselves are right but for 4.
+//! Found by deriving the equations again from its T, U, F and virtual work. The signs of all rows of `F_[2]` (anti-roll bars
+//! included) are right; the fourth is incomplete, see 4.
 //!
-//! 1. Phi equation: "d/dt dT/dphi' - dT/dphi = J_z phi'' - ..." and the line after the "therefore" print `J_z phi''`;
-//!    dT/dphi' = J_x phi' above it and the matrix M say **J_x**.
+//! 1. Phi equation: "d/dt dT/dphi' - dT/dphi = J_z phi'' - ..." and the "therefore" after it print `J_z phi''`; dT/dphi' =
+//!    J_x phi' above it and the matrix M say **J_x**.
 //! 2. "U = U_S + U_G" omits **U_arb**, which the equations for phi, phi_f and phi_r contain.
 //! 3. "Point c: the center of mass of the vehicle body (unsprung mass)" is the **sprung** mass.
 //! 4. Theta equation: `phi^2 theta''` and its two fellows are dropped as small while `2 phi phi' theta'`, of the same
-//!    order, is kept; the rest is then no Lagrangian system and energy drifts at order phi^2. **Both are kept here**: M
-//!    stays diagonal, and energy is conserved exactly.
-//! 5. `l_g/a2` and `l_w/a2` (phi equations, virtual work) are **`l_g/d2`, `l_w/d2`** of the definitions and of the rows of `F_[2]`;
-//!    no point "a" is defined.
-//! 6. The virtual work of a wheel should read `f (dZ_f + l_w/d2 dphi_f)`, a variation of the axle's roll, as printed but for 5;
-//!    `Q = d/d(delta q) (delta W)` is a coefficient, not a derivative of W.
-//! 7. dF/dq' lines print `F_D1 / dq'` for **`dF_D1 / dq'`** throughout (the differential sign of the numerator is lost).
-//! 8. The vector of generalised forces uses i_{e/c1} for corners of one axle as if they could differ; by the definitions
-//!    `l_1e/c1 = l_2e/c1`, `l_3e/c1 = l_4e/c1` (one axle, one x).
-//! 9. The kinetic energy carries `m X'^2 / 2` with X' constant: no equation follows from it.
-//! 10. Tension and extension are positive in the appendix while the body of the report has compression positive; and
-//!     static loads are not in it: with coordinates from the static position, `T_i` starts at minus the static load and
-//!     gravity is not zero, as here.
+//!    order, is kept; the rest is then no Lagrangian system and its energy drifts. **Both are kept here**: M stays diagonal,
+//!    and energy is conserved.
+//! 5. `l_g/a2` and `l_w/a2` (phi equations, virtual work) are **`l_g/d2`, `l_w/d2`** of the definitions and of the rows of
+//!    `F_[2]`; no point "a" is defined.
+//! 6. The lines dF/dq' print `F_D1 / dq'` for **`dF_D1 / dq'`** throughout, in the phi equation even `F_D1 / phi'`.
+//! 7. q is both the vector of seven generalised coordinates (`q_i`) and the state vector of (A1), which has fourteen entries.
+//! 8. `l_0i` is defined and never used: it is absorbed in the static position from which the extensions count.
+//!
+//! Not misprints but to be known: extension and tension are positive in the appendix, compression in the body of the
+//! report; with coordinates from the static position `T_i` starts at minus the static load and gravity does not vanish.
 
 use super::parameters::{GRAVITY_M_S2, VehicleParameters};
 

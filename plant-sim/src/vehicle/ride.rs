@@ -12,7 +12,7 @@
 //! tyre on one side and the strut on the other; a strut is never stiffer than its locked oil column, `beta A^2 / V` (some
 //! 3 MN/m: 170 rad/s against half an axle, `omega h` = 0.17), however steep its damper or valve, since the strut solves
 //! its own flows implicitly within the step. Damper forces use the predicted speed `v*` and are stable while `c h / m < 1`.
-//! Order: two in everything but the strut's damping, whose speed is the mean of the step (see `StrutElement`).
+//! Order: two, the strut included, which is told the piston's speed at both ends of the step.
 
 use std::sync::Arc;
 

@@ -47,20 +47,24 @@ pub trait SuspensionElement {
 
 /// The two-stage hydropneumatic strut. Signals: valves 1..3, true = open.
 ///
-/// The strut moves its piston linearly through the step, so its damping belongs to the mean speed of the step: half a
-/// step (0.5 ms) old when it is used. That acts like an added mass of `c h / 2` between body and axle, 1.5 kg for
-/// 3 kN s/m at 1 ms; it vanishes with the step.
+/// The strut is given the piston's speed at both ends of the step, not only where it goes: its damping would otherwise
+/// belong to the mean speed of the step and lag by half a step (like an added mass of `c h / 2` between body and axle).
 #[derive(Debug, Clone)]
 pub struct StrutElement {
     strut: Strut,
     output: StrutOutput,
+    rate_m_s: f64,
 }
 
 impl StrutElement {
-    /// Wraps a strut in its present state.
+    /// Wraps a strut at rest in its present state.
     pub fn new(strut: Strut) -> Self {
         let output = strut.output();
-        Self { strut, output }
+        Self {
+            strut,
+            output,
+            rate_m_s: 0.0,
+        }
     }
 
     /// Force and pressures at the end of the last step.
@@ -78,7 +82,14 @@ impl SuspensionElement for StrutElement {
     type Signal = [bool; 3];
 
     fn advance(&mut self, motion: Motion, signal: [bool; 3]) -> f64 {
-        self.output = self.strut.advance(motion.compression_m, motion.duration_s, signal);
+        self.output = self.strut.advance_with_speeds(
+            motion.compression_m,
+            self.rate_m_s,
+            motion.compression_rate_m_s,
+            motion.duration_s,
+            signal,
+        );
+        self.rate_m_s = motion.compression_rate_m_s;
         self.output.force_n
     }
 

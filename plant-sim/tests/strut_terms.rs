@@ -1,0 +1,332 @@
+//! Every term of the strut against a closed form or a limit, through the whole network.
+//!
+//! Slow moves make the gas isothermal (no `gas_heat_transfer` in these models) and the paths lossless; steady moves make
+//! flows known: `Q = A v` where only one path is open. Signs: compression positive.
+
+use oleo_plant_sim::strut::*;
+
+const STIFF: [bool; 3] = [true, true, false];
+const SOFT: [bool; 3] = [true; 3];
+
+/// The preset without any term.
+fn bare() -> StrutModel {
+    let mut model = StrutModel::defender110(8000.0);
+    model.effects = Effects::default();
+    model
+}
+
+fn absolute(gauge: f64) -> f64 {
+    gauge + ATMOSPHERE_PA
+}
+
+/// Slowly to a displacement: 2 mm/s in 10 ms steps.
+fn slowly(strut: &mut Strut, to_m: f64, signals: [bool; 3]) -> StrutOutput {
+    let from = strut.displacement_m();
+    let steps = ((to_m - from).abs() / 2e-5).ceil().max(1.0);
+    for i in 1..=steps as usize {
+        strut.advance(from + (to_m - from) * i as f64 / steps, 0.01, signals);
+    }
+    (0..200).map(|_| strut.advance(to_m, 0.01, signals)).last().unwrap()
+}
+
+fn slow_pressure(model: &StrutModel, to_m: f64, signals: [bool; 3]) -> f64 {
+    slowly(&mut Strut::at_rest(model, signals).unwrap(), to_m, signals).pressure_pa[0]
+}
+
+fn close(a: f64, b: f64, relative: f64) {
+    assert!((a / b - 1.0).abs() < relative, "{a} is not {b}");
+}
+
+/// Solve a rising function by bisection.
+fn solve(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if f(middle) < 0.0 { low = middle } else { high = middle }
+    }
+    0.5 * (low + high)
+}
+
+/// Volume that gas of static volume `v` has given way at gauge pressure `p`, isothermal.
+fn given_way(model: &StrutModel, v: f64, p: f64) -> f64 {
+    v * (1.0 - absolute(model.cylinder.static_pressure_pa) / absolute(p))
+}
+
+#[test]
+fn boyle_on_both_springs() {
+    let model = bare();
+    let a = model.piston_area_m2();
+    let p0 = absolute(model.cylinder.static_pressure_pa);
+    close(
+        absolute(slow_pressure(&model, 0.04, STIFF)),
+        p0 * 1e-4 / (1e-4 - a * 0.04),
+        1e-4,
+    );
+    close(
+        absolute(slow_pressure(&model, 0.04, SOFT)),
+        p0 * 5e-4 / (5e-4 - a * 0.04),
+        1e-4,
+    );
+    close(
+        absolute(slow_pressure(&model, -0.1, SOFT)),
+        p0 * 5e-4 / (5e-4 + a * 0.1),
+        1e-4,
+    );
+}
+
+#[test]
+fn oil_compressibility_and_mount_are_springs_in_series() {
+    let a = bare().piston_area_m2();
+    for (beta, mount) in [(Some(1.5e9), None), (None, Some(2e6)), (Some(1e9), Some(3e6))] {
+        let mut model = bare();
+        model.effects.oil_compressibility = beta.map(|b| OilCompressibility { bulk_modulus_pa: b });
+        model.effects.mount_compliance = mount.map(|k| MountCompliance { stiffness_n_m: k });
+        let p0 = model.cylinder.static_pressure_pa;
+        let x = 0.03;
+        let exact = solve(p0, 30e6, |p| {
+            let mount = mount.map_or(0.0, |k| a * (p - p0) / k);
+            // Oil volume shrinks with the piston's way in: d(ln) law integrated with the mean volume.
+            let oil = beta.map_or(0.0, |b| (model.cylinder.oil_volume_m3 - 0.5 * a * x) * (p - p0) / b);
+            given_way(&model, 1e-4, p) + oil + a * mount - a * x
+        });
+        close(slow_pressure(&model, x, STIFF), exact, 4e-3);
+    }
+}
+
+#[test]
+fn entrained_air_softens_low_pressure_most() {
+    let with = |fraction: f64, x: f64| {
+        let mut model = bare();
+        model.effects.oil_compressibility = Some(OilCompressibility { bulk_modulus_pa: 1.5e9 });
+        model.effects.entrained_air = Some(EntrainedAir {
+            volume_fraction: fraction,
+            polytropic_exponent: 1.0,
+        });
+        slow_pressure(&model, x, STIFF)
+    };
+    // n = 1: the bubbles obey Boyle, V_air = fraction V_oil p_atm / p.
+    let model = bare();
+    let a = model.piston_area_m2();
+    let (p0, fraction, x) = (model.cylinder.static_pressure_pa, 0.05, -0.08);
+    let exact = solve(-5e4, p0, |p| {
+        let oil = model.cylinder.oil_volume_m3 - 0.5 * a * x;
+        let air = fraction * oil * ATMOSPHERE_PA * (1.0 / absolute(p0) - 1.0 / absolute(p));
+        given_way(&model, 1e-4, p) + oil * (p - p0) / 1.5e9 + air - a * x
+    });
+    close(with(fraction, x), exact, 4e-3);
+    let softening = |x: f64| (with(0.0, x) - with(fraction, x)).abs() / with(0.0, x);
+    assert!(softening(-0.08) > softening(0.02));
+}
+
+#[test]
+fn charge_error_is_a_volume() {
+    let mut model = bare();
+    model.effects.gas_charge_error = Some(GasChargeError {
+        relative_error_1: 0.1,
+        relative_error_2: 0.0,
+    });
+    let p0 = absolute(model.cylinder.static_pressure_pa);
+    close(
+        absolute(slow_pressure(&model, 0.03, STIFF)),
+        p0 * 1.1e-4 / (1.1e-4 - model.piston_area_m2() * 0.03),
+        1e-4,
+    );
+}
+
+#[test]
+fn real_gas_is_softer_than_ideal_at_moderate_and_harder_at_high_pressure() {
+    let mut model = bare();
+    model.effects.real_gas = Some(RealGas::default());
+    let gas = Nitrogen::reference();
+    let p0 = absolute(model.cylinder.static_pressure_pa);
+    let t = model.gas.temperature_k;
+    let rho = gas.density(p0, t) * 1e-4 / (1e-4 - model.piston_area_m2() * 0.038);
+    close(
+        absolute(slow_pressure(&model, 0.038, STIFF)),
+        gas.state(rho, t).pressure_pa,
+        1e-3,
+    );
+}
+
+#[test]
+fn heat_transfer_decays_with_its_time_constant() {
+    let mut model = bare();
+    model.effects.gas_heat_transfer = Some(GasHeatTransfer {
+        time_constant_1_s: 3.0,
+        time_constant_2_s: 6.0,
+    });
+    let mut strut = Strut::at_rest(&model, STIFF).unwrap();
+    for i in 1..=100 {
+        strut.advance(3e-4 * f64::from(i), 1e-3, STIFF);
+    }
+    let wait = |s: &mut Strut, seconds: usize| (0..seconds * 100).map(|_| s.advance(0.03, 0.01, STIFF)).last().unwrap();
+    let settle = wait(&mut strut, 1).pressure_pa[0];
+    let later = wait(&mut strut, 3).pressure_pa[0];
+    let end = wait(&mut strut, 60).pressure_pa[0];
+    close((later - end) / (settle - end), libm::exp(-1.0), 5e-3);
+}
+
+/// Pressure drop p1 - p2 at a steady speed through path 1 alone.
+fn steady_drop(model: &StrutModel, speed: f64, signals: [bool; 3]) -> (f64, f64) {
+    let mut strut = Strut::at_rest(model, signals).unwrap();
+    let out = (1..=100)
+        .map(|i| strut.advance(speed * 5e-4 * f64::from(i), 5e-4, signals))
+        .last()
+        .unwrap();
+    (out.pressure_pa[0] - out.pressure_pa[1], model.piston_area_m2() * speed)
+}
+
+#[test]
+fn pack_bypass_leak_and_line_in_steady_flow() {
+    let closed = [false; 3];
+    let mut model = bare();
+    let pack = |drop: f64| Pack::from_table(&model.damper[0]).flow(drop, &mut 0).0;
+    let (drop, q) = steady_drop(&model, 0.3, closed);
+    close(pack(drop), q, 1e-3);
+    let (drop, q) = steady_drop(&model, 0.3, [true, false, false]);
+    let orifice = |c: f64, d: f64| c * d / (d.abs() + model.orifice.transition_pressure_pa).sqrt();
+    close(pack(drop) + orifice(model.valve[0].flow_coefficient, drop), q, 1e-3);
+    let leak = DamperLeakage {
+        flow_coefficient_1: 2e-7,
+        flow_coefficient_2: 0.0,
+    };
+    let expected = |drop: f64| pack(drop) + orifice(2e-7, drop);
+    let (drop, q) = {
+        let mut leaking = model.clone();
+        leaking.effects.damper_leakage = Some(leak);
+        steady_drop(&leaking, 0.3, closed)
+    };
+    close(expected(drop), q, 1e-3);
+    let (plain, q) = steady_drop(&model, 0.3, closed);
+    model.effects.line_resistance = Some(LineResistance {
+        resistance_1_pa_s_m3: 5e8,
+        resistance_2_pa_s_m3: 0.0,
+    });
+    close(steady_drop(&model, 0.3, closed).0 - plain, 5e8 * q, 1e-3);
+}
+
+#[test]
+fn inertance_is_pressure_per_flow_acceleration() {
+    let mut model = bare();
+    // Path 1 as good as blocked, so that all flow takes path 2.
+    model.damper[0] = model.damper[0].scaled(1e7);
+    let peak = |model: &StrutModel| {
+        let signals = [false, true, true];
+        let mut strut = Strut::at_rest(model, signals).unwrap();
+        let (a, h) = (20.0, 1e-3);
+        let mut out = StrutOutput::default();
+        for i in 0..30 {
+            let t = h * f64::from(i + 1);
+            out = strut.advance_with_speeds(0.5 * a * t * t, a * (t - h), a * t, h, signals);
+        }
+        out.pressure_pa[0]
+    };
+    let plain = peak(&model);
+    model.effects.line_inertance = Some(LineInertance { inertance_2_kg_m4: 5e6 });
+    close(peak(&model) - plain, 5e6 * model.piston_area_m2() * 20.0, 0.01);
+}
+
+#[test]
+fn accumulator_piston_friction_opens_a_loop_of_twice_its_pressure() {
+    let mut model = bare();
+    model.effects.accumulator_piston_friction = Some(AccumulatorPistonFriction {
+        pressure_1_pa: 4e4,
+        pressure_2_pa: 0.0,
+    });
+    let mut strut = Strut::at_rest(&model, STIFF).unwrap();
+    let there = slowly(&mut strut, 0.02, STIFF).pressure_pa[0];
+    slowly(&mut strut, 0.03, STIFF);
+    let back = slowly(&mut strut, 0.02, STIFF).pressure_pa[0];
+    close(there - back, 8e4, 0.02);
+}
+
+#[test]
+fn valve3_leak_passes_its_orifice_flow() {
+    let mut model = bare();
+    model.effects.valve3_leakage = Some(Valve3Leakage { flow_coefficient: 1e-9 });
+    let mut strut = Strut::at_rest(&model, STIFF).unwrap();
+    for i in 1..=100 {
+        strut.advance(3e-4 * f64::from(i), 1e-3, STIFF);
+    }
+    let out = (0..50).map(|_| strut.advance(0.03, 1e-3, STIFF)).last().unwrap();
+    let across = out.pressure_pa[2] - out.pressure_pa[3];
+    close(
+        strut.flow_m3_s()[1],
+        1e-9 * across / (across + model.orifice.transition_pressure_pa).sqrt(),
+        0.01,
+    );
+}
+
+#[test]
+fn warm_dampers_weaken_by_the_heat_they_hold() {
+    let mut model = bare();
+    let signals = [false; 3];
+    let (fresh, _) = steady_drop(&model, 0.3, signals);
+    model.effects.damping_fade = Some(DampingFade {
+        fade_1_per_j: 1e-3,
+        fade_2_per_j: 0.0,
+        cooling_time_s: 1e9,
+    });
+    let mut strut = Strut::at_rest(&model, signals).unwrap();
+    let (mut energy, h) = (0.0, 5e-4);
+    let mut drop = 0.0;
+    for i in 1..=100 {
+        let out = strut.advance(0.3 * h * f64::from(i), h, signals);
+        drop = out.pressure_pa[0] - out.pressure_pa[1];
+        energy += drop * strut.flow_m3_s()[0] * h;
+    }
+    close(fresh / drop, 1.0 + 1e-3 * energy, 0.01);
+}
+
+#[test]
+fn valves_answer_by_the_parabola_at_the_edge() {
+    let mut model = bare();
+    model.effects.valve_delay = Some(ValveDelay {
+        response_polynomial_s: [0.04, 0.002, 0.0001],
+    });
+    let mut strut = Strut::at_rest(&model, STIFF).unwrap();
+    let at = slowly(&mut strut, 0.03, STIFF);
+    let across = 1e-6 * (at.pressure_pa[2] - at.pressure_pa[3]);
+    let total = 0.04 + across * (0.002 + across * 0.0001);
+    let mut opened = 0.0;
+    for i in 1..=2000 {
+        strut.advance(0.03, 1e-4, SOFT);
+        if strut.openings()[2] > 0.5 {
+            opened = 1e-4 * f64::from(i);
+            break;
+        }
+    }
+    assert!((opened - total).abs() < 2.1e-4, "{opened} {total}");
+}
+
+/// Work put in over a closed cycle is what left as heat: gas back where it was, oil back, friction and dampers paid.
+#[test]
+fn a_closed_cycle_costs_energy_and_returns_the_oil() {
+    let mut model = StrutModel::defender110(8000.0);
+    model.effects.bump_stop = None;
+    let mut strut = Strut::at_rest(&model, SOFT).unwrap();
+    let before = strut.gas();
+    let (mut work, mut last) = (0.0, strut.output().force_n);
+    let w = 2.0 * std::f64::consts::PI;
+    let mut x = 0.0;
+    for i in 1..=20_000 {
+        let t = 5e-4 * f64::from(i);
+        let to = if t < 2.0 { 0.04 * libm::sin(w * t) } else { 0.0 };
+        let speed = |t: f64| if t < 2.0 { 0.04 * w * libm::cos(w * t) } else { 0.0 };
+        let out = strut.advance_with_speeds(to, speed(t - 5e-4), speed(t - 1e-9), 5e-4, SOFT);
+        work += 0.5 * (last + out.force_n) * (to - x);
+        (x, last) = (to, out.force_n);
+    }
+    for _ in 0..10_000 {
+        strut.advance(0.0, 0.01, SOFT);
+    }
+    assert!(work > 10.0, "{work}");
+    for (a, b) in before.iter().zip(strut.gas()) {
+        close(b.volume_m3, a.volume_m3, 2e-3);
+    }
+    // `dp1/dt = beta / (V - A x) (...)` counts oil at the density of the main chamber, so a loop in the force-displacement
+    // plane pumps its area over beta: 15 mm3 here, and nothing but that.
+    let total = |g: &[GasState; 2]| g[0].volume_m3 + g[1].volume_m3;
+    let beta = model.effects.oil_compressibility.as_ref().unwrap().bulk_modulus_pa;
+    let pumped = total(&strut.gas()) - total(&before);
+    assert!((pumped / (work / beta) - 1.0).abs() < 0.15, "{pumped} {}", work / beta);
+}

@@ -2,6 +2,7 @@
 
 pub mod handling;
 pub mod measures;
+pub mod rig;
 pub mod road;
 pub mod specimen;
 pub mod strut;

@@ -1,0 +1,135 @@
+//! A live axle on the body: where it is, how it moves, and what moves with its two coordinates.
+//!
+//! The axle is located as the report's table 1 says: links hold it along and across the body (Panhard rod in front, A-frame
+//! at the rear) and leave it free to heave and to roll. So its roll centre, a point fixed in the axle, slides along the
+//! body's vertical axis (`heave`), and the axle turns about the body's longitudinal axis through that point (`roll`). All
+//! side forces of the tyres reach the body there, which is what makes the lateral load path: a high roll centre carries
+//! much of the load transfer through links, a low one through springs. The rod's own arc is left out, so left and right
+//! are mirror images. Pitch and yaw of the axle are the body's: the links react drive and brake torque.
+//!
+//! All vectors are in body axes (x ahead, y left, z up) from the body's centre of mass.
+
+use nalgebra::{Matrix3, Vector3};
+
+/// What does not change of an axle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxleGeometry {
+    /// Axle with wheels, kg.
+    pub mass_kg: f64,
+    /// About x, and about the axle's own z, kg m2 (Appendix A: J_f, J_r).
+    pub roll_inertia_kg_m2: f64,
+    /// Housing about the axle's own y, kg m2; the wheels' spin is counted apart.
+    pub pitch_inertia_kg_m2: f64,
+    /// Roll centre at rest.
+    pub roll_centre_m: Vector3<f64>,
+    /// Wheel centres below the roll centre, m.
+    pub drop_m: f64,
+    /// Half the track, m.
+    pub half_track_m: f64,
+    /// Half the distance between the struts, m.
+    pub half_strut_spacing_m: f64,
+    /// Anti-roll bar, N m/rad.
+    pub anti_roll_n_m_rad: f64,
+}
+
+/// The axle's two coordinates, their rates or accelerations.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AxleCoordinates {
+    /// Along the body's z, m, towards the body positive.
+    pub heave: f64,
+    /// About the body's x, rad, left side up positive.
+    pub roll: f64,
+}
+
+impl AxleCoordinates {
+    /// `self + factor * other`.
+    pub(super) fn plus(self, factor: f64, other: Self) -> Self {
+        Self {
+            heave: self.heave + factor * other.heave,
+            roll: self.roll + factor * other.roll,
+        }
+    }
+}
+
+/// An axle in its place.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AxlePlace {
+    /// Roll centre.
+    pub(super) centre: Vector3<f64>,
+    /// Centre of mass (middle between the wheel centres).
+    pub(super) mass_centre: Vector3<f64>,
+    /// The axle's own y.
+    pub(super) left: Vector3<f64>,
+    /// From roll centre to centre of mass.
+    pub(super) arm: Vector3<f64>,
+    /// d(mass_centre)/d(roll).
+    pub(super) swing: Vector3<f64>,
+    /// Inertia about the centre of mass.
+    pub(super) inertia: Matrix3<f64>,
+    sin_roll: f64,
+    cos_roll: f64,
+}
+
+impl AxleGeometry {
+    pub(super) fn place(&self, q: AxleCoordinates) -> AxlePlace {
+        let (sin_roll, cos_roll) = libm::sincos(q.roll);
+        let left = Vector3::new(0.0, cos_roll, sin_roll);
+        let centre = self.roll_centre_m + Vector3::new(0.0, 0.0, q.heave);
+        let arm = Vector3::new(0.0, self.drop_m * sin_roll, -self.drop_m * cos_roll);
+        let (j_y, j_z) = (self.pitch_inertia_kg_m2, self.roll_inertia_kg_m2);
+        let product = (j_y - j_z) * cos_roll * sin_roll;
+        let inertia = Matrix3::new(
+            self.roll_inertia_kg_m2,
+            0.0,
+            0.0,
+            0.0,
+            j_y * cos_roll * cos_roll + j_z * sin_roll * sin_roll,
+            product,
+            0.0,
+            product,
+            j_y * sin_roll * sin_roll + j_z * cos_roll * cos_roll,
+        );
+        AxlePlace {
+            centre,
+            mass_centre: centre + arm,
+            left,
+            arm,
+            swing: Vector3::new(0.0, -arm.z, arm.y),
+            inertia,
+            sin_roll,
+            cos_roll,
+        }
+    }
+
+    /// Compression of the left and right strut from rest, m. `twist` is the roll of the body's end above this axle
+    /// against the body's mean, rad.
+    pub(super) fn compression(&self, place: &AxlePlace, q: AxleCoordinates, twist: f64) -> [f64; 2] {
+        let roll = self.half_strut_spacing_m * (place.sin_roll - twist);
+        [q.heave + roll, q.heave - roll]
+    }
+
+    /// Rate of [`Self::compression`], m/s.
+    pub(super) fn compression_rate(&self, place: &AxlePlace, rate: AxleCoordinates, twist_rate: f64) -> [f64; 2] {
+        let roll = self.half_strut_spacing_m * (place.cos_roll * rate.roll - twist_rate);
+        [rate.heave + roll, rate.heave - roll]
+    }
+
+    /// Generalised forces on the axle's heave and roll and the torque on the body's end above it, from the struts
+    /// (N, compression positive) and the anti-roll bar: minus the derivative of their potential.
+    pub(super) fn suspension(
+        &self,
+        place: &AxlePlace,
+        q: AxleCoordinates,
+        twist: f64,
+        force_n: [f64; 2],
+    ) -> (AxleCoordinates, f64) {
+        let [left, right] = force_n;
+        let struts = self.half_strut_spacing_m * (left - right);
+        let bar = self.anti_roll_n_m_rad * (q.roll - twist);
+        let forces = AxleCoordinates {
+            heave: -(left + right),
+            roll: -(struts * place.cos_roll + bar),
+        };
+        (forces, struts + bar)
+    }
+}

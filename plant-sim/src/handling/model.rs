@@ -1,0 +1,554 @@
+//! The handling model in time: a fixed step, the same bits on every machine.
+//!
+//! The step is the ride model's (velocity Verlet, kick-drift-kick; see `vehicle::ride` for why it is stable with struts that
+//! solve their own flows): half a kick, move, forces at the new place with predicted speeds, half a kick. Tyre slips
+//! are implicit (see `wheel`). The suspension elements are the ride model's too, so every spring of one model runs in
+//! the other.
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::attitude::{Attitude, yaw_pitch_roll};
+use super::axle::{AxleCoordinates, AxleGeometry, AxlePlace};
+use super::dynamics::{Accelerations, Loads, Masses, Velocities};
+use super::ground::Probe;
+use super::parameters::HandlingParameters;
+use super::wheel::{ContactState, Tyre, WheelLoads, WheelMotion, WheelState};
+use crate::road::Road;
+use crate::strut::{Strut, StrutOutput};
+use crate::vehicle::suspension::{Motion, StrutElement, SuspensionElement};
+use crate::vehicle::{GRAVITY_M_S2, RideError, VehicleParameters};
+
+/// A suspension may carry this much more or less than the static load at its design height.
+const STATIC_LOAD_TOLERANCE: f64 = 0.05;
+
+/// What driver or test asks of the vehicle in a step.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Controls {
+    /// Steer angle of the front wheels wanted, rad, left positive; limited in angle and rate by the vehicle.
+    pub steer_rad: f64,
+    /// Drive (positive) or brake force wanted of all wheels, N.
+    pub drive_force_n: f64,
+}
+
+/// Motion of the body in the world.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct HandlingMotion {
+    /// Centre of mass: ahead (station), left, up from its height at rest; m.
+    pub position_m: [f64; 3],
+    /// Its velocity in the world, m/s.
+    pub velocity_m_s: [f64; 3],
+    /// Heading, left positive, rad.
+    pub yaw_rad: f64,
+    /// Nose down positive, rad.
+    pub pitch_rad: f64,
+    /// Left side up positive, rad, within +-pi.
+    pub roll_rad: f64,
+    /// Angular velocity about the body's x, y, z, rad/s.
+    pub rates_rad_s: [f64; 3],
+    /// Horizontal speed along the heading, m/s.
+    pub speed_m_s: f64,
+    /// Horizontal acceleration to the left of the heading, m/s2.
+    pub lateral_acceleration_m_s2: f64,
+    /// Vertical acceleration in the world, m/s2.
+    pub vertical_acceleration_m_s2: f64,
+    /// Angle between horizontal velocity and heading, left positive, rad.
+    pub side_slip_rad: f64,
+}
+
+/// The handling model on four suspension elements.
+pub struct HandlingModel<E> {
+    masses: Masses,
+    handling: HandlingParameters,
+    tyres: [Tyre; 2],
+    probe: Probe,
+    road: Arc<dyn Road>,
+    elements: [E; 4],
+    step_s: f64,
+    steps: u64,
+    rest_height_m: f64,
+
+    position: Vector3<f64>,
+    velocity: Vector3<f64>,
+    attitude: Attitude,
+    rotation: Matrix3<f64>,
+    angular: Vector3<f64>,
+    axles: [AxleCoordinates; 2],
+    axle_rates: [AxleCoordinates; 2],
+    spin: [f64; 4],
+    twist: f64,
+    twist_rate: f64,
+    contacts: [ContactState; 4],
+    steer_rad: f64,
+    acceleration: Accelerations,
+    wheels: [WheelState; 4],
+}
+
+/// The handling model on two-stage struts.
+pub type HandlingVehicle = HandlingModel<StrutElement>;
+
+impl HandlingVehicle {
+    /// A vehicle on struts, straight ahead at `speed_m_s` from the origin.
+    ///
+    /// # Errors
+    /// A strut that would not carry its static load; a speed that is not one.
+    pub fn new(
+        parameters: &VehicleParameters,
+        handling: &HandlingParameters,
+        struts: [Strut; 4],
+        road: Arc<dyn Road>,
+        speed_m_s: f64,
+    ) -> Result<Self, RideError> {
+        Self::with_elements(parameters, handling, struts.map(StrutElement::new), road, speed_m_s)
+    }
+
+    /// Outputs of the four struts.
+    pub fn strut_output(&self) -> [StrutOutput; 4] {
+        self.elements.each_ref().map(StrutElement::output)
+    }
+}
+
+impl<E: SuspensionElement> HandlingModel<E> {
+    /// A vehicle on any four suspension elements, at rest in heave and roll, rolling straight ahead.
+    ///
+    /// # Errors
+    /// As [`HandlingVehicle::new`].
+    pub fn with_elements(
+        parameters: &VehicleParameters,
+        handling: &HandlingParameters,
+        elements: [E; 4],
+        road: Arc<dyn Road>,
+        speed_m_s: f64,
+    ) -> Result<Self, RideError> {
+        if !(speed_m_s >= 0.0 && speed_m_s.is_finite()) {
+            return Err(RideError::Speed(speed_m_s));
+        }
+        for (corner, (element, needed_n)) in elements.iter().zip(parameters.static_strut_load_n()).enumerate() {
+            let carried_n = element.force_n();
+            if !((carried_n - needed_n).abs() <= STATIC_LOAD_TOLERANCE * needed_n) {
+                return Err(RideError::StaticLoad {
+                    corner,
+                    carried_n,
+                    needed_n,
+                });
+            }
+        }
+        let rest_height_m = parameters.body_cg_height_m();
+        let wheel_load = parameters.static_wheel_load_n();
+        let axle_parameters = [&parameters.front_axle, &parameters.rear_axle];
+        let tyres = [0usize, 1].map(|index| {
+            let axle = axle_parameters[index];
+            Tyre {
+                stiffness_n_m: axle.tyre_stiffness_n_m,
+                damping_n_s_m: axle.tyre_damping_n_s_m,
+                free_radius_m: axle.tyre_radius_m + wheel_load[2 * index] / axle.tyre_stiffness_n_m,
+            }
+        });
+        let spin = core::array::from_fn(|corner| {
+            let tyre = &tyres[corner / 2];
+            let deflection_m = wheel_load[corner] / tyre.stiffness_n_m;
+            speed_m_s
+                / handling
+                    .tyre
+                    .rolling_radius_m(tyre.free_radius_m, deflection_m, tyre.stiffness_n_m)
+        });
+        let mut model = Self {
+            masses: masses(parameters, handling),
+            tyres,
+            probe: Probe {
+                half_length_m: 0.5 * handling.ground.plane_length_m,
+                half_width_m: 0.5 * handling.ground.plane_width_m,
+                half_contact_m: 0.5 * parameters.tyre.contact_length_m,
+            },
+            handling: handling.clone(),
+            road,
+            elements,
+            step_s: parameters.solver.step_s,
+            steps: 0,
+            rest_height_m,
+            // The front axle starts at station 0, as in the ride model.
+            position: Vector3::new(-parameters.body_cg_behind_front_axle_m(), 0.0, 0.0),
+            velocity: Vector3::new(speed_m_s, 0.0, 0.0),
+            attitude: Attitude::level(),
+            rotation: Matrix3::identity(),
+            angular: Vector3::zeros(),
+            axles: [AxleCoordinates::default(); 2],
+            axle_rates: [AxleCoordinates::default(); 2],
+            spin,
+            twist: 0.0,
+            twist_rate: 0.0,
+            contacts: [ContactState::default(); 4],
+            steer_rad: 0.0,
+            acceleration: Accelerations::default(),
+            wheels: [WheelState::default(); 4],
+        };
+        // At rest on the road's mean level under the wheels at the start, wherever the road's zero is.
+        let height = |corner: usize| {
+            let side = if corner % 2 == 0 { 0.5 } else { -0.5 };
+            let station = if corner < 2 {
+                0.0
+            } else {
+                -parameters.layout.wheelbase_m
+            };
+            model.road.height_m(station, side * axle_parameters[corner / 2].track_m)
+        };
+        let datum_m = 0.25 * ((height(0) + height(1)) + (height(2) + height(3)));
+        model.rest_height_m += datum_m;
+        model.position.z = model.rest_height_m;
+        let velocities = model.velocities();
+        model.acceleration = model.accelerate(&velocities, Controls::default());
+        Ok(model)
+    }
+
+    /// Advances one step. `signals` go to the suspension elements, corner by corner.
+    pub fn step(&mut self, signals: [E::Signal; 4], controls: Controls) {
+        let h = self.step_s;
+        let half = 0.5 * h;
+        self.kick(half);
+        self.position += self.velocity * h;
+        self.attitude = self.attitude.turned(self.angular, h);
+        self.rotation = self.attitude.matrix();
+        for (axle, rate) in self.axles.iter_mut().zip(self.axle_rates) {
+            *axle = axle.plus(h, rate);
+        }
+        self.twist += h * self.twist_rate;
+        self.steps += 1;
+        let steering = &self.handling.steering;
+        let most = steering.max_rate_rad_s * h;
+        let wanted = controls
+            .steer_rad
+            .clamp(-steering.max_angle_rad, steering.max_angle_rad);
+        self.steer_rad += (wanted - self.steer_rad).clamp(-most, most);
+
+        // Speeds half a step on, for the forces; the true ones follow from those forces.
+        let kept = (self.velocity, self.angular, self.axle_rates, self.spin, self.twist_rate);
+        self.kick(half);
+        let predicted = self.velocities();
+        (self.velocity, self.angular, self.axle_rates, self.spin, self.twist_rate) = kept;
+
+        let places = self.places();
+        for (index, axle) in self.masses.axles.iter().enumerate() {
+            let side = if index == 0 { 0.5 } else { -0.5 };
+            let compression = axle.compression(&places[index], self.axles[index], side * self.twist);
+            let rate = axle.compression_rate(&places[index], predicted.axles[index], side * predicted.twist);
+            for (i, (compression_m, compression_rate_m_s)) in compression.into_iter().zip(rate).enumerate() {
+                let corner = 2 * index + i;
+                let motion = Motion {
+                    compression_m,
+                    compression_rate_m_s,
+                    duration_s: h,
+                };
+                self.elements[corner].advance(motion, signals[corner]);
+            }
+        }
+        self.acceleration = self.accelerate(&predicted, controls);
+        self.kick(half);
+    }
+
+    /// Velocities after `duration_s` of the present accelerations.
+    fn kick(&mut self, duration_s: f64) {
+        let a = &self.acceleration;
+        let mut linear = self.rotation * a.linear;
+        linear.z -= GRAVITY_M_S2;
+        self.velocity += linear * duration_s;
+        self.angular += a.angular * duration_s;
+        for (rate, axle) in self.axle_rates.iter_mut().zip(a.axles) {
+            *rate = rate.plus(duration_s, axle);
+        }
+        for (spin, rate) in self.spin.iter_mut().zip(a.spin) {
+            *spin += rate * duration_s;
+        }
+        self.twist_rate += a.twist * duration_s;
+    }
+
+    fn velocities(&self) -> Velocities {
+        Velocities {
+            linear: self.rotation.tr_mul(&self.velocity),
+            angular: self.angular,
+            axles: self.axle_rates,
+            spin: self.spin,
+            twist: self.twist_rate,
+        }
+    }
+
+    fn places(&self) -> [AxlePlace; 2] {
+        [0, 1].map(|i: usize| self.masses.axles[i].place(self.axles[i]))
+    }
+
+    /// The four wheels' axes, body axes.
+    fn wheel_axes(&self, places: &[AxlePlace; 2]) -> [Vector3<f64>; 4] {
+        let (sin, cos) = libm::sincos(self.steer_rad);
+        let front = places[0].left * cos - Vector3::new(sin, 0.0, 0.0);
+        [front, front, places[1].left, places[1].left]
+    }
+
+    fn accelerate(&mut self, velocities: &Velocities, controls: Controls) -> Accelerations {
+        let places = self.places();
+        let axes = self.wheel_axes(&places);
+        let mut loads = Loads::default();
+        let [stiffness, damping] = self.masses.torsion;
+        loads.twist = -(stiffness * self.twist + damping * velocities.twist);
+        for (index, place) in places.iter().enumerate() {
+            let side = if index == 0 { 0.5 } else { -0.5 };
+            let left = 2 * index;
+            let force = [self.elements[left].force_n(), self.elements[left + 1].force_n()];
+            let axle = &self.masses.axles[index];
+            let (forces, torque) = axle.suspension(place, self.axles[index], side * self.twist, force);
+            loads.axles[index] = forces;
+            loads.twist += side * torque;
+
+            let share = if index == 0 {
+                self.handling.drive.front_share
+            } else {
+                1.0 - self.handling.drive.front_share
+            };
+            let drive_n_m = 0.5 * share * controls.drive_force_n * self.tyres[index].free_radius_m;
+            let wheels = [left, left + 1].map(|corner| {
+                let loads = self.roll_wheel(corner, place, axes[corner], velocities, drive_n_m);
+                self.wheels[corner] = loads.state;
+                loads
+            });
+            loads.add_pair(index, &wheels[0].wrench, &wheels[1].wrench);
+            loads.spin[left] = wheels[0].spin_torque_n_m;
+            loads.spin[left + 1] = wheels[1].spin_torque_n_m;
+        }
+        self.masses.accelerations(&places, velocities, &loads, &axes)
+    }
+
+    fn roll_wheel(
+        &mut self,
+        corner: usize,
+        place: &AxlePlace,
+        axis: Vector3<f64>,
+        velocities: &Velocities,
+        drive_n_m: f64,
+    ) -> WheelLoads {
+        let index = corner / 2;
+        let side = if corner % 2 == 0 { 1.0 } else { -1.0 };
+        let centre = place.mass_centre + place.left * (side * self.masses.axles[index].half_track_m);
+        let rate = velocities.axles[index];
+        let arm = centre - place.centre;
+        let relative = Vector3::new(0.0, -arm.z * rate.roll, arm.y * rate.roll + rate.heave);
+        let motion = WheelMotion {
+            centre,
+            axis,
+            velocity: velocities.linear + velocities.angular.cross(&centre) + relative,
+            turn: velocities.angular + Vector3::new(rate.roll, 0.0, 0.0),
+            spin: velocities.spin[corner],
+            height_m: 0.0,
+        };
+        let world = self.position + self.rotation * centre;
+        let (ahead_x, ahead_y) = (self.rotation[(0, 0)], self.rotation[(1, 0)]);
+        let length = (ahead_x * ahead_x + ahead_y * ahead_y).sqrt().max(1e-9);
+        let ahead = (ahead_x / length, ahead_y / length);
+        let plane = self.probe.plane(self.road.as_ref(), world.x, world.y, ahead);
+        let motion = WheelMotion {
+            height_m: world.z,
+            ..motion
+        };
+        self.tyres[index].roll(
+            &self.handling.tyre,
+            &mut self.contacts[corner],
+            &motion,
+            &plane,
+            &self.rotation,
+            place,
+            drive_n_m,
+            self.step_s,
+        )
+    }
+
+    /// Time since the start, s: an exact multiple of the step.
+    pub fn time_s(&self) -> f64 {
+        self.steps as f64 * self.step_s
+    }
+
+    /// The fixed step, s.
+    pub fn step_s(&self) -> f64 {
+        self.step_s
+    }
+
+    /// Steer angle of the front wheels, rad, left positive.
+    pub fn steer_rad(&self) -> f64 {
+        self.steer_rad
+    }
+
+    /// Motion of the body.
+    pub fn motion(&self) -> HandlingMotion {
+        let (yaw_rad, pitch_rad, roll_rad) = yaw_pitch_roll(&self.rotation);
+        let (sin, cos) = libm::sincos(yaw_rad);
+        let mut acceleration = self.rotation * self.acceleration.linear;
+        acceleration.z -= GRAVITY_M_S2;
+        let v = self.velocity;
+        let (along, across) = (v.x * cos + v.y * sin, v.y * cos - v.x * sin);
+        HandlingMotion {
+            position_m: [self.position.x, self.position.y, self.position.z - self.rest_height_m],
+            velocity_m_s: [v.x, v.y, v.z],
+            yaw_rad,
+            pitch_rad,
+            roll_rad,
+            rates_rad_s: [self.angular.x, self.angular.y, self.angular.z],
+            speed_m_s: along,
+            lateral_acceleration_m_s2: acceleration.y * cos - acceleration.x * sin,
+            vertical_acceleration_m_s2: acceleration.z,
+            side_slip_rad: if along.abs() > 0.1 {
+                libm::atan(across / along.abs())
+            } else {
+                0.0
+            },
+        }
+    }
+
+    /// The four wheels.
+    pub fn wheels(&self) -> [WheelState; 4] {
+        self.wheels
+    }
+
+    /// Heave along and roll about the body's axes of front and rear axle, from rest.
+    pub fn axles(&self) -> [AxleCoordinates; 2] {
+        self.axles
+    }
+
+    /// Heave of an axle's middle in the world from rest, m, and its roll in the world, rad: the ride model's coordinates.
+    pub fn axle_heave_roll(&self, index: usize) -> (f64, f64) {
+        let place = self.masses.axles[index].place(self.axles[index]);
+        let height = (self.rotation * place.mass_centre).z + self.position.z;
+        let rest = self.masses.axles[index].place(AxleCoordinates::default()).mass_centre.z + self.rest_height_m;
+        (
+            height - rest,
+            libm::asin((self.rotation * place.left).z.clamp(-1.0, 1.0)),
+        )
+    }
+
+    /// Displacement of the four struts from rest, m, compression positive.
+    pub fn strut_displacement_m(&self) -> [f64; 4] {
+        let places = self.places();
+        let [front, rear] = [0, 1].map(|i: usize| {
+            let side = if i == 0 { 0.5 } else { -0.5 };
+            self.masses.axles[i].compression(&places[i], self.axles[i], side * self.twist)
+        });
+        [front[0], front[1], rear[0], rear[1]]
+    }
+
+    /// Force of the four suspension elements, N, compression positive.
+    pub fn suspension_force_n(&self) -> [f64; 4] {
+        self.elements.each_ref().map(SuspensionElement::force_n)
+    }
+
+    /// The four suspension elements.
+    pub fn elements(&self) -> &[E; 4] {
+        &self.elements
+    }
+
+    /// Twist of the body's front half against its rear half, rad.
+    pub fn twist_rad(&self) -> f64 {
+        self.twist
+    }
+
+    /// Acceleration along the body's vertical axis less gravity at rest, m/s2, at a place of the body ahead and to the
+    /// left of its centre of mass: what a seat's accelerometer reads.
+    pub fn vertical_acceleration_at(&self, x_m: f64, y_m: f64) -> f64 {
+        let place = Vector3::new(x_m, y_m, 0.0);
+        let w = self.angular;
+        let a = self.acceleration.angular;
+        self.acceleration.linear.z + (a.x * y_m - a.y * x_m) + w.cross(&w.cross(&place)).z - GRAVITY_M_S2
+    }
+
+    /// Kinetic energy, gravity and what anti-roll bars and the body's torsion hold, J (suspension and tyres not counted).
+    pub fn energy_j(&self) -> f64 {
+        let places = self.places();
+        let mut potential = self.masses.body_kg * GRAVITY_M_S2 * self.position.z;
+        for (index, (axle, place)) in self.masses.axles.iter().zip(&places).enumerate() {
+            let height = (self.rotation * place.mass_centre).z + self.position.z;
+            let side = if index == 0 { 0.5 } else { -0.5 };
+            let bar = self.axles[index].roll - side * self.twist;
+            potential += axle.mass_kg * GRAVITY_M_S2 * height + 0.5 * axle.anti_roll_n_m_rad * bar * bar;
+        }
+        potential += 0.5 * self.masses.torsion[0] * self.twist * self.twist;
+        self.masses.kinetic_energy_j(&places, &self.velocities()) + potential
+    }
+
+    /// Puts the body into a motion, for tests against closed forms: height above rest, velocity in the world, angular
+    /// velocity in body axes, axle rates. Forces follow at the next step.
+    pub fn throw(
+        &mut self,
+        height_m: f64,
+        velocity_m_s: [f64; 3],
+        rates_rad_s: [f64; 3],
+        axle_rates: [AxleCoordinates; 2],
+    ) {
+        self.position.z = self.rest_height_m + height_m;
+        self.velocity = Vector3::from(velocity_m_s);
+        self.angular = Vector3::from(rates_rad_s);
+        self.axle_rates = axle_rates;
+        let velocities = self.velocities();
+        self.acceleration = self.accelerate(&velocities, Controls::default());
+    }
+
+    /// Momentum and angular momentum about the whole's centre of mass, world axes.
+    #[cfg(test)]
+    pub(super) fn momentum(&self) -> (Vector3<f64>, Vector3<f64>) {
+        let places = self.places();
+        let axes = self.wheel_axes(&places);
+        let (linear, angular) = self.masses.momentum(&places, &self.velocities(), &axes);
+        let mut first = Vector3::zeros();
+        let mut mass = self.masses.body_kg;
+        for (axle, place) in self.masses.axles.iter().zip(&places) {
+            first += place.mass_centre * axle.mass_kg;
+            mass += axle.mass_kg;
+        }
+        (
+            self.rotation * linear,
+            self.rotation * (angular - (first / mass).cross(&linear)),
+        )
+    }
+}
+
+/// Inertias and geometry from both parameter files.
+fn masses(parameters: &VehicleParameters, handling: &HandlingParameters) -> Masses {
+    let body = &parameters.body;
+    let height_m = parameters.body_cg_height_m();
+    let ahead_m = parameters.body_cg_behind_front_axle_m();
+    let axles = [
+        (&parameters.front_axle, &handling.front_axle, ahead_m),
+        (
+            &parameters.rear_axle,
+            &handling.rear_axle,
+            ahead_m - parameters.layout.wheelbase_m,
+        ),
+    ]
+    .map(|(axle, more, ahead_m)| AxleGeometry {
+        mass_kg: axle.mass_kg,
+        roll_inertia_kg_m2: axle.inertia_kg_m2,
+        pitch_inertia_kg_m2: more.housing_pitch_inertia_kg_m2,
+        roll_centre_m: Vector3::new(ahead_m, 0.0, more.roll_centre_height_m - height_m),
+        drop_m: more.roll_centre_height_m - axle.tyre_radius_m,
+        half_track_m: 0.5 * axle.track_m,
+        half_strut_spacing_m: 0.5 * axle.strut_spacing_m,
+        anti_roll_n_m_rad: axle.anti_roll_stiffness_n_m_rad,
+    });
+    let stiffness = handling.frame.torsional_stiffness_n_m_rad;
+    let inertia = 0.25 * body.roll_inertia_kg_m2;
+    Masses {
+        body_kg: body.sprung_mass_kg,
+        body_inertia_kg_m2: Vector3::new(
+            body.roll_inertia_kg_m2,
+            body.pitch_inertia_kg_m2,
+            body.yaw_inertia_kg_m2,
+        ),
+        axles,
+        spin_inertia_kg_m2: [
+            handling.front_axle.wheel_spin_inertia_kg_m2,
+            handling.rear_axle.wheel_spin_inertia_kg_m2,
+        ],
+        torsion: [
+            stiffness,
+            2.0 * handling.frame.torsional_damping_ratio * (stiffness * inertia).sqrt(),
+        ],
+    }
+}
+
+#[cfg(test)]
+#[path = "model_tests.rs"]
+mod tests;

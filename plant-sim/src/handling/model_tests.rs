@@ -1,0 +1,365 @@
+//! The handling model against what does not depend on it: weight, conservation, mirror images, closed forms.
+
+use std::sync::Arc;
+
+use super::super::driver::Driver;
+use super::super::track::Track;
+use super::*;
+use crate::road::{Flat, Road};
+use crate::strut::StrutModel;
+use crate::vehicle::RideModel;
+use crate::vehicle::suspension::LinearElement;
+
+fn parameters() -> VehicleParameters {
+    VehicleParameters::defender110()
+}
+
+fn linear(parameters: &VehicleParameters, stiffness: f64, damping: f64) -> [LinearElement; 4] {
+    parameters
+        .static_strut_load_n()
+        .map(|load| LinearElement::new(load, stiffness, damping))
+}
+
+fn on_springs(
+    handling: &HandlingParameters,
+    damping: f64,
+    road: Arc<dyn Road>,
+    speed: f64,
+) -> HandlingModel<LinearElement> {
+    let p = parameters();
+    HandlingModel::with_elements(&p, handling, linear(&p, 40_000.0, damping), road, speed).unwrap()
+}
+
+fn on_struts(road: Arc<dyn Road>, speed: f64) -> HandlingVehicle {
+    let p = parameters();
+    let struts = p
+        .static_strut_load_n()
+        .map(|load| Strut::at_rest(&StrutModel::defender110(load), [true; 3]).unwrap());
+    HandlingVehicle::new(&p, &HandlingParameters::defender110(), struts, road, speed).unwrap()
+}
+
+#[test]
+fn at_rest_it_stays_and_the_wheels_carry_the_weight() {
+    let mut model = on_struts(Arc::new(Flat), 0.0);
+    for _ in 0..1000 {
+        model.step([[true; 3]; 4], Controls::default());
+    }
+    let loads = model.wheels().map(|wheel| wheel.load_n);
+    let weight = parameters().total_mass_kg() * GRAVITY_M_S2;
+    assert!((loads.iter().sum::<f64>() / weight - 1.0).abs() < 2e-4, "{loads:?}");
+    for (load, expected) in loads.into_iter().zip(parameters().static_wheel_load_n()) {
+        assert!((load / expected - 1.0).abs() < 1e-3, "{load} {expected}");
+    }
+    let motion = model.motion();
+    assert!(
+        motion.position_m[2].abs() < 1e-4 && motion.speed_m_s.abs() < 1e-3,
+        "{motion:?}"
+    );
+    assert_eq!((motion.position_m[1], motion.yaw_rad, motion.roll_rad), (0.0, 0.0, 0.0));
+}
+
+/// Thrown into the air, spinning about all axes with spinning wheels and swinging axles: no force but gravity.
+fn thrown(step_s: f64) -> HandlingModel<LinearElement> {
+    let mut p = parameters();
+    p.solver.step_s = step_s;
+    let handling = HandlingParameters {
+        frame: Frame {
+            torsional_damping_ratio: 0.0,
+            ..preset().frame
+        },
+        ..preset()
+    };
+    let elements = linear(&p, 40_000.0, 0.0);
+    let mut model = HandlingModel::with_elements(&p, &handling, elements, Arc::new(Flat), 20.0).unwrap();
+    let rates = [
+        AxleCoordinates { heave: 0.4, roll: 0.8 },
+        AxleCoordinates {
+            heave: -0.3,
+            roll: -0.5,
+        },
+    ];
+    model.throw(50.0, [20.0, 1.0, 5.0], [1.5, -0.4, 0.7], rates);
+    model
+}
+
+fn preset() -> HandlingParameters {
+    HandlingParameters::defender110()
+}
+
+use super::super::parameters::Frame;
+
+fn energy(model: &HandlingModel<LinearElement>) -> f64 {
+    let springs = model
+        .strut_displacement_m()
+        .into_iter()
+        .zip(parameters().static_strut_load_n());
+    model.energy_j() + springs.map(|(x, load)| load * x + 0.5 * 40_000.0 * x * x).sum::<f64>()
+}
+
+fn drift(step_s: f64) -> (f64, f64, f64) {
+    let mut model = thrown(step_s);
+    let (momentum, angular) = model.momentum();
+    let start = energy(&model);
+    let steps = (1.2 / step_s).round() as usize;
+    let mut worst = (0.0f64, 0.0f64);
+    for i in 1..=steps {
+        model.step([(); 4], Controls::default());
+        let (now, turning) = model.momentum();
+        let fallen = Vector3::new(
+            0.0,
+            0.0,
+            -parameters().total_mass_kg() * GRAVITY_M_S2 * step_s * i as f64,
+        );
+        worst.0 = worst.0.max((now - momentum - fallen).norm() / momentum.norm());
+        worst.1 = worst.1.max((turning - angular).norm() / angular.norm());
+    }
+    // It has turned by far more than a right angle meanwhile: nothing is small.
+    assert!(model.wheels().iter().all(|wheel| wheel.load_n == 0.0));
+    (worst.0, worst.1, (energy(&model) - start).abs())
+}
+
+#[test]
+fn in_the_air_momentum_and_energy_are_conserved() {
+    let (momentum, angular, lost) = drift(0.001);
+    assert!(momentum < 2e-4 && angular < 2e-4, "{momentum:e} {angular:e}");
+    // Some 7 kJ of relative motion and turning; second order: a quarter at half the step.
+    assert!(lost < 20.0, "{lost}");
+    let (half_momentum, half_angular, half_lost) = drift(0.0005);
+    for (whole, half) in [(momentum, half_momentum), (angular, half_angular), (lost, half_lost)] {
+        assert!(half < 0.4 * whole + 1e-9, "{whole:e} {half:e}");
+    }
+}
+
+#[test]
+fn damping_only_takes_energy() {
+    let p = parameters();
+    let handling = preset();
+    let mut model =
+        HandlingModel::with_elements(&p, &handling, linear(&p, 40_000.0, 2500.0), Arc::new(Flat), 0.0).unwrap();
+    model.throw(
+        30.0,
+        [0.0; 3],
+        [1.0, 0.5, -0.7],
+        [AxleCoordinates { heave: 0.6, roll: 1.0 }; 2],
+    );
+    let mut last = energy(&model);
+    let start = last;
+    for _ in 0..1500 {
+        model.step([(); 4], Controls::default());
+        let now = energy(&model);
+        assert!(now < last + 0.05, "{now} {last}");
+        last = now;
+    }
+    assert!(start - last > 100.0);
+}
+
+/// A road with left and right unlike each other.
+struct Rough {
+    side: f64,
+}
+impl Road for Rough {
+    fn height_m(&self, station_m: f64, lateral_m: f64) -> f64 {
+        let y = self.side * lateral_m;
+        0.02 * libm::sin(station_m * 1.3 + 2.0 * y) + 0.015 * libm::sin(station_m * 4.1 - 3.0 * y)
+    }
+}
+
+#[test]
+fn a_mirrored_drive_gives_mirrored_bits() {
+    let drive = |side: f64| {
+        let mut model = on_struts(Arc::new(Rough { side }), 17.0);
+        let track = Track::severe_lane_change(1.79);
+        let track = if side < 0.0 { track.mirrored() } else { track };
+        let mut driver = Driver::new(&preset(), 2.794);
+        for _ in 0..4000 {
+            let controls = driver.follow(&model.motion(), &track, 17.0, 0.001);
+            model.step([[true; 3]; 4], controls);
+        }
+        model
+    };
+    let (one, other) = (drive(1.0), drive(-1.0));
+    let (a, b) = (one.motion(), other.motion());
+    assert!(a.position_m[1].abs() > 1.0 && a.roll_rad.abs() > 1e-4);
+    assert_eq!(a.position_m, [b.position_m[0], -b.position_m[1], b.position_m[2]]);
+    assert_eq!(
+        (a.yaw_rad, a.pitch_rad, a.roll_rad),
+        (-b.yaw_rad, b.pitch_rad, -b.roll_rad)
+    );
+    let (p, q) = (one.strut_displacement_m(), other.strut_displacement_m());
+    assert_eq!(p, [q[1], q[0], q[3], q[2]]);
+}
+
+/// Steady state at a fixed steer angle and speed: `(steer - L / R) / a_y`, rad s2/m.
+fn understeer(handling: &HandlingParameters, steer_rad: f64, speed: f64) -> (f64, f64) {
+    let mut model = on_springs(handling, 4000.0, Arc::new(Flat), speed);
+    let mut driver = Driver::new(handling, 2.794);
+    for _ in 0..9000 {
+        let drive_force_n = driver.drive_force_n(&model.motion(), speed, 0.001);
+        model.step(
+            [(); 4],
+            Controls {
+                steer_rad,
+                drive_force_n,
+            },
+        );
+    }
+    let motion = model.motion();
+    let curvature = motion.rates_rad_s[2] / motion.speed_m_s;
+    (
+        (steer_rad - 2.794 * curvature) / motion.lateral_acceleration_m_s2,
+        motion.lateral_acceleration_m_s2,
+    )
+}
+
+#[test]
+fn understeer_gradient_is_the_bicycle_models() {
+    // Without tyre drag and camber effects; a small angle: the linear bicycle model with pneumatic trails is then exact.
+    let mut handling = preset();
+    handling.tyre.qsy1 = 0.0;
+    for coefficient in [
+        &mut handling.tyre.phy3,
+        &mut handling.tyre.pvy3,
+        &mut handling.tyre.pvy4,
+    ] {
+        *coefficient = 0.0;
+    }
+    let mut p = parameters();
+    for front_share in [0.5, 0.44, 0.56] {
+        p.body.front_mass_share = front_share;
+        let loads = p.static_wheel_load_n();
+        let [front, rear] = [0, 2].map(|corner: usize| {
+            let free = 0.389 + loads[corner] / 240_000.0;
+            let tyre = handling.tyre.at(loads[corner], 0.0, free);
+            (2.0 * tyre.cornering_stiffness_n_rad(), tyre.pneumatic_trail_m())
+        });
+        let mass = p.total_mass_kg();
+        let wheelbase = p.layout.wheelbase_m;
+        let (a, b) = (wheelbase * (1.0 - front_share), wheelbase * front_share);
+        let (a, b) = (a - front.1, b + rear.1);
+        let expected = mass / (a + b) * (b / front.0 - a / rear.0);
+
+        let elements = linear(&p, 40_000.0, 4000.0);
+        let mut model = HandlingModel::with_elements(&p, &handling, elements, Arc::new(Flat), 20.0).unwrap();
+        let mut driver = Driver::new(&handling, wheelbase);
+        for _ in 0..12_000 {
+            let drive_force_n = driver.drive_force_n(&model.motion(), 20.0, 0.001);
+            model.step(
+                [(); 4],
+                Controls {
+                    steer_rad: 0.002,
+                    drive_force_n,
+                },
+            );
+        }
+        let motion = model.motion();
+        let curvature = motion.rates_rad_s[2] / motion.speed_m_s;
+        let found = (0.002 - wheelbase * curvature) / motion.lateral_acceleration_m_s2;
+        assert!(
+            (found - expected).abs() < 2e-5,
+            "share {front_share}: {found:e} {expected:e}"
+        );
+    }
+    // And in the nonlinear range it understeers more: load transfer and the sagging characteristic.
+    let (small, _) = understeer(&preset(), 0.002, 20.0);
+    let (large, lateral) = understeer(&preset(), 0.05, 15.0);
+    assert!(
+        lateral > 2.5 && (large - small).abs() < 0.02,
+        "{small} {large} {lateral}"
+    );
+}
+
+#[test]
+fn roll_in_a_steady_bend_is_that_of_the_roll_axis_model() {
+    // Sprung mass on springs about roll centres, tyres included: moments about the ground.
+    let p = parameters();
+    let handling = preset();
+    let mut model = on_springs(&handling, 4000.0, Arc::new(Flat), 15.0);
+    let mut driver = Driver::new(&handling, 2.794);
+    for _ in 0..12_000 {
+        let drive_force_n = driver.drive_force_n(&model.motion(), 15.0, 0.001);
+        model.step(
+            [(); 4],
+            Controls {
+                steer_rad: 0.012,
+                drive_force_n,
+            },
+        );
+    }
+    let motion = model.motion();
+    let lateral = motion.lateral_acceleration_m_s2;
+    let (ms, h) = (p.body.sprung_mass_kg, p.body_cg_height_m());
+    let axis = 0.5 * (handling.front_axle.roll_centre_height_m + handling.rear_axle.roll_centre_height_m);
+    // Body over its axles: struts at half a metre, anti-roll bars (torsion makes them a little softer).
+    let spring = 2.0 * (0.5 * 40_000.0 + 8000.0);
+    let arm = h - axis;
+    let relative = ms * arm * lateral / (spring - ms * GRAVITY_M_S2 * arm);
+    // Axles over the tyres: everything above the ground.
+    let tyre = 2.0 * (0.5 * 1.486 * 1.486 * 240_000.0);
+    let mass = p.total_mass_kg();
+    let height = p.body.vehicle_cg_height_m;
+    let lean = (mass * height * lateral + ms * GRAVITY_M_S2 * arm * relative) / (tyre - mass * GRAVITY_M_S2 * height);
+    let expected = relative + lean;
+    assert!(
+        (motion.roll_rad / expected - 1.0).abs() < 0.03,
+        "{} {expected}",
+        motion.roll_rad
+    );
+}
+
+#[test]
+fn over_the_same_road_it_moves_as_the_ride_model_does() {
+    let p = parameters();
+    let road: Arc<dyn Road> = Arc::new(Rough { side: 1.0 });
+    let mut ride: RideModel<LinearElement> =
+        RideModel::with_elements(&p, linear(&p, 40_000.0, 2500.0), Arc::clone(&road), 10.0).unwrap();
+    let mut handling = preset();
+    handling.frame.torsional_stiffness_n_m_rad = 1e7;
+    let mut model = on_springs(&handling, 2500.0, road, 10.0);
+    let mut driver = Driver::new(&handling, 2.794);
+    let (mut difference, mut size) = ([0.0; 3], [0.0; 3]);
+    for i in 0..8000 {
+        let controls = driver.follow(&model.motion(), &Track::straight(), 10.0, 0.001);
+        model.step([(); 4], controls);
+        ride.step([(); 4]);
+        if i > 1000 {
+            let (a, b) = (model.motion(), ride.body());
+            let pairs = [
+                (a.position_m[2], b.heave_m),
+                (a.roll_rad, b.roll_rad),
+                (a.pitch_rad, b.pitch_rad),
+            ];
+            for (k, (x, y)) in pairs.into_iter().enumerate() {
+                difference[k] += (x - y) * (x - y);
+                size[k] += y * y;
+            }
+        }
+    }
+    let ratio: [f64; 3] = core::array::from_fn(|k| (difference[k] / size[k]).sqrt());
+    println!("relative difference to the ride model: heave, roll, pitch {ratio:?}");
+    assert!(ratio[0] < 0.1 && ratio[1] < 0.35 && ratio[2] < 0.2, "{ratio:?}");
+}
+
+#[test]
+fn tripped_it_rolls_over_and_the_equations_hold_beyond() {
+    let p = parameters();
+    let mut model = on_springs(&preset(), 4000.0, Arc::new(Flat), 20.0);
+    model.throw(0.0, [20.0, 0.0, 0.0], [4.0, 0.0, 0.0], [AxleCoordinates::default(); 2]);
+    let mut worst: f64 = 0.0;
+    for _ in 0..2000 {
+        model.step([(); 4], Controls::default());
+        worst = worst.max(model.motion().roll_rad.abs());
+        assert!(model.motion().position_m.iter().all(|x| x.is_finite()));
+        if worst > 2.0 {
+            break;
+        }
+    }
+    assert!(worst > 2.0, "{worst} {}", p.name);
+}
+
+#[test]
+fn a_strut_that_does_not_carry_its_corner_is_refused() {
+    let p = parameters();
+    let struts = [3000.0; 4].map(|load| Strut::at_rest(&StrutModel::defender110(load), [true; 3]).unwrap());
+    let refused = HandlingVehicle::new(&p, &preset(), struts, Arc::new(Flat), 10.0);
+    assert!(matches!(refused.err(), Some(RideError::StaticLoad { corner: 0, .. })));
+}

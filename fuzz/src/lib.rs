@@ -1,0 +1,108 @@
+//! One function for each thing that reads bytes from outside. Whatever the bytes, it must answer, and what it accepts must hold
+//! what its type promises: each function asserts that.
+//!
+//! Driven by libFuzzer (`fuzz_targets/`, coverage-guided, as long as one likes) and by `tests/hostile_bytes.rs` of the
+//! root package (mutated valid files, seconds, every test run).
+
+use oleo_controller::can::{PlantEnd, SENSOR_MESSAGES};
+use oleo_controller::{Configuration, Node};
+use oleo_hil::bus::{SlcanDecoder, slcan_encode};
+use oleo_plant_sim::road::{Road, crg, profile_from_csv};
+use oleo_plant_sim::strut::{Strut, StrutModel};
+use oleo_plant_sim::vehicle::VehicleParameters;
+
+/// A bus full of strangers: frames of any identifier, length and content, ticks in between.
+///
+/// Each frame takes ten bytes: which identifier, how long and whether a tick follows, eight of data.
+pub fn can_frames(bytes: &[u8]) {
+    let mut node = Node::new(Configuration::defender110());
+    let mut plant = PlantEnd::new();
+    for chunk in bytes.chunks_exact(10) {
+        let id = match usize::from(chunk[0]) {
+            known @ 0..48 => SENSOR_MESSAGES[known % SENSOR_MESSAGES.len()].id,
+            48..64 => oleo_controller::can::COMMAND.id,
+            other => other as u16 * 8,
+        };
+        let data = &chunk[2..(2 + usize::from(chunk[1] & 15)).min(10)];
+        node.receive(id, data);
+        let _ = plant.receive(id, data);
+        if chunk[1] & 16 != 0 {
+            let (outputs, frames) = node.tick();
+            assert!(outputs.command.word() < 1 << 12);
+            assert!(!frames.is_empty(), "every tick commands");
+            for frame in frames {
+                let _ = plant.receive(frame.id, &frame.data);
+            }
+        }
+    }
+}
+
+/// The ASCII lines of a serial CAN adapter. What is read as a frame is written and read again as the same.
+pub fn slcan(bytes: &[u8]) {
+    let mut decoder = SlcanDecoder::default();
+    for byte in bytes {
+        let Some(frame) = decoder.push(*byte) else { continue };
+        let mut second = SlcanDecoder::default();
+        let again = slcan_encode(&frame).bytes().find_map(|byte| second.push(byte));
+        assert_eq!(again, Some(frame));
+    }
+}
+
+/// An OpenCRG road, text or binary. A road that is accepted has a finite height everywhere.
+pub fn road_crg(bytes: &[u8]) {
+    match crg::read(bytes, "any.crg") {
+        Ok(road) => heights_are_finite(&road),
+        Err(error) => one_line(&error),
+    }
+}
+
+/// A road profile as CSV; the same promise.
+pub fn road_csv(bytes: &[u8]) {
+    match profile_from_csv(bytes, "any.csv") {
+        Ok(road) => heights_are_finite(&road),
+        Err(error) => one_line(&error),
+    }
+}
+
+/// A strut's `model.toml`. A model that is accepted is written and read again as the same, and gives a strut that can
+/// be moved or one line saying why not.
+pub fn strut_model(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    match StrutModel::from_toml(text, "any.toml") {
+        Ok(model) => {
+            let written = model.to_toml();
+            let again = StrutModel::from_toml(&written, "again.toml").expect("what was written can be read");
+            assert_eq!(again.to_toml(), written);
+            match Strut::at_rest(&model, [false; 3]) {
+                Ok(mut strut) => {
+                    strut.advance(0.001, 0.001, [true; 3]);
+                }
+                Err(error) => one_line(&error),
+            }
+        }
+        Err(error) => one_line(&error),
+    }
+}
+
+/// A vehicle's parameter file.
+pub fn vehicle_parameters(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    if let Err(error) = VehicleParameters::from_toml(text, "any.toml") {
+        one_line(&error);
+    }
+}
+
+fn heights_are_finite(road: &impl Road) {
+    for station_m in [-1.0e9, -1.0, 0.0, 0.3, 17.0, 1.0e9] {
+        for lateral_m in [-1.0e3, -0.7, 0.0, 0.7, 1.0e3] {
+            let height_m = road.height_m(station_m, lateral_m);
+            assert!(height_m.is_finite(), "height {height_m} at ({station_m}, {lateral_m})");
+        }
+    }
+}
+
+/// What people are told is one line.
+fn one_line(error: &dyn std::error::Error) {
+    let text = error.to_string();
+    assert!(!text.is_empty() && !text.contains('\n'), "{text}");
+}

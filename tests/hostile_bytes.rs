@@ -1,0 +1,133 @@
+//! The fuzz targets on a stable compiler: valid inputs, damaged in ways that files and lines get damaged, the same in
+//! every run. Finding new inputs is libFuzzer's work (see `fuzz/` and docs/testing.md); this keeps what it needs working.
+
+#[path = "../fuzz/src/lib.rs"]
+mod targets;
+
+use oleo_plant_sim::strut::StrutModel;
+use oleo_plant_sim::vehicle::VehicleParameters;
+
+/// Damaged inputs tried for each seed.
+const ROUNDS: u32 = 2_000;
+
+/// xorshift32 (Marsaglia 2003): enough to choose where to cut.
+struct Random(u32);
+
+impl Random {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 17;
+        self.0 ^= self.0 << 5;
+        self.0 as usize % bound.max(1)
+    }
+}
+
+/// What happens to files: a byte changed, a piece lost, a piece twice, the end lost, a number made extreme.
+fn damage(seed: &[u8], random: &mut Random) -> Vec<u8> {
+    const NUMBERS: [&[u8]; 8] = [
+        b"0",
+        b"-1",
+        b"1e999",
+        b"nan",
+        b"1e-300",
+        b"99999999999999999999",
+        b"\"\"",
+        b"[]",
+    ];
+    let mut bytes = seed.to_vec();
+    for _ in 0..=random.below(3) {
+        let (from, to) = (random.below(bytes.len()), random.below(bytes.len()));
+        let piece = from.min(to)..from.max(to).min(from.min(to) + 60);
+        match random.below(6) {
+            0 if !bytes.is_empty() => bytes[from] = random.below(256) as u8,
+            1 => drop(bytes.drain(piece)),
+            2 => bytes = [&bytes[..piece.end], &bytes[piece.clone()], &bytes[piece.end..]].concat(),
+            3 => bytes.truncate(from),
+            _ => {
+                let Some(start) = (from..bytes.len()).find(|&i| bytes[i].is_ascii_digit()) else {
+                    continue;
+                };
+                let end = (start..bytes.len())
+                    .find(|&i| !bytes[i].is_ascii_digit())
+                    .unwrap_or(bytes.len());
+                bytes.splice(start..end, NUMBERS[random.below(NUMBERS.len())].iter().copied());
+            }
+        }
+    }
+    bytes
+}
+
+fn drive(target: fn(&[u8]), seeds: &[&[u8]]) {
+    let mut random = Random(0x9E37_79B9);
+    target(&[]);
+    for seed in seeds {
+        target(seed);
+        for _ in 0..ROUNDS {
+            target(&damage(seed, &mut random));
+        }
+    }
+    for _ in 0..ROUNDS {
+        let noise: Vec<u8> = (0..random.below(600)).map(|_| random.below(256) as u8).collect();
+        target(&noise);
+    }
+}
+
+#[test]
+fn can_frames() {
+    use oleo_controller::Inputs;
+    let mut plant = oleo_controller::can::PlantEnd::new();
+    let mut proper = Vec::new();
+    for tick in 0..40 {
+        for (index, frame) in plant
+            .encode(tick, &Inputs::from_values([0.01; 4], [[4.0e6; 4]; 4]))
+            .iter()
+            .enumerate()
+        {
+            proper.extend([index as u8, if index == 5 { 8 + 16 } else { 8 }]);
+            proper.extend(frame.data);
+        }
+    }
+    drive(targets::can_frames, &[&proper]);
+}
+
+#[test]
+fn slcan() {
+    drive(
+        targets::slcan,
+        &[b"t1108001122334455667788\rT1FFF01E02ABCD\rr1108\rz\rO\rS6\rt110801\r"],
+    );
+}
+
+#[test]
+fn road_crg() {
+    let text = b"$ROAD_CRG\nreference_line_increment = 0.5\nlong_section_v_right = -1\nlong_section_v_left = 1\n$\n\
+        $KD_DEFINITION\n#:LRFI\nD:long section 1,m\nD:long section 2,m\nD:long section 3,m\n$\n$$$$\n 0.0000000 0.0000000 0.0111111\n\
+        *missing* 0.0100000 0.0222222\n";
+    let binary = b"$ROAD_CRG\nreference_line_increment = 0.5\nlong_section_v_right = -1\nlong_section_v_left = 1\n$\n\
+        $KD_DEFINITION\n#:KRBI\nD:long section 1,m\nD:long section 2,m\n$\n$$$$\n12345678123456781234567812345678";
+    drive(targets::road_crg, &[text, binary]);
+}
+
+#[test]
+fn road_csv() {
+    drive(
+        targets::road_csv,
+        &[b"station_m,height_m\n0,0\n0.1,0.01\n0.2,-0.01\n0.3,0\n"],
+    );
+}
+
+#[test]
+fn strut_model() {
+    drive(
+        targets::strut_model,
+        &[StrutModel::defender110(5_000.0).to_toml().as_bytes()],
+    );
+}
+
+#[test]
+fn vehicle_parameters() {
+    drive(
+        targets::vehicle_parameters,
+        &[VehicleParameters::defender110().to_toml().as_bytes()],
+    );
+}

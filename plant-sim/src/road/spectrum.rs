@@ -32,13 +32,29 @@ pub struct SpectrumEstimator {
     cross: Vec<Complex<f64>>,
 }
 
+/// How the ends of a segment are weighted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Window {
+    /// Towards zero: little leakage from strong to weak frequencies.
+    Hann,
+    /// Not at all: powers add up to the variance, products to the correlation.
+    Rectangular,
+}
+
 impl SpectrumEstimator {
-    /// For segments of `length` samples (at least 8), `spacing_m` apart.
+    /// For Hann-windowed segments of `length` samples (at least 8), `spacing_m` apart.
     pub fn new(length: usize, spacing_m: f64) -> Self {
+        Self::with_window(length, spacing_m, Window::Hann)
+    }
+
+    /// For segments of `length` samples (at least 8), `spacing_m` apart.
+    pub fn with_window(length: usize, spacing_m: f64, window: Window) -> Self {
         let length = length.max(8);
-        let window = (0..length)
-            .map(|i| 0.5 - 0.5 * libm::cos(2.0 * core::f64::consts::PI * i as f64 / (length - 1) as f64))
-            .collect();
+        let hann = |i: usize| 0.5 - 0.5 * libm::cos(2.0 * core::f64::consts::PI * i as f64 / (length - 1) as f64);
+        let window = match window {
+            Window::Hann => (0..length).map(hann).collect(),
+            Window::Rectangular => vec![1.0; length],
+        };
         let bins = length / 2 + 1;
         Self {
             fft: FftPlanner::new().plan_fft_forward(length),

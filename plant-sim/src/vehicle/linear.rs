@@ -28,18 +28,19 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// What moves most: "heave", "front_roll", ... Rotations are compared at half the track, about 0.75 m.
+    /// What moves most, in words. Rotations are compared by the travel they give the wheels: half the track, half the
+    /// wheelbase.
     pub fn name(&self) -> &'static str {
         let [z, zf, zr, pitch, roll, rf, rr] = self.shape.to_array();
-        let lever_m = 0.75;
+        let (half_track_m, half_wheelbase_m) = (0.75, 1.4);
         let parts = [
             ("body heave", z),
             ("front axle heave", zf),
             ("rear axle heave", zr),
-            ("body pitch", lever_m * pitch),
-            ("body roll", lever_m * roll),
-            ("front axle roll", lever_m * rf),
-            ("rear axle roll", lever_m * rr),
+            ("body pitch", half_wheelbase_m * pitch),
+            ("body roll", half_track_m * roll),
+            ("front axle roll", half_track_m * rf),
+            ("rear axle roll", half_track_m * rr),
         ];
         parts
             .iter()

@@ -20,17 +20,12 @@ mod watchdog;
 
 use cortex_m::peripheral::{SCB, SYST, syst::SystClkSource};
 use cortex_m_rt::entry;
-use embedded_can::{Frame as _, Id, StandardId, nb::Can as _};
-use embedded_hal::digital::OutputPin as _;
-use heapless::Deque;
-use oleo_controller::{Configuration, Node, ValveCommand, timing::TICK_MS};
-use solenoid::Solenoid;
+use oleo_controller::port::Port;
+use oleo_controller::{Configuration, Node, Solenoids, timing::TICK_MS};
 use stm32f4::stm32f405::Peripherals;
 
 /// The vehicle's suspension bus, bit/s.
 const BIT_RATE: u32 = 500_000;
-/// Frames waiting for a mailbox: two ticks' worth. Older ones give way, a late command being worse than none.
-const SEND_QUEUE: usize = 4;
 /// Core clock cycles of a tick, less one, as SysTick wants it.
 const TICK_RELOAD: u32 = clock::CORE_HZ / 1000 * TICK_MS - 1;
 
@@ -41,43 +36,26 @@ fn main() -> ! {
     let (Some(board), Some(core)) = (Peripherals::take(), cortex_m::Peripherals::take()) else {
         SCB::sys_reset()
     };
-    let mut solenoids = solenoid::take(board.GPIOE, &board.RCC);
+    let Ok(mut solenoids) = Solenoids::new(solenoid::take(board.GPIOE, &board.RCC)) else {
+        SCB::sys_reset()
+    };
     let mut watchdog = watchdog::Watchdog::start(board.IWDG);
     clock::run_from_crystal(&board.RCC, &board.FLASH, &board.PWR);
-    let mut can = can::Can::start(board.CAN1, board.GPIOB, &board.RCC, clock::APB1_HZ, BIT_RATE);
+    let can = can::Can::start(board.CAN1, board.GPIOB, &board.RCC, clock::APB1_HZ, BIT_RATE);
+    let mut port = Port::new(can, Node::new(Configuration::defender110()));
     let mut systick = core.SYST;
     start_ticks(&mut systick);
 
-    let mut node = Node::new(Configuration::defender110());
-    let mut to_send: Deque<can::Frame, SEND_QUEUE> = Deque::new();
     loop {
-        // An overrun has lost a frame; the counters in the next ones tell the node.
-        if let Ok(frame) = can.receive()
-            && let Id::Standard(id) = frame.id()
-        {
-            #[cfg(feature = "deliberate-panic")]
-            assert!(frame.dlc() == 8);
-            node.receive(id.as_raw(), frame.data());
-        }
-        if let Some(frame) = to_send.front()
-            && can.transmit(frame).is_ok()
-        {
-            to_send.pop_front();
-        }
+        port.poll();
         if systick.has_wrapped() {
-            let (outputs, frames) = node.tick();
-            drive(&mut solenoids, outputs.command);
-            for frame in frames {
-                let Some(id) = StandardId::new(frame.id) else { continue };
-                let Some(frame) = can::Frame::new(id, &frame.data) else {
-                    continue;
-                };
-                if to_send.is_full() {
-                    to_send.pop_front();
-                }
-                let _ = to_send.push_back(frame); // there is room now
+            let outputs = port.tick();
+            if solenoids.drive(outputs.command).is_err() {
+                port.report_solenoid_failure();
             }
             watchdog.feed();
+            #[cfg(feature = "deliberate-panic")]
+            assert!(port.counters().dropped == 0);
         }
     }
 }
@@ -87,15 +65,4 @@ fn start_ticks(systick: &mut SYST) {
     systick.set_reload(TICK_RELOAD);
     systick.clear_current();
     systick.enable_counter();
-}
-
-fn drive(solenoids: &mut [Solenoid; solenoid::COUNT], command: ValveCommand) {
-    for (bit, solenoid) in solenoids.iter_mut().enumerate() {
-        // These pins cannot fail (their error has no value).
-        let Ok(()) = if command.word() & (1 << bit) != 0 {
-            solenoid.set_high()
-        } else {
-            solenoid.set_low()
-        };
-    }
 }

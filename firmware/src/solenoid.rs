@@ -7,8 +7,7 @@ use core::convert::Infallible;
 use embedded_hal::digital::{ErrorType, OutputPin};
 use stm32f4::stm32f405::{GPIOE, RCC};
 
-/// Number of solenoids: four corners of three valves.
-pub const COUNT: usize = 12;
+const COUNT: usize = oleo_controller::solenoids::SOLENOIDS;
 const FIRST_PIN: u8 = 4;
 const ALL: u32 = ((1 << COUNT) - 1) << FIRST_PIN;
 

@@ -26,7 +26,7 @@ fn main() -> ! {
     let mut drive = Drive::new();
     let mut plant = PlantEnd::new();
     let mut node = Node::new(configuration.clone());
-    let mut state = State::new(&configuration);
+    let mut state = State::new();
     let mut words = Fnv1a::new();
     let mut costs = [[0_u32; TICKS as usize]; 3];
     let [tick_costs, node_costs, receive_costs] = &mut costs;

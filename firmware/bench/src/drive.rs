@@ -1,22 +1,32 @@
 //! A synthetic drive, the same to the bit on every machine: what the sensors say, tick by tick.
 //!
-//! Not a vehicle (that is plant-sim's, and needs f64 and std) but its shape: four struts moving on a rough road, a roll
-//! that comes and goes so that ride and handling both get their turn, noise, and now and then a reading that is missing
-//! or wrong. Only integer arithmetic and +, -, *, / of f32, which have the same bits everywhere.
+//! Not a vehicle (that is plant-sim's, and needs f64 and std) but its shape, so that each part of the controller has work:
+//! four struts on a rough road, a slalom on a smooth one, sensor noise, and at the end readings that are missing or
+//! wrong. The gas follows the struts' valves as the report's isothermal law has it. Only integer arithmetic and
+//! +, -, *, / of f32, which have the same bits everywhere.
 
-use oleo_controller::{Inputs, Reading};
+use oleo_controller::{Inputs, Reading, ValveCommand};
 
-/// Ticks until the drive ends: 10 s.
-pub const TICKS: u16 = 2_000;
+/// Ticks until the drive ends: 15 s.
+pub const TICKS: u16 = 3_000;
 
-const STATIC_PRESSURE_PA: f32 = 4.0e6;
-/// Travel over which the pressure doubles, m (gas volume over piston area, of the size of the struts').
-const GAS_LENGTH_M: f32 = 0.2;
+/// From here on slalom, 4 s a period.
+const SLALOM: core::ops::Range<u16> = 1_000..2_200;
+const SLALOM_PERIOD: u16 = 800;
+
+/// The report's strut: bore 50 mm, 0.1 l and 0.4 l of gas at the static position.
+const PISTON_AREA_M2: f32 = 1.963_495_4e-3;
+const GAS_1_M3: f32 = 1.0e-4;
+const GAS_2_M3: f32 = 4.0e-4;
+const STATIC_PA: f32 = 2.0e6;
+const ATMOSPHERE_PA: f32 = 101_325.0;
 
 /// The generator of the drive.
 pub struct Drive {
     tick: u16,
     random: u32,
+    /// Gas in the second accumulators, m3; kept while valve 3 is closed.
+    gas_2_m3: [f32; 4],
 }
 
 impl Drive {
@@ -25,6 +35,7 @@ impl Drive {
         Drive {
             tick: 0,
             random: 0x2545_F491,
+            gas_2_m3: [GAS_2_M3; 4],
         }
     }
 
@@ -33,38 +44,52 @@ impl Drive {
         self.tick
     }
 
-    /// What the sensors say in the coming tick.
-    pub fn inputs(&mut self) -> Inputs {
+    /// What the sensors say in the coming tick, the valves being where the last command put them.
+    pub fn inputs(&mut self, command: ValveCommand) -> Inputs {
         let tick = self.tick;
         self.tick = tick.wrapping_add(1);
-        // Half the time a slalom of 2 s period and 30 mm, on a road of two periods that differ from corner to corner.
-        let roll_m = if tick % 1000 < 500 {
-            0.0
-        } else {
-            0.03 * triangle(tick, 400)
-        };
+        let slalom = SLALOM.contains(&tick);
+        let lateral = if slalom { triangle(tick, SLALOM_PERIOD) } else { 0.0 };
         let mut displacement_m = [0.0; 4];
         let mut pressure_pa = [[0.0; 4]; 4];
-        for (corner, (x, p)) in (0_u16..).zip(displacement_m.iter_mut().zip(&mut pressure_pa)) {
-            let side = if corner % 2 == 0 { 1.0 } else { -1.0 };
-            let road_m = 0.03 * triangle(tick + 37 * corner, 200 + 7 * corner) + 0.01 * triangle(tick, 19 + 2 * corner);
-            *x = road_m + side * roll_m + 0.0003 * self.noise();
-            let spring_pa = STATIC_PRESSURE_PA * GAS_LENGTH_M / (GAS_LENGTH_M - *x);
-            let damper_pa = 4.0e5 * triangle(tick + 50, 19 + 2 * corner);
-            *p = [spring_pa + damper_pa, spring_pa, spring_pa + 0.5 * damper_pa, spring_pa];
-            for place in p {
-                *place += 5.0e3 * self.noise();
-            }
+        for (corner, side) in [-1.0, 1.0, -1.0, 1.0].into_iter().enumerate() {
+            let phase = tick + 37 * corner as u16;
+            let body = triangle(phase, 154);
+            let wheel = triangle(phase, 25 + 2 * corner as u16);
+            let road_m = if slalom {
+                0.0005 * body
+            } else {
+                0.012 * body + 0.004 * wheel
+            };
+            let x = road_m + 0.006 * side * lateral + 1.0e-5 * self.noise();
+            displacement_m[corner] = x;
+            let mut p = self.pressures(corner, x, command.valve(corner, 2));
+            // The dampers' share, and what the tyres' side force shifts from left to right.
+            p[0] += 0.06e6 * triangle(phase + 38, 154) + 0.75e6 * side * lateral;
+            pressure_pa[corner] = p.map(|p| p + 5.0e3 * self.noise());
         }
         let mut inputs = Inputs::from_values(displacement_m, pressure_pa);
         match tick {
-            // A reading that comes and goes; a broken wire; a pressure no strut can have.
-            600..620 if tick % 3 == 0 => inputs.displacement[1] = Reading::INVALID,
-            1200..1210 => inputs.pressure[2][0] = Reading::new(f32::NAN),
-            1800.. => inputs.pressure[3][1] = Reading::new(9.0e7),
+            // A reading that comes and goes; a broken wire; a pressure that no strut can have.
+            2_300..2_320 if tick % 3 == 0 => inputs.displacement[1] = Reading::INVALID,
+            2_500..2_510 => inputs.pressure[2][0] = Reading::new(f32::NAN),
+            2_800.. => inputs.pressure[3][1] = Reading::new(9.0e7),
             _ => {}
         }
         inputs
+    }
+
+    /// p1 to p4 of a strut without damping, gauge, Pa.
+    fn pressures(&mut self, corner: usize, displacement_m: f32, spring_open: bool) -> [f32; 4] {
+        let charge_pa = STATIC_PA + ATMOSPHERE_PA;
+        let gas_m3 = GAS_1_M3 + GAS_2_M3 - PISTON_AREA_M2 * displacement_m;
+        let gas_2_m3 = &mut self.gas_2_m3[corner];
+        if spring_open {
+            *gas_2_m3 = gas_m3 * GAS_2_M3 / (GAS_1_M3 + GAS_2_M3);
+        }
+        let p1 = charge_pa * GAS_1_M3 / (gas_m3 - *gas_2_m3);
+        let p4 = charge_pa * GAS_2_M3 / *gas_2_m3;
+        [p1, p1, p1, p4].map(|p| p - ATMOSPHERE_PA)
     }
 
     /// White, -1..1 (xorshift32, Marsaglia 2003).

@@ -14,7 +14,7 @@ use core::hint::black_box;
 use drive::{Drive, TICKS};
 use machine::{Counter, leave, say};
 use oleo_controller::can::{Frame, PlantEnd};
-use oleo_controller::{Configuration, Inputs, Node, Outputs, State, tick};
+use oleo_controller::{Configuration, Inputs, Node, Outputs, State, ValveCommand, tick};
 
 /// Goal for the tick, instructions on the Cortex-M4F.
 const GOAL: u32 = 3_000;
@@ -31,10 +31,11 @@ fn main() -> ! {
     let mut costs = [[0_u32; TICKS as usize]; 3];
     let [tick_costs, node_costs, receive_costs] = &mut costs;
     let mut modes = [0_u16; 16];
+    let (mut handling, mut changes, mut last) = (0_u16, 0_u16, 0);
 
     for index in 0..usize::from(TICKS) {
         let number = drive.tick();
-        let inputs = drive.inputs();
+        let inputs = drive.inputs(ValveCommand::from_word(last));
         let frames = plant.encode(number, &inputs);
 
         tick_costs[index] = counter.instructions(|| {
@@ -46,6 +47,9 @@ fn main() -> ! {
 
         words.take(outputs.command.word());
         modes[outputs.mode as usize & 15] += 1;
+        handling += u16::from(outputs.handling);
+        changes += u16::from(outputs.command.word() != last);
+        last = outputs.command.word();
     }
 
     say!("ticks {}", TICKS);
@@ -53,6 +57,7 @@ fn main() -> ! {
     for (mode, ticks) in modes.iter().enumerate().filter(|(_, ticks)| **ticks > 0) {
         say!("mode {} for {} ticks", mode, ticks);
     }
+    say!("handling for {} ticks, {} changes of the valve word", handling, changes);
     let mut within = true;
     for (name, costs) in ["tick", "node tick", "receive six frames"].into_iter().zip(&mut costs) {
         costs.sort_unstable();

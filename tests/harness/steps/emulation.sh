@@ -17,7 +17,7 @@ check "drive on the emulated board" emulate || exit 0
 sed 's/^/   /' "$log"
 cp "$log" "$OLEO_LOGS/board.txt"
 check "drive on the host" "$bench_binary" || exit 0
-same_words() { diff <(grep -E '^(ticks|valve|mode)' "$OLEO_LOGS/board.txt") <(grep -E '^(ticks|valve|mode)' "$1"); }
+same_words() { diff <(grep -E '^(ticks|valve|mode|handling)' "$OLEO_LOGS/board.txt") <(grep -E '^(ticks|valve|mode|handling)' "$1"); }
 host_log=$log
 check "valve words on board and host are the same" same_words "$host_log"
 exit 0

@@ -1,18 +1,34 @@
 //! The loop: plant and controller, talking only through CAN frames.
 //!
 //! ```text
-//!   scenario (TOML) --> run --> [plant node | bus | controller node] --> record, trace --> metrics, checks --> files
+//!   scenario (TOML)
+//!       |
+//!       v                          six sensor frames a tick
+//!      run ----> plant_node  =====================================>  controller_node
+//!                (vehicle,       bus: memory, SocketCAN or slcan     (oleo_controller::Node,
+//!                 instruments)   <=================================   the firmware's code)
+//!                    |               one command a tick
+//!                    v
+//!      record, trace --> metrics --> checks --> output (summary, logs, CSV, JUnit, page)
 //! ```
 //!
-//! * [`bus`]: what carries frames, and decorators around it.
-//! * [`sync`]: how two nodes keep in step.
+//! * [`bus`]: what carries frames, and decorators around it; [`sync`]: how two nodes keep in step; [`clock`]: real time.
+//! * [`scenario`]: what is driven, what goes wrong, what must hold; [`run`]: a scenario to a recording.
+//! * [`metrics`], [`output`]: a recording to figures and files; [`bit_timing`]: what a wire would have made of it.
 #![forbid(unsafe_code)]
 
 pub mod bit_timing;
 pub mod bus;
 pub mod candump;
 pub mod clock;
+pub mod controller_node;
 pub mod frame;
+pub mod instruments;
+pub mod plant_node;
+pub mod record;
+pub mod run;
+pub mod scenario;
 pub mod sync;
 
 pub use frame::Frame;
+pub use scenario::Scenario;

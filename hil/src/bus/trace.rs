@@ -1,9 +1,13 @@
-//! Writes down every frame that passes: the memory of a run, from which logs, bus load and modes are worked out later.
+//! Counts every frame that passes and, if wanted, writes it down: the memory of a run, from which logs, bus load and
+//! modes are worked out later.
 //!
 //! In the loop an entry costs a copy of some 32 bytes. Frames of [`crate::sync`] are left out: they would not be on a
-//! vehicle's bus.
+//! vehicle's bus. Messages of the vehicle's database and frames of third parties are counted apart, so that two
+//! ends can compare what was sent with what arrived.
 
 use std::time::{Duration, Instant};
+
+use oleo_controller::can::MESSAGES;
 
 use super::{Bus, BusCounters, BusError};
 use crate::{Frame, sync};
@@ -36,7 +40,10 @@ pub struct Trace<B> {
     inner: B,
     tick: u32,
     started: Option<Instant>,
-    entries: Vec<TraceEntry>,
+    entries: Option<Vec<TraceEntry>>,
+    sent: u64,
+    received: u64,
+    foreign: u64,
 }
 
 impl<B: Bus> Trace<B> {
@@ -44,34 +51,71 @@ impl<B: Bus> Trace<B> {
     pub fn new(inner: B, capacity: usize, wall_clock: bool) -> Self {
         let started = wall_clock.then(Instant::now);
         Self {
+            started,
+            entries: Some(Vec::with_capacity(capacity)),
+            ..Self::counting(inner)
+        }
+    }
+
+    /// Wraps `inner` and only counts.
+    pub fn counting(inner: B) -> Self {
+        Self {
             inner,
             tick: 0,
-            started,
-            entries: Vec::with_capacity(capacity),
+            started: None,
+            entries: None,
+            sent: 0,
+            received: 0,
+            foreign: 0,
         }
+    }
+
+    /// Messages of the database that this end sent.
+    pub fn messages_sent(&self) -> u64 {
+        self.sent
+    }
+
+    /// Messages of the database that arrived here.
+    pub fn messages_received(&self) -> u64 {
+        self.received
+    }
+
+    /// Other frames that arrived here.
+    pub fn foreign(&self) -> u64 {
+        self.foreign
     }
 
     /// What passed so far, in order.
     pub fn entries(&self) -> &[TraceEntry] {
-        &self.entries
+        self.entries.as_deref().unwrap_or(&[])
     }
 
     /// Takes the entries out.
     pub fn take_entries(&mut self) -> Vec<TraceEntry> {
-        std::mem::take(&mut self.entries)
+        self.entries.take().unwrap_or_default()
     }
 
     fn note(&mut self, direction: Direction, frame: &Frame) {
         if sync::is_sync(frame) {
             return;
         }
-        let wall_us = self.started.map_or(0, |start| start.elapsed().as_micros() as u32);
-        self.entries.push(TraceEntry {
-            tick: self.tick,
-            wall_us,
-            direction,
-            frame: *frame,
-        });
+        let known = frame
+            .standard_id()
+            .is_some_and(|id| MESSAGES.iter().any(|message| message.id == id));
+        match (known, direction) {
+            (true, Direction::Sent) => self.sent += 1,
+            (true, Direction::Received) => self.received += 1,
+            (false, _) => self.foreign += 1,
+        }
+        if let Some(entries) = &mut self.entries {
+            let wall_us = self.started.map_or(0, |start| start.elapsed().as_micros() as u32);
+            entries.push(TraceEntry {
+                tick: self.tick,
+                wall_us,
+                direction,
+                frame: *frame,
+            });
+        }
     }
 }
 
@@ -113,11 +157,14 @@ mod tests {
         let frame = Frame::whole(standard(0x110), [7; 8]);
         a.begin_tick(3);
         a.send(&frame).unwrap();
-        a.send(&sync::Sync::End.encode(sync::Role::Plant)).unwrap();
+        a.send(&sync::Sync::End { sent: 0 }.encode(sync::Role::Plant)).unwrap();
         b.send(&frame).unwrap();
         a.begin_tick(4);
         assert_eq!(a.receive(Duration::ZERO).unwrap(), Some(frame));
         let seen: Vec<_> = a.entries().iter().map(|e| (e.tick, e.direction)).collect();
         assert_eq!(seen, [(3, Direction::Sent), (4, Direction::Received)]);
+        b.send(&Frame::whole(standard(0x7DF), [0; 8])).unwrap();
+        a.receive(Duration::ZERO).unwrap();
+        assert_eq!((a.messages_sent(), a.messages_received(), a.foreign()), (1, 1, 1));
     }
 }

@@ -1,0 +1,220 @@
+//! The plant's electronics: sensors that may lie, and an output stage that may not obey.
+//!
+//! ```text
+//!   vehicle -> Instruments (sensor faults) -> frames
+//!   frames -> OutputStage (end-to-end check, watchdog, stuck valves) -> switching signals -> vehicle
+//! ```
+
+use oleo_controller::can::{COMMAND, CheckStatus, CommandMessage};
+use oleo_controller::reading::{Inputs, Reading};
+use oleo_controller::valves::{CORNERS, ValveCommand};
+use oleo_plant_sim::strut::StrutOutput;
+
+use crate::scenario::fault::{Fault, FaultKind, SensorFault, SensorPlace, ValvePlace};
+
+/// Ticks without a usable command after which the output stage de-energises all valves: the command's own contract.
+pub const WATCHDOG_TICKS: u32 = COMMAND.timeout_ticks as u32;
+
+/// Four displacement and sixteen pressure sensors.
+#[derive(Clone, Debug)]
+pub struct Instruments {
+    faults: Vec<(Fault, SensorPlace, SensorFault, Option<f32>)>,
+}
+
+impl Instruments {
+    /// Sensors with the sensor faults among `faults`.
+    pub fn new(faults: &[Fault]) -> Self {
+        let of_sensors = |fault: &Fault| match fault.kind {
+            FaultKind::Sensor { place, fault: kind } => Some((*fault, place, kind, None)),
+            _ => None,
+        };
+        Self {
+            faults: faults.iter().filter_map(of_sensors).collect(),
+        }
+    }
+
+    /// What the sensors say in a tick. Displacement in m, compression positive.
+    pub fn read(&mut self, tick: u32, displacement_m: [f64; CORNERS], struts: [StrutOutput; CORNERS]) -> Inputs {
+        let mut values = [[0f32; 5]; CORNERS];
+        for ((all, displacement), strut) in values.iter_mut().zip(displacement_m).zip(struts) {
+            let [p1, p2, p3, p4] = strut.pressure_pa.map(|p| p as f32);
+            *all = [displacement as f32, p1, p2, p3, p4];
+        }
+        for (fault, place, kind, held) in &mut self.faults {
+            let Some(value) = values.get_mut(place.corner).and_then(|all| all.get_mut(place.sensor)) else {
+                continue;
+            };
+            if !fault.is_active(tick) {
+                *held = None;
+                continue;
+            }
+            *value = match *kind {
+                SensorFault::Stuck => *held.get_or_insert(*value),
+                SensorFault::NotANumber => f32::NAN,
+                SensorFault::Value(says) => says,
+                SensorFault::Offset(more) => *value + more,
+            };
+        }
+        let mut inputs = Inputs::default();
+        for ((displacement, pressure), all) in inputs.displacement.iter_mut().zip(&mut inputs.pressure).zip(values) {
+            let [x, p1, p2, p3, p4] = all.map(Reading::new);
+            *displacement = x;
+            *pressure = [p1, p2, p3, p4];
+        }
+        inputs
+    }
+}
+
+/// Twelve solenoid drivers behind a watchdog.
+#[derive(Clone, Debug)]
+pub struct OutputStage {
+    command: ValveCommand,
+    age: u32,
+    fresh: bool,
+    errors: u64,
+    stuck: Vec<(Fault, ValvePlace, bool)>,
+}
+
+impl OutputStage {
+    /// De-energised, with the solenoid faults among `faults`.
+    pub fn new(faults: &[Fault]) -> Self {
+        let of_solenoids = |fault: &Fault| match fault.kind {
+            FaultKind::SolenoidStuck { place, open } => Some((*fault, place, open)),
+            _ => None,
+        };
+        let stuck = faults.iter().filter_map(of_solenoids).collect();
+        Self {
+            command: ValveCommand::SAFE,
+            age: WATCHDOG_TICKS,
+            fresh: false,
+            errors: 0,
+            stuck,
+        }
+    }
+
+    /// A received command with the outcome of its check.
+    pub fn receive(&mut self, status: CheckStatus, message: Option<CommandMessage>) {
+        self.errors += u64::from(status.is_error());
+        if let Some(message) = message
+            && (status.is_usable() || status == CheckStatus::Initial)
+        {
+            self.command = message.command;
+            self.fresh = true;
+        }
+    }
+
+    /// Ends the reception of a tick. Whether a usable command came.
+    pub fn end_of_tick(&mut self) -> bool {
+        if std::mem::take(&mut self.fresh) {
+            self.age = 0;
+            return true;
+        }
+        self.age = self.age.saturating_add(1);
+        if self.age >= WATCHDOG_TICKS {
+            self.command = ValveCommand::SAFE;
+        }
+        false
+    }
+
+    /// What the drivers are told.
+    pub fn command(&self) -> ValveCommand {
+        self.command
+    }
+
+    /// Where the valves' signals are, stuck ones included.
+    pub fn energised(&self, tick: u32) -> ValveCommand {
+        let active = self.stuck.iter().filter(|(fault, ..)| fault.is_active(tick));
+        active.fold(self.command, |word, (_, place, open)| {
+            word.with(place.corner, place.valve, *open)
+        })
+    }
+
+    /// Ticks since the last usable command.
+    pub fn ticks_without_command(&self) -> u32 {
+        self.age
+    }
+
+    /// Commands that failed their end-to-end check.
+    pub fn errors(&self) -> u64 {
+        self.errors
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fault(kind: FaultKind) -> Fault {
+        Fault {
+            kind,
+            from_tick: 2,
+            until_tick: 4,
+        }
+    }
+
+    fn sensor(kind: SensorFault, sensor: usize) -> Instruments {
+        Instruments::new(&[fault(FaultKind::Sensor {
+            place: SensorPlace { corner: 1, sensor },
+            fault: kind,
+        })])
+    }
+
+    fn read(instruments: &mut Instruments, tick: u32) -> Inputs {
+        let mut struts = [StrutOutput::default(); 4];
+        struts[1].pressure_pa = [4e6 + f64::from(tick) * 1e5; 4];
+        instruments.read(tick, [f64::from(tick) * 0.01; 4], struts)
+    }
+
+    #[test]
+    fn each_sensor_fault_within_its_interval_and_place() {
+        let mut stuck = sensor(SensorFault::Stuck, 0);
+        let seen: Vec<_> = (0..6)
+            .map(|tick| read(&mut stuck, tick).displacement[1].value().unwrap())
+            .collect();
+        assert_eq!(seen, [0.0, 0.01, 0.02, 0.02, 0.04, 0.05]);
+
+        let mut broken = sensor(SensorFault::NotANumber, 3);
+        let inputs = read(&mut broken, 3);
+        assert!(!inputs.pressure[1][2].is_valid());
+        assert!(inputs.pressure[1][1].is_valid() && inputs.pressure[0][2].is_valid());
+        assert!(read(&mut broken, 4).pressure[1][2].is_valid());
+
+        assert_eq!(
+            read(&mut sensor(SensorFault::Offset(0.5), 0), 2).displacement[1].value(),
+            Some(0.52)
+        );
+        assert_eq!(
+            read(&mut sensor(SensorFault::Value(9e9), 1), 2).pressure[1][0].value(),
+            Some(9e9)
+        );
+    }
+
+    #[test]
+    fn the_watchdog_closes_the_valves() {
+        let mut stage = OutputStage::new(&[]);
+        let open = CommandMessage {
+            command: ValveCommand::SOFT,
+            ..CommandMessage::default()
+        };
+        stage.receive(CheckStatus::Initial, Some(open));
+        assert!(stage.end_of_tick());
+        for _ in 1..WATCHDOG_TICKS {
+            stage.receive(CheckStatus::WrongCrc, None);
+            assert!(!stage.end_of_tick());
+            assert_eq!(stage.command(), ValveCommand::SOFT);
+        }
+        stage.receive(CheckStatus::Repeated, Some(open));
+        assert!(!stage.end_of_tick());
+        assert_eq!(stage.command(), ValveCommand::SAFE);
+        assert_eq!(stage.errors(), u64::from(WATCHDOG_TICKS));
+    }
+
+    #[test]
+    fn a_stuck_valve_does_not_follow() {
+        let place = ValvePlace { corner: 0, valve: 2 };
+        let stage = OutputStage::new(&[fault(FaultKind::SolenoidStuck { place, open: true })]);
+        assert_eq!(stage.energised(1).word(), 0);
+        assert_eq!(stage.energised(2).word(), 0b100);
+        assert_eq!(stage.command().word(), 0);
+    }
+}

@@ -1,0 +1,155 @@
+//! What a run leaves in memory: one sample a tick, and what can be read from the traced frames.
+//!
+//! All memory is taken before the run starts; in the loop a sample is a copy. Everything else (measures, logs, pictures) is worked
+//! out afterwards.
+
+use crc::{CRC_64_XZ, Crc};
+use oleo_controller::can::{COMMAND, CommandMessage, STATUS, StatusMessage};
+use oleo_controller::valves::{CORNERS, VALVES, ValveCommand};
+use oleo_controller::{FaultCode, Mode};
+use oleo_plant_sim::strut::StrutOutput;
+use oleo_plant_sim::vehicle::{BodyMotion, WheelMotion};
+
+use crate::bus::{Direction, TraceEntry};
+
+/// State at the beginning of a tick, and the valve words that held from there to the next.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// Station of the front axle, m.
+    pub station_m: f64,
+    /// Sprung mass.
+    pub body: BodyMotion,
+    /// Strut displacement, m, compression positive.
+    pub displacement_m: [f64; CORNERS],
+    /// Force and pressures.
+    pub strut: [StrutOutput; CORNERS],
+    /// Wheels, with the road under them.
+    pub wheel: [WheelMotion; CORNERS],
+    /// What the output stage was told (after its check and watchdog).
+    pub command: ValveCommand,
+    /// Where the valves' signals were (stuck ones included).
+    pub energised: ValveCommand,
+}
+
+/// A run.
+#[derive(Debug, Default)]
+pub struct Recording {
+    /// One a tick.
+    pub samples: Vec<Sample>,
+    /// Vertical acceleration at the driver's and the left rear seat at every integration step, m/s2.
+    pub seat_acceleration_m_s2: Vec<[f64; 2]>,
+    /// Integration step, s.
+    pub step_s: f64,
+}
+
+impl Recording {
+    /// Room for a run.
+    pub fn with_capacity(ticks: usize, steps_per_tick: usize, step_s: f64) -> Self {
+        Self {
+            samples: Vec::with_capacity(ticks),
+            seat_acceleration_m_s2: Vec::with_capacity(ticks * steps_per_tick),
+            step_s,
+        }
+    }
+
+    /// The words told to the output stage.
+    pub fn words(&self) -> impl Iterator<Item = u16> {
+        self.samples.iter().map(|sample| sample.command.word())
+    }
+
+    /// Edges of each valve signal, in the order of the word's bits. Before the first tick all are closed.
+    pub fn valve_switches(&self) -> [u64; CORNERS * VALVES] {
+        let mut edges = [0; CORNERS * VALVES];
+        let mut before = 0;
+        for sample in &self.samples {
+            let word = sample.energised.word();
+            for (bit, count) in edges.iter_mut().enumerate() {
+                *count += u64::from((word ^ before) >> bit & 1);
+            }
+            before = word;
+        }
+        edges
+    }
+}
+
+/// Digest of a sequence of valve words: CRC-64/XZ of the words as little-endian 16-bit numbers, 16 hexadecimal digits.
+///
+/// A cryptographic digest is not needed (nobody forges it); this one is in every language's standard tools.
+pub fn command_hash(words: impl IntoIterator<Item = u16>) -> String {
+    let crc = Crc::<u64>::new(&CRC_64_XZ);
+    let mut digest = crc.digest();
+    for word in words {
+        digest.update(&word.to_le_bytes());
+    }
+    format!("{:016x}", digest.finalize())
+}
+
+/// The controller's own account in each tick, as the frames on the wire say it (before injected faults).
+pub fn controller_account(trace: &[TraceEntry], ticks: usize) -> Vec<Option<(Mode, FaultCode)>> {
+    let mut account = vec![None; ticks];
+    for entry in trace.iter().filter(|e| e.direction == Direction::Received) {
+        if entry.frame.standard_id() == Some(COMMAND.id)
+            && let Ok(data) = <&[u8; 8]>::try_from(entry.frame.data())
+            && let Some(message) = CommandMessage::decode(data)
+            && let Some(slot) = account.get_mut(entry.tick as usize)
+        {
+            *slot = Some((message.mode, message.fault));
+        }
+    }
+    account
+}
+
+/// The controller's status messages with the tick they came in.
+pub fn status_messages(trace: &[TraceEntry]) -> Vec<(u32, StatusMessage)> {
+    let received = trace.iter().filter(|e| e.direction == Direction::Received);
+    received
+        .filter(|entry| entry.frame.standard_id() == Some(STATUS.id))
+        .filter_map(|entry| Some((entry.tick, StatusMessage::decode(entry.frame.data().try_into().ok()?)?)))
+        .collect()
+}
+
+/// A mode in words.
+pub fn mode_name(mode: Mode) -> &'static str {
+    match mode {
+        Mode::StartUp => "start-up",
+        Mode::Normal => "normal",
+        Mode::Degraded => "degraded",
+        Mode::Safe => "safe",
+        Mode::Latched => "latched",
+    }
+}
+
+/// A fault code in words.
+pub fn fault_name(fault: FaultCode) -> &'static str {
+    match fault {
+        FaultCode::None => "none",
+        FaultCode::SensorRange => "sensor-range",
+        FaultCode::SensorRate => "sensor-rate",
+        FaultCode::SensorStuck => "sensor-stuck",
+        FaultCode::SensorVote => "sensor-vote",
+        FaultCode::OilBalance => "oil-balance",
+        FaultCode::MessageLost => "message-lost",
+        FaultCode::BusSilent => "bus-silent",
+        FaultCode::Solenoid => "solenoid",
+        FaultCode::Internal => "internal",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hash_is_crc64_xz_of_little_endian_words() {
+        // Check value of CRC-64/XZ: "123456789" gives 995dc9bbdf1939fa; its first eight bytes as four words and one more
+        // cannot be it, so the four words are compared with the same bytes digested at once.
+        let words = [0x3231, 0x3433, 0x3635, 0x3837];
+        let whole = Crc::<u64>::new(&CRC_64_XZ).checksum(b"12345678");
+        assert_eq!(command_hash(words), format!("{whole:016x}"));
+        assert_eq!(
+            Crc::<u64>::new(&CRC_64_XZ).checksum(b"123456789"),
+            0x995d_c9bb_df19_39fa
+        );
+        assert_ne!(command_hash([0, 0]), command_hash([0]));
+    }
+}

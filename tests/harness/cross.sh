@@ -34,11 +34,11 @@ cross_cargo() (
     cd firmware || exit 1
     export CARGO_TARGET_DIR=$FIRMWARE_TARGET RUSTC_BOOTSTRAP=1 RUSTFLAGS="-C link-arg=-Tlink.x -Z emit-stack-sizes"
     if [ "$cross_way" = rustup ]; then
-        exec cargo "$@" --locked --target $BOARD
+        exec cargo "$1" --locked --target $BOARD "${@:2}"
     fi
     PATH=$PATH:$(dirname "$cross_linker")
     export PATH RUSTC=/usr/bin/rustc
-    exec /usr/bin/cargo "$@" --locked -Zbuild-std=core --target $BOARD
+    exec /usr/bin/cargo "$1" --locked -Zbuild-std=core --target $BOARD "${@:2}"
 )
 
 # Builds firmware/bench for this machine, into $bench_binary.

@@ -71,7 +71,7 @@ impl Drive {
         let mut inputs = Inputs::from_values(displacement_m, pressure_pa);
         match tick {
             // A reading that comes and goes; a broken wire; a pressure that no strut can have.
-            2_300..2_320 if tick % 3 == 0 => inputs.displacement[1] = Reading::INVALID,
+            2_300..2_320 if tick.is_multiple_of(3) => inputs.displacement[1] = Reading::INVALID,
             2_500..2_510 => inputs.pressure[2][0] = Reading::new(f32::NAN),
             2_800.. => inputs.pressure[3][1] = Reading::new(9.0e7),
             _ => {}

@@ -25,7 +25,7 @@ fn main() -> ! {
     let configuration = Configuration::defender110();
     let mut drive = Drive::new();
     let mut plant = PlantEnd::new();
-    let mut node = Node::new(configuration.clone());
+    let mut node = Node::new(configuration);
     let mut state = State::new();
     let mut words = Fnv1a::new();
     let mut costs = [[0_u32; TICKS as usize]; 3];

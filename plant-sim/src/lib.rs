@@ -7,4 +7,5 @@ pub mod road;
 pub mod specimen;
 pub mod strut;
 pub mod strut_first;
+pub mod study;
 pub mod vehicle;

@@ -20,6 +20,8 @@ mod model;
 mod switching;
 
 pub use characteristics::{Characteristics, Damping, Spring};
+#[cfg(test)]
+pub(crate) use characteristics::isothermal_force_n;
 pub use look_up::LookUpTable;
 pub use model::{FirstGenerationOutput, FirstGenerationStrut};
 pub use switching::DelayedSwitch;

@@ -1,0 +1,225 @@
+//! A recording as a file: named columns of numbers over time, and what a strut needs of them.
+
+use std::io::Read;
+
+use crate::strut::Inputs;
+
+/// Why a recording cannot be replayed; one line: file, line, what, what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordingError {
+    /// A column is missing.
+    #[error("{file}:1: no column {column}; a recording of this kind has {needed}")]
+    Column {
+        /// File.
+        file: String,
+        /// Column.
+        column: String,
+        /// All that are needed.
+        needed: String,
+    },
+    /// A value is not usable.
+    #[error("{file}:{line}: {column} is {value:?}; {need}")]
+    Value {
+        /// File.
+        file: String,
+        /// Line, from 1.
+        line: u64,
+        /// Column.
+        column: String,
+        /// Text found.
+        value: String,
+        /// What is needed.
+        need: &'static str,
+    },
+    /// Not a table.
+    #[error("{file}: {reason}")]
+    Csv {
+        /// File.
+        file: String,
+        /// What the reader says.
+        reason: String,
+    },
+    /// Too short.
+    #[error("{file}: {samples} samples; a replay needs two or more")]
+    Short {
+        /// File.
+        file: String,
+        /// Samples found.
+        samples: usize,
+    },
+}
+
+/// Columns of a recording, of one length; the first is `time_s`, which increases.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Columns {
+    names: Vec<String>,
+    values: Vec<Vec<f64>>,
+}
+
+/// Columns that hold a switching signal.
+const VALVES: [&str; 3] = ["valve1", "valve2", "valve3"];
+const PRESSURES: [&str; 4] = ["p1_Pa", "p2_Pa", "p3_Pa", "p4_Pa"];
+
+impl Columns {
+    /// Reads the `needed` columns (with `time_s` before them) and those of `welcome` that are there; others are left aside.
+    ///
+    /// # Errors
+    /// A missing column, text that is no finite number, a signal that is neither 0 nor 1, time that does not increase, fewer
+    /// than two samples.
+    pub fn read(source: impl Read, file: &str, needed: &[&str], welcome: &[&str]) -> Result<Self, RecordingError> {
+        let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(source);
+        let csv_error = |error: csv::Error| RecordingError::Csv {
+            file: file.to_owned(),
+            reason: error.to_string(),
+        };
+        let header = reader.headers().map_err(csv_error)?.clone();
+        let (mut names, mut places) = (Vec::new(), Vec::new());
+        for (name, must) in std::iter::once((&"time_s", true))
+            .chain(needed.iter().map(|name| (name, true)))
+            .chain(welcome.iter().map(|name| (name, false)))
+        {
+            match header.iter().position(|title| title == *name) {
+                Some(place) => {
+                    names.push((*name).to_owned());
+                    places.push(place);
+                }
+                None if must => {
+                    return Err(RecordingError::Column {
+                        file: file.to_owned(),
+                        column: (*name).to_owned(),
+                        needed: format!("time_s, {}", needed.join(", ")),
+                    });
+                }
+                None => {}
+            }
+        }
+        let mut values: Vec<Vec<f64>> = vec![Vec::new(); names.len()];
+        let mut row = csv::StringRecord::new();
+        while reader.read_record(&mut row).map_err(csv_error)? {
+            for ((name, &place), column) in names.iter().zip(&places).zip(&mut values) {
+                let text = row.get(place).unwrap_or("");
+                let refuse = |need| RecordingError::Value {
+                    file: file.to_owned(),
+                    line: row.position().map_or(0, csv::Position::line),
+                    column: name.clone(),
+                    value: text.to_owned(),
+                    need,
+                };
+                let value = match text.parse::<f64>() {
+                    Ok(value) if value.is_finite() => value,
+                    _ => return Err(refuse("a finite number is needed")),
+                };
+                if name == "time_s" && column.last().is_some_and(|&before| value <= before) {
+                    return Err(refuse("time must increase; sort the rows and drop duplicates"));
+                }
+                if VALVES.contains(&name.as_str()) && value != 0.0 && value != 1.0 {
+                    return Err(refuse("a switching signal is 0 (closed) or 1 (open)"));
+                }
+                column.push(value);
+            }
+        }
+        let samples = values[0].len();
+        if samples < 2 {
+            return Err(RecordingError::Short {
+                file: file.to_owned(),
+                samples,
+            });
+        }
+        Ok(Self { names, values })
+    }
+
+    /// Sample times, s.
+    #[must_use]
+    pub fn time_s(&self) -> &[f64] {
+        &self.values[0]
+    }
+
+    /// A column, if it was read.
+    #[must_use]
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.names
+            .iter()
+            .position(|other| other == name)
+            .map(|place| self.values[place].as_slice())
+    }
+}
+
+/// Inputs and recorded channels of a strut.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordedStrut {
+    /// Sample times, s, increasing.
+    pub time_s: Vec<f64>,
+    /// Measured displacement, m, compression positive.
+    pub displacement_m: Vec<f64>,
+    /// Switching signals.
+    pub signals: Vec<[bool; 3]>,
+    /// Load cell, N, where recorded.
+    pub force_n: Option<Vec<f64>>,
+    /// p1 to p4, Pa gauge, where recorded.
+    pub pressure_pa: [Option<Vec<f64>>; 4],
+}
+
+impl RecordedStrut {
+    /// Reads a strut's recording.
+    ///
+    /// # Errors
+    /// As [`Columns::read`].
+    pub fn read(source: impl Read, file: &str) -> Result<Self, RecordingError> {
+        let needed = ["displacement_m", VALVES[0], VALVES[1], VALVES[2]];
+        let welcome = ["force_N", PRESSURES[0], PRESSURES[1], PRESSURES[2], PRESSURES[3]];
+        let columns = Columns::read(source, file, &needed, &welcome)?;
+        let of = |name: &str| columns.column(name).map(<[f64]>::to_vec);
+        let valves = VALVES.map(|name| of(name).unwrap_or_default());
+        let signals = (0..columns.time_s().len())
+            .map(|at| [0, 1, 2].map(|valve| valves[valve][at] == 1.0))
+            .collect();
+        Ok(Self {
+            time_s: columns.time_s().to_vec(),
+            displacement_m: of("displacement_m").unwrap_or_default(),
+            signals,
+            force_n: of("force_N"),
+            pressure_pa: PRESSURES.map(of),
+        })
+    }
+
+    /// The inputs, with the displacement smoothed by its stated noise (m).
+    #[must_use]
+    pub fn inputs(&self, noise_m: f64) -> Inputs {
+        Inputs::from_recording(&self.time_s, &self.displacement_m, &self.signals, noise_m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GOOD: &str =
+        "time_s,displacement_m,p1_Pa,valve1,valve2,valve3,remark\n0,0,4e6,0,1,1,a\n0.1,1e-3,4.1e6,1,1,1,b\n";
+
+    #[test]
+    fn reads_inputs_and_what_else_was_recorded() {
+        let recording = RecordedStrut::read(GOOD.as_bytes(), "r.csv").expect("good");
+        assert_eq!(recording.displacement_m, [0.0, 1e-3]);
+        assert_eq!(recording.signals[0], [false, true, true]);
+        assert_eq!(recording.pressure_pa[0].as_deref(), Some(&[4e6, 4.1e6][..]));
+        assert!(recording.force_n.is_none() && recording.pressure_pa[1].is_none());
+    }
+
+    #[test]
+    fn refusals_name_file_line_and_column() {
+        for (from, to, part) in [
+            ("displacement_m", "x_m", "r.csv:1: no column displacement_m"),
+            ("1e-3", "nan", "r.csv:3: displacement_m is \"nan\""),
+            ("0.1,", "0,", "r.csv:3: time_s is \"0\"; time must increase"),
+            ("4.1e6,1,", "4.1e6,0.5,", "r.csv:3: valve1 is \"0.5\""),
+        ] {
+            let bad = GOOD.replacen(from, to, 1);
+            let error = RecordedStrut::read(bad.as_bytes(), "r.csv")
+                .expect_err(part)
+                .to_string();
+            assert!(error.starts_with(part) && !error.contains('\n'), "{error}");
+        }
+        let empty = "time_s,displacement_m,valve1,valve2,valve3\n";
+        assert!(RecordedStrut::read(empty.as_bytes(), "r.csv").is_err());
+    }
+}

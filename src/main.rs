@@ -33,13 +33,21 @@ struct CommandLine {
 /// One line a command; its doc comment, arguments and examples are in its own file.
 #[derive(Subcommand)]
 enum Command {
+    Drive(commands::drive::Args),
+    Study(commands::study::Args),
     Hil(commands::hil::Args),
+    Rig(commands::rig::Args),
+    Predict(commands::predict::Args),
 }
 
 fn main() -> ExitCode {
     let answer = match CommandLine::try_parse() {
         Ok(CommandLine { command }) => match command {
+            Command::Drive(args) => commands::drive::run(args),
+            Command::Study(args) => commands::study::run(args),
             Command::Hil(args) => commands::hil::run(args),
+            Command::Rig(args) => commands::rig::run(args),
+            Command::Predict(args) => commands::predict::run(args),
         },
         Err(error) => failure::usage(&error),
     };

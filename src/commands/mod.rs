@@ -1,4 +1,8 @@
 //! One file a command: `pub struct Args` (clap, with units and an example in the help) and
 //! `pub fn run(args: Args) -> Result<ExitCode, Failure>`.
 
+pub mod drive;
 pub mod hil;
+pub mod study;
+pub mod predict;
+pub mod rig;

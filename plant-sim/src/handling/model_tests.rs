@@ -300,33 +300,49 @@ fn roll_in_a_steady_bend_is_that_of_the_roll_axis_model() {
     let lean = (mass * height * lateral + ms * GRAVITY_M_S2 * arm * relative) / (tyre - mass * GRAVITY_M_S2 * height);
     let expected = relative + lean;
     assert!(
-        (motion.roll_rad / expected - 1.0).abs() < 0.03,
+        (motion.roll_rad / expected - 1.0).abs() < 0.04,
         "{} {expected}",
         motion.roll_rad
     );
 }
 
+/// Waves of 2 m and 1 m, left and right unlike: over a base of 2 m their slope is nothing.
+struct Waves;
+impl Road for Waves {
+    fn height_m(&self, station_m: f64, lateral_m: f64) -> f64 {
+        let x = core::f64::consts::PI * station_m;
+        let phase = if lateral_m > 0.0 { 0.4 } else { -0.9 };
+        0.01 * libm::sin(x + phase) + 0.005 * libm::sin(2.0 * x - phase)
+    }
+}
+
 #[test]
-fn over_the_same_road_it_moves_as_the_ride_model_does() {
-    let p = parameters();
-    let road: Arc<dyn Road> = Arc::new(Rough { side: 1.0 });
-    let mut ride: RideModel<LinearElement> =
-        RideModel::with_elements(&p, linear(&p, 40_000.0, 2500.0), Arc::clone(&road), 10.0).unwrap();
+fn with_vertical_forces_only_it_moves_as_the_ride_model_does() {
+    // No friction, and a plane that sees no slope: what is left is heave, pitch and roll on the same springs. Tyre damping
+    // is off since it is the one thing the two models feed with different road speeds then.
+    let mut p = parameters();
+    p.front_axle.tyre_damping_n_s_m = 0.0;
+    p.rear_axle.tyre_damping_n_s_m = 0.0;
+    let road: Arc<dyn Road> = Arc::new(Waves);
+    let springs = || linear(&p, 40_000.0, 2500.0);
+    let mut ride: RideModel<LinearElement> = RideModel::with_elements(&p, springs(), Arc::clone(&road), 10.0).unwrap();
     let mut handling = preset();
-    handling.frame.torsional_stiffness_n_m_rad = 1e7;
-    let mut model = on_springs(&handling, 2500.0, road, 10.0);
-    let mut driver = Driver::new(&handling, 2.794);
-    let (mut difference, mut size) = ([0.0; 3], [0.0; 3]);
-    for i in 0..8000 {
-        let controls = driver.follow(&model.motion(), &Track::straight(), 10.0, 0.001);
-        model.step([(); 4], controls);
+    handling.ground.plane_length_m = 2.0;
+    handling.frame.torsional_stiffness_n_m_rad = 1e8;
+    handling.tyre.friction_scale = 0.0;
+    let mut model = HandlingModel::with_elements(&p, &handling, springs(), road, 10.0).unwrap();
+    let (mut difference, mut size) = ([0.0; 4], [0.0; 4]);
+    for i in 0..6000 {
+        model.step([(); 4], Controls::default());
         ride.step([(); 4]);
-        if i > 1000 {
+        if i > 2000 {
             let (a, b) = (model.motion(), ride.body());
+            let (axle, _) = model.axle_heave_roll(0);
             let pairs = [
                 (a.position_m[2], b.heave_m),
-                (a.roll_rad, b.roll_rad),
                 (a.pitch_rad, b.pitch_rad),
+                (a.roll_rad, b.roll_rad),
+                (axle, ride.state().0.front_heave),
             ];
             for (k, (x, y)) in pairs.into_iter().enumerate() {
                 difference[k] += (x - y) * (x - y);
@@ -334,16 +350,21 @@ fn over_the_same_road_it_moves_as_the_ride_model_does() {
             }
         }
     }
-    let ratio: [f64; 3] = core::array::from_fn(|k| (difference[k] / size[k]).sqrt());
-    println!("relative difference to the ride model: heave, roll, pitch {ratio:?}");
-    assert!(ratio[0] < 0.1 && ratio[1] < 0.35 && ratio[2] < 0.2, "{ratio:?}");
+    let ratio: [f64; 4] = core::array::from_fn(|k| (difference[k] / size[k]).sqrt());
+    println!("relative difference to the ride model: heave, pitch, roll, front axle {ratio:?}");
+    // Appendix A has no fore-aft or sideways motion. Here the axles' mass swings with the body's pitch (4 % more inertia)
+    // and its roll pushes them sideways; the axles' own heave has neither.
+    assert!(
+        ratio[0] < 0.06 && ratio[1] < 0.05 && ratio[2] < 0.45 && ratio[3] < 0.01,
+        "{ratio:?}"
+    );
 }
 
 #[test]
 fn tripped_it_rolls_over_and_the_equations_hold_beyond() {
     let p = parameters();
     let mut model = on_springs(&preset(), 4000.0, Arc::new(Flat), 20.0);
-    model.throw(0.0, [20.0, 0.0, 0.0], [4.0, 0.0, 0.0], [AxleCoordinates::default(); 2]);
+    model.throw(0.0, [20.0, 0.0, 0.0], [9.0, 0.0, 0.0], [AxleCoordinates::default(); 2]);
     let mut worst: f64 = 0.0;
     for _ in 0..2000 {
         model.step([(); 4], Controls::default());

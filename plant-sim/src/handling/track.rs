@@ -99,7 +99,7 @@ impl Track {
             widths,
         );
         Self {
-            line: Line::Lanes { ease_m: 4.0 },
+            line: Line::Lanes { ease_m: 3.5 },
             gates,
             side: 1.0,
         }

@@ -1,0 +1,248 @@
+//! One combination of springs and dampers, and what a drive says of it.
+//!
+//! Ride: Belgian block at 60 km/h for 20 s, straight ahead. Handling: the severe double lane change of ISO 3888-1 at 60 km/h.
+//! Both with the handling model, as the report did both with DADS (section 3.2).
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use super::element::GasElement;
+use crate::handling::{Ending, HandlingModel, HandlingParameters, Manoeuvre, NotFinite, Run, Track};
+use crate::measures::RideMeter;
+use crate::road::{Flat, Road, RoadError};
+use crate::strut::StrutModel;
+use crate::vehicle::{RideError, VehicleParameters};
+
+/// Static gas volumes and damper factors of front and rear.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Case {
+    /// Static gas volume, front and rear, m3.
+    pub gas_volume_m3: [f64; 2],
+    /// Factor on the damper force of the vehicle as sold, front and rear.
+    pub damper_factor: [f64; 2],
+}
+
+impl Case {
+    /// The same front and rear.
+    pub fn alike(gas_volume_m3: f64, damper_factor: f64) -> Self {
+        Self {
+            gas_volume_m3: [gas_volume_m3; 2],
+            damper_factor: [damper_factor; 2],
+        }
+    }
+}
+
+/// How the study drives.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Conditions {
+    /// Speed over the rough road, m/s.
+    pub ride_speed_m_s: f64,
+    /// Time on it, s.
+    pub ride_duration_s: f64,
+    /// Time at its beginning that does not count, s.
+    pub ride_settling_s: f64,
+    /// Phases of the Belgian block.
+    pub seed: u64,
+    /// Speed in the lane change, m/s.
+    pub lane_change_speed_m_s: f64,
+    /// Polytropic exponent of the gas.
+    pub polytropic_exponent: f64,
+}
+
+impl Default for Conditions {
+    fn default() -> Self {
+        Self {
+            ride_speed_m_s: 60.0 / 3.6,
+            ride_duration_s: 20.0,
+            ride_settling_s: 1.0,
+            seed: 1,
+            lane_change_speed_m_s: 60.0 / 3.6,
+            polytropic_exponent: 1.4,
+        }
+    }
+}
+
+/// What the rough road says.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Ride {
+    /// BS 6841 weighted RMS at the driver, m/s2.
+    pub driver_rms_m_s2: f64,
+    /// And at the left rear passenger, m/s2.
+    pub passenger_rms_m_s2: f64,
+    /// BS 6841 motion sickness dose at the driver, m/s^1.5.
+    pub driver_msdv_m_s1_5: f64,
+    /// And at the passenger, m/s^1.5.
+    pub passenger_msdv_m_s1_5: f64,
+    /// The vehicle stayed on the road to the end.
+    pub completed: bool,
+}
+
+impl Ride {
+    /// Mean of both seats, m/s2.
+    pub fn mean_rms_m_s2(&self) -> f64 {
+        0.5 * (self.driver_rms_m_s2 + self.passenger_rms_m_s2)
+    }
+
+    /// Mean of both seats, m/s^1.5.
+    pub fn mean_msdv_m_s1_5(&self) -> f64 {
+        0.5 * (self.driver_msdv_m_s1_5 + self.passenger_msdv_m_s1_5)
+    }
+}
+
+/// What the lane change says.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Handling {
+    /// Largest body roll, rad.
+    pub max_roll_rad: f64,
+    /// Largest lateral acceleration, m/s2.
+    pub max_lateral_m_s2: f64,
+    /// Least room to the cones, m; negative where some were hit.
+    pub cone_margin_m: f64,
+    /// Rolled over, spun or left the track: a gap in the surface.
+    pub completed: bool,
+    /// It rolled over.
+    pub rolled_over: bool,
+}
+
+/// A run that could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// Vehicle and springs do not fit.
+    #[error(transparent)]
+    Vehicle(#[from] RideError),
+    /// The model left the real numbers.
+    #[error(transparent)]
+    NotFinite(#[from] NotFinite),
+    /// No road.
+    #[error(transparent)]
+    Road(#[from] RoadError),
+}
+
+/// Everything a run needs that is the same for all cases.
+pub struct Bench {
+    /// The vehicle.
+    pub parameters: VehicleParameters,
+    /// Its handling.
+    pub handling: HandlingParameters,
+    /// How it is driven.
+    pub conditions: Conditions,
+    rough: Arc<dyn Road>,
+}
+
+impl Bench {
+    /// Makes the roads.
+    ///
+    /// # Errors
+    /// A road of impossible length.
+    pub fn new(
+        parameters: VehicleParameters,
+        handling: HandlingParameters,
+        conditions: Conditions,
+    ) -> Result<Self, RoadError> {
+        let length_m = conditions.ride_speed_m_s * conditions.ride_duration_s + 50.0;
+        let rough = Arc::new(crate::road::belgian::belgian_block(length_m, conditions.seed)?);
+        Ok(Self {
+            parameters,
+            handling,
+            conditions,
+            rough,
+        })
+    }
+
+    fn vehicle(
+        &self,
+        case: &Case,
+        road: Arc<dyn Road>,
+        speed_m_s: f64,
+    ) -> Result<HandlingModel<GasElement>, RideError> {
+        let p = &self.parameters;
+        let load = p.static_strut_load_n();
+        let area_m2 = StrutModel::defender110(load[0]).piston_area_m2();
+        let elements = core::array::from_fn(|corner| {
+            let axle = corner / 2;
+            let baseline = if axle == 0 { &p.front_baseline } else { &p.rear_baseline };
+            GasElement::new(
+                baseline,
+                load[corner],
+                area_m2,
+                case.gas_volume_m3[axle],
+                self.conditions.polytropic_exponent,
+                case.damper_factor[axle],
+            )
+        });
+        HandlingModel::with_elements(p, &self.handling, elements, road, speed_m_s)
+    }
+
+    /// Drives over the rough road.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn ride(&self, case: &Case) -> Result<Ride, StudyError> {
+        let speed_m_s = self.conditions.ride_speed_m_s;
+        let mut model = self.vehicle(case, Arc::clone(&self.rough), speed_m_s)?;
+        let duration_s = self.conditions.ride_duration_s;
+        let manoeuvre = Manoeuvre::Follow {
+            track: Track::straight(),
+            speed_m_s,
+            duration_s,
+        };
+        let p = &self.parameters;
+        let seats = [&p.driver_seat, &p.passenger_seat].map(|seat| p.seat_position_m(seat));
+        let mut meters = [RideMeter::new(model.step_s()), RideMeter::new(model.step_s())];
+        let settling_s = self.conditions.ride_settling_s;
+        let run = manoeuvre.drive(
+            &mut model,
+            p,
+            &self.handling,
+            |_| ([(); 4], 0),
+            |model| {
+                if model.time_s() > settling_s {
+                    for (meter, (x, y)) in meters.iter_mut().zip(seats) {
+                        meter.add(model.vertical_acceleration_at(x, y));
+                    }
+                }
+            },
+        )?;
+        let [driver, passenger] = meters.map(|meter| meter.measures());
+        Ok(Ride {
+            driver_rms_m_s2: driver.weighted_rms_m_s2,
+            passenger_rms_m_s2: passenger.weighted_rms_m_s2,
+            driver_msdv_m_s1_5: driver.msdv_m_s1_5,
+            passenger_msdv_m_s1_5: passenger.msdv_m_s1_5,
+            completed: run.ending == Ending::Completed,
+        })
+    }
+
+    /// Drives the lane change and keeps the whole run.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn lane_change(&self, case: &Case) -> Result<Run, StudyError> {
+        let speed_m_s = self.conditions.lane_change_speed_m_s;
+        let mut model = self.vehicle(case, Arc::new(Flat), speed_m_s)?;
+        let track = Track::severe_lane_change(self.parameters.layout.width_m);
+        let duration_s = 2.0 * track.end_m().unwrap_or(0.0) / speed_m_s.max(1.0);
+        let manoeuvre = Manoeuvre::Follow {
+            track,
+            speed_m_s,
+            duration_s,
+        };
+        Ok(manoeuvre.drive(&mut model, &self.parameters, &self.handling, |_| ([(); 4], 0), |_| {})?)
+    }
+
+    /// Drives the lane change.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn handling(&self, case: &Case) -> Result<Handling, StudyError> {
+        let run = self.lane_change(case)?;
+        Ok(Handling {
+            max_roll_rad: run.max_roll_rad,
+            max_lateral_m_s2: run.max_lateral_m_s2,
+            cone_margin_m: run.cone_margin_m.unwrap_or(f64::NAN),
+            completed: run.ending == Ending::Completed,
+            rolled_over: matches!(run.ending, Ending::RolledOver(_)),
+        })
+    }
+}

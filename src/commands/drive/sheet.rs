@@ -1,0 +1,427 @@
+//! What a drive leaves: a table, CSV histories, pictures.
+
+use std::io::Write as _;
+
+use oleo_plant_sim::handling::{Ending, Manoeuvre, Run, Sample};
+use oleo_plant_sim::measures::RideMeter;
+use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Style, Table, significant};
+use serde_json::{Map, Value, json};
+
+use super::Setting;
+use super::course::Course;
+use crate::failure::Failure;
+
+/// Lateral acceleration between which the understeer gradient is fitted, m/s2 (ISO 4138: the linear range).
+const LINEAR_RANGE_M_S2: (f64, f64) = (0.5, 3.0);
+
+type Named<'a> = (&'a str, &'a str, f64, &'a str);
+
+/// Measures of one run: key, words, value, unit.
+fn measures(course: &Course, run: &Run) -> Vec<(&'static str, &'static str, f64, &'static str)> {
+    let interval_s = 0.005;
+    let meter = |of: fn(&Sample) -> f64| {
+        let mut meter = RideMeter::new(interval_s);
+        run.history.iter().for_each(|sample| meter.add(of(sample)));
+        meter.measures()
+    };
+    let (driver, passenger) = (meter(|s| s.driver_seat_m_s2), meter(|s| s.passenger_seat_m_s2));
+    let peak = |of: fn(&Sample) -> f64| run.history.iter().map(|s| of(s).abs()).fold(0.0, f64::max);
+    let mut list = vec![
+        (
+            "driver_weighted_rms_m_s2",
+            "weighted RMS at the driver (BS 6841)",
+            driver.weighted_rms_m_s2,
+            "m/s2",
+        ),
+        (
+            "passenger_weighted_rms_m_s2",
+            "weighted RMS at the left rear passenger",
+            passenger.weighted_rms_m_s2,
+            "m/s2",
+        ),
+        (
+            "driver_msdv_m_s1_5",
+            "motion sickness dose at the driver",
+            driver.msdv_m_s1_5,
+            "m/s^1.5",
+        ),
+        (
+            "max_roll_deg",
+            "largest body roll",
+            run.max_roll_rad.to_degrees(),
+            "degrees",
+        ),
+        (
+            "max_pitch_deg",
+            "largest body pitch",
+            peak(|s| s.pitch_rad).to_degrees(),
+            "degrees",
+        ),
+        (
+            "wheel_lift_s",
+            "time with a wheel off the ground",
+            run.wheel_lift_s,
+            "s",
+        ),
+    ];
+    if run.max_lateral_m_s2 > 0.0 {
+        list.push((
+            "max_lateral_m_s2",
+            "largest lateral acceleration",
+            run.max_lateral_m_s2,
+            "m/s2",
+        ));
+        list.push((
+            "max_yaw_rate_deg_s",
+            "largest yaw rate",
+            peak(|s| s.yaw_rate_rad_s).to_degrees(),
+            "degrees/s",
+        ));
+        list.push((
+            "max_side_slip_deg",
+            "largest side slip",
+            peak(|s| s.side_slip_rad).to_degrees(),
+            "degrees",
+        ));
+    }
+    if let Some(margin) = run.cone_margin_m {
+        list.push(("cone_margin_m", "least room to the cones (negative: hit)", margin, "m"));
+    }
+    match &course.manoeuvre {
+        Manoeuvre::ConstantRadius { .. } => {
+            if let Some(gradient) = understeer_gradient(&run.history) {
+                let gradient = gradient.to_degrees();
+                list.push(("understeer_deg_s2_m", "understeer gradient", gradient, "degrees/(m/s2)"));
+            }
+            if let Some(gradient) = roll_gradient(&run.history) {
+                list.push((
+                    "roll_gradient_deg_s2_m",
+                    "roll gradient",
+                    gradient.to_degrees(),
+                    "degrees/(m/s2)",
+                ));
+            }
+        }
+        Manoeuvre::StepSteer { at_s, .. } => {
+            if let Some((steady, overshoot, time_s)) = step_response(&run.history, *at_s) {
+                list.push((
+                    "steady_yaw_rate_deg_s",
+                    "steady yaw rate",
+                    steady.to_degrees(),
+                    "degrees/s",
+                ));
+                list.push(("yaw_overshoot", "overshoot of the yaw rate", 100.0 * overshoot, "%"));
+                list.push(("yaw_response_s", "time to 90 % of the steady yaw rate", time_s, "s"));
+            }
+        }
+        Manoeuvre::Follow { .. } => {}
+    }
+    list
+}
+
+/// Slope of `of` over lateral acceleration in the linear range, by least squares.
+fn slope(history: &[Sample], of: fn(&Sample) -> f64) -> Option<f64> {
+    let inside = |s: &&Sample| {
+        let lateral = s.lateral_acceleration_m_s2.abs();
+        s.time_s > 5.0 && lateral > LINEAR_RANGE_M_S2.0 && lateral < LINEAR_RANGE_M_S2.1
+    };
+    let (mut n, mut x, mut y, mut xx, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for sample in history.iter().filter(inside) {
+        let (a, b) = (sample.lateral_acceleration_m_s2, of(sample));
+        n += 1.0;
+        x += a;
+        y += b;
+        xx += a * a;
+        xy += a * b;
+    }
+    let determinant = n * xx - x * x;
+    (n > 10.0 && determinant > 0.0).then(|| (n * xy - x * y) / determinant)
+}
+
+/// Change of steer angle with lateral acceleration at constant radius.
+fn understeer_gradient(history: &[Sample]) -> Option<f64> {
+    slope(history, |s| s.steer_rad)
+}
+
+fn roll_gradient(history: &[Sample]) -> Option<f64> {
+    slope(history, |s| s.roll_rad)
+}
+
+/// Steady yaw rate, overshoot over it, time from the step to 90 % of it.
+fn step_response(history: &[Sample], at_s: f64) -> Option<(f64, f64, f64)> {
+    let steady = history.last()?.yaw_rate_rad_s;
+    let side = steady.signum();
+    let most = history.iter().map(|s| side * s.yaw_rate_rad_s).fold(0.0, f64::max);
+    let reached = history.iter().find(|s| side * s.yaw_rate_rad_s >= 0.9 * steady.abs())?;
+    Some((steady, most / steady.abs() - 1.0, reached.time_s - at_s))
+}
+
+/// RMS of the difference over RMS of the first, for two histories.
+fn difference(a: &[Sample], b: &[Sample], of: fn(&Sample) -> f64) -> f64 {
+    let (mut apart, mut size) = (0.0, 0.0);
+    for (a, b) in a.iter().zip(b) {
+        let (x, y) = (of(a), of(b));
+        apart += (x - y) * (x - y);
+        size += x * x;
+    }
+    (apart / size).sqrt()
+}
+
+const COMPARED: [(&str, &str, fn(&Sample) -> f64); 5] = [
+    ("heave", "body vertical displacement (figures 2, 6)", |s| s.heave_m),
+    ("vertical_acceleration", "body vertical acceleration (figure 3)", |s| {
+        s.vertical_acceleration_m_s2
+    }),
+    ("front_axle", "front axle vertical displacement (figure 4)", |s| {
+        s.front_axle_heave_m
+    }),
+    ("roll", "body roll angle (figures 5, 7)", |s| s.roll_rad),
+    ("pitch", "body pitch angle", |s| s.pitch_rad),
+];
+
+const COLUMNS: [(&str, fn(&Sample) -> f64); 32] = [
+    ("time_s", |s| s.time_s),
+    ("station_m", |s| s.station_m),
+    ("lateral_m", |s| s.lateral_m),
+    ("heave_m", |s| s.heave_m),
+    ("yaw_rad", |s| s.yaw_rad),
+    ("pitch_rad", |s| s.pitch_rad),
+    ("roll_rad", |s| s.roll_rad),
+    ("speed_m_s", |s| s.speed_m_s),
+    ("side_slip_rad", |s| s.side_slip_rad),
+    ("yaw_rate_rad_s", |s| s.yaw_rate_rad_s),
+    ("lateral_acceleration_m_s2", |s| s.lateral_acceleration_m_s2),
+    ("vertical_acceleration_m_s2", |s| s.vertical_acceleration_m_s2),
+    ("steer_rad", |s| s.steer_rad),
+    ("driver_seat_m_s2", |s| s.driver_seat_m_s2),
+    ("passenger_seat_m_s2", |s| s.passenger_seat_m_s2),
+    ("front_axle_heave_m", |s| s.front_axle_heave_m),
+    ("front_axle_roll_rad", |s| s.front_axle_roll_rad),
+    ("wheel_load_fl_N", |s| s.wheel_load_n[0]),
+    ("wheel_load_fr_N", |s| s.wheel_load_n[1]),
+    ("wheel_load_rl_N", |s| s.wheel_load_n[2]),
+    ("wheel_load_rr_N", |s| s.wheel_load_n[3]),
+    ("strut_fl_m", |s| s.strut_displacement_m[0]),
+    ("strut_fr_m", |s| s.strut_displacement_m[1]),
+    ("strut_rl_m", |s| s.strut_displacement_m[2]),
+    ("strut_rr_m", |s| s.strut_displacement_m[3]),
+    ("strut_force_fl_N", |s| s.strut_force_n[0]),
+    ("strut_force_fr_N", |s| s.strut_force_n[1]),
+    ("strut_force_rl_N", |s| s.strut_force_n[2]),
+    ("strut_force_rr_N", |s| s.strut_force_n[3]),
+    ("valve_word", |s| f64::from(s.valves)),
+    ("front_valves_open", |s| f64::from((s.valves & 0x3F).count_ones())),
+    ("rear_valves_open", |s| f64::from((s.valves >> 6).count_ones())),
+];
+
+fn column(run: &Run, of: fn(&Sample) -> f64) -> Vec<f64> {
+    run.history.iter().map(of).collect()
+}
+
+/// Prints the table and writes the folder.
+pub fn publish(
+    course: &Course,
+    setting: Setting,
+    runs: &[(&str, Run)],
+    out: Option<OutputDirectory>,
+) -> Result<(), Failure> {
+    let mut columns = vec![Column::text("Measure")];
+    columns.extend(runs.iter().map(|(name, _)| Column::number(name)));
+    columns.push(Column::text("Unit"));
+    let mut table = Table::new(columns);
+    let mut summary = Map::new();
+    let mut row = vec!["ending".to_owned()];
+    row.extend(runs.iter().map(|(_, run)| ending(run.ending)));
+    row.push(String::new());
+    table.row(row);
+    let all: Vec<Vec<Named>> = runs.iter().map(|(_, run)| measures(course, run)).collect();
+    let longest = all.iter().max_by_key(|list| list.len()).cloned().unwrap_or_default();
+    for (key, words, _, unit) in longest {
+        let value = |list: &Vec<Named>| list.iter().find(|m| m.0 == key).map(|m| m.2);
+        let mut row = vec![words.to_owned()];
+        row.extend(
+            all.iter()
+                .map(|list| value(list).map_or("-".to_owned(), |v| significant(v, 4))),
+        );
+        row.push(unit.to_owned());
+        table.row(row);
+    }
+    for ((name, run), list) in runs.iter().zip(&all) {
+        let mut entry: Map<String, Value> = list.iter().map(|m| (m.0.to_owned(), json!(m.2))).collect();
+        entry.insert("ending".into(), json!(run.ending.word()));
+        entry.insert("duration_s".into(), json!(run.history.last().map_or(0.0, |s| s.time_s)));
+        summary.insert(name.replace(' ', "_"), Value::Object(entry));
+    }
+    let mut comparison = None;
+    if let [(_, one), (_, other)] = runs {
+        let mut rows = Table::new([
+            Column::text("Signal"),
+            Column::number("RMS difference over RMS of the ride model"),
+        ]);
+        for (key, words, of) in COMPARED {
+            let ratio = difference(&one.history, &other.history, of);
+            rows.row([words.to_owned(), format!("{:.1} %", 100.0 * ratio)]);
+            summary.insert(format!("difference_{key}"), json!(ratio));
+        }
+        comparison = Some(rows);
+    }
+    if let Some(mut out) = out {
+        let page = page(course, setting, runs, &table, comparison.as_ref());
+        for (name, run) in runs {
+            let columns: Vec<(&str, Vec<f64>)> = COLUMNS.iter().map(|(name, of)| (*name, column(run, *of))).collect();
+            let columns: Vec<(&str, &[f64])> = columns
+                .iter()
+                .map(|(name, values)| (*name, values.as_slice()))
+                .collect();
+            out.csv(&format!("{}.csv", name.replace(' ', "-")), &columns)?;
+        }
+        out.json("summary.json", &summary)?;
+        out.page(&page)?;
+        out.commit()?;
+    }
+    let text = format!("{table}{}", comparison.map_or(String::new(), |table| table.to_string()));
+    // A closed standard output (`| head`) is no failure of the drive.
+    let _ = std::io::stdout().write_all(text.as_bytes());
+    Ok(())
+}
+
+fn ending(ending: Ending) -> String {
+    match ending {
+        Ending::Completed => ending.word().to_owned(),
+        Ending::RolledOver(time_s) | Ending::Spun(time_s) | Ending::LostTrack(time_s) => {
+            format!("{} at {time_s:.2} s", ending.word())
+        }
+    }
+}
+
+fn page(course: &Course, setting: Setting, runs: &[(&str, Run)], table: &Table, comparison: Option<&Table>) -> Page {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut page = Page::new(
+        &format!("Drive: {}", course.title),
+        &format!("oleo {}", arguments.join(" ")),
+    );
+    page.fact("Vehicle", &course.vehicle.name)
+        .fact("Suspension", setting.name())
+        .fact("Road", &course.road_name)
+        .fact("Speed", &format!("{:.1} km/h", 3.6 * course.speed_m_s))
+        .outcome(table.clone());
+    if let Some(comparison) = comparison {
+        page.section("Ride model against handling model")
+            .table(comparison.clone());
+    }
+    let panels = |title: &str, panels: &[(&str, &str, &[(&str, fn(&Sample) -> f64)])]| {
+        let mut figure = Curves::new(title, Axis::new("Time", "s"));
+        figure.link("time");
+        for (quantity, unit, series) in panels {
+            let panel = figure.panel(Axis::new(quantity, unit));
+            for (name, run) in runs {
+                for (label, of) in *series {
+                    let label = if runs.len() > 1 {
+                        format!("{name} {label}")
+                    } else {
+                        (*label).to_owned()
+                    };
+                    panel.line(label.trim(), &column(run, |s| s.time_s), &column(run, *of));
+                }
+            }
+        }
+        figure
+    };
+    page.section("Body").figure(panels(
+        "Motion of the body",
+        &[
+            ("Heave", "m", &[("heave", |s| s.heave_m)]),
+            ("Roll", "degrees", &[("roll", |s| s.roll_rad.to_degrees())]),
+            ("Pitch", "degrees", &[("pitch", |s| s.pitch_rad.to_degrees())]),
+            (
+                "Vertical acceleration",
+                "m/s2",
+                &[("at the centre of mass", |s| s.vertical_acceleration_m_s2)],
+            ),
+            ("Front axle heave", "m", &[("front axle", |s| s.front_axle_heave_m)]),
+        ],
+    ));
+    if runs.iter().any(|(name, _)| *name == "handling model") && course.track.gates().is_empty().eq(&false)
+        || !matches!(course.manoeuvre, Manoeuvre::Follow { .. })
+    {
+        page.section("Course").figure(map(course, runs)).figure(panels(
+            "Steering and response",
+            &[
+                ("Steer angle", "degrees", &[("steer", |s| s.steer_rad.to_degrees())]),
+                (
+                    "Lateral acceleration",
+                    "m/s2",
+                    &[("lateral", |s| s.lateral_acceleration_m_s2)],
+                ),
+                (
+                    "Yaw rate",
+                    "degrees/s",
+                    &[("yaw rate", |s| s.yaw_rate_rad_s.to_degrees())],
+                ),
+                ("Speed", "km/h", &[("speed", |s| 3.6 * s.speed_m_s)]),
+            ],
+        ));
+    }
+    page.section("Wheels and suspension").figure(panels(
+        "Wheel loads, displacements (compression positive) and valves",
+        &[
+            (
+                "Wheel load",
+                "N",
+                &[
+                    ("front left", |s| s.wheel_load_n[0]),
+                    ("front right", |s| s.wheel_load_n[1]),
+                    ("rear left", |s| s.wheel_load_n[2]),
+                    ("rear right", |s| s.wheel_load_n[3]),
+                ],
+            ),
+            (
+                "Displacement",
+                "m",
+                &[
+                    ("front left", |s| s.strut_displacement_m[0]),
+                    ("front right", |s| s.strut_displacement_m[1]),
+                    ("rear left", |s| s.strut_displacement_m[2]),
+                    ("rear right", |s| s.strut_displacement_m[3]),
+                ],
+            ),
+            (
+                "Open valves",
+                "of 12",
+                &[("open", |s| f64::from(s.valves.count_ones()))],
+            ),
+        ],
+    ));
+    page
+}
+
+/// The course from above with its cones.
+fn map(course: &Course, runs: &[(&str, Run)]) -> Curves {
+    let mut figure = Curves::new("From above", Axis::new("Ahead", "m"));
+    let panel = figure.panel(Axis::new("Left", "m"));
+    for (name, run) in runs {
+        panel.line(
+            &format!("{name}, centre of mass"),
+            &column(run, |s| s.station_m),
+            &column(run, |s| s.lateral_m),
+        );
+    }
+    let (mut x, mut y) = (Vec::new(), Vec::new());
+    for gate in course.track.gates() {
+        for i in 0..=4 {
+            let station = gate.from_m + (gate.to_m - gate.from_m) * f64::from(i) / 4.0;
+            x.extend([station, station]);
+            y.extend([gate.right_m, gate.left_m]);
+        }
+    }
+    if !x.is_empty() {
+        panel.series(Style::Points, "cones", &x, &y);
+        let (first, last) = (0.0, course.track.end_m().unwrap_or(0.0));
+        let stations: Vec<f64> = (0..=200)
+            .map(|i| first + (last - first) * f64::from(i) / 200.0)
+            .collect();
+        let line: Vec<f64> = stations.iter().map(|x| course.track.lateral_m(*x)).collect();
+        panel.series(Style::Dashed, "line wanted", &stations, &line);
+    }
+    figure
+}

@@ -1,0 +1,56 @@
+//! The suspension as set on the command line: fixed valves, or the controller called directly, without a bus between.
+
+use oleo_controller::{Configuration, Inputs, State, tick};
+use oleo_plant_sim::strut::{ModelError, Strut, StrutModel, StrutOutput};
+use oleo_plant_sim::vehicle::VehicleParameters;
+
+use super::Setting;
+
+/// Where the valves' signals come from.
+pub enum Valves {
+    Fixed(bool),
+    Controlled {
+        configuration: Box<Configuration>,
+        state: Box<State>,
+    },
+}
+
+impl Valves {
+    pub fn new(setting: Setting) -> Self {
+        match setting {
+            Setting::Soft => Self::Fixed(true),
+            Setting::Stiff | Setting::Baseline => Self::Fixed(false),
+            Setting::Controlled => Self::Controlled {
+                configuration: Box::new(Configuration::defender110()),
+                state: Box::new(State::new()),
+            },
+        }
+    }
+
+    /// Signals before the first tick: what the struts start with.
+    pub fn at_start(&self) -> [bool; 3] {
+        [matches!(self, Self::Fixed(true)); 3]
+    }
+
+    /// Signals for the coming tick of 5 ms, and the valve word.
+    pub fn decide(&mut self, displacement_m: [f64; 4], outputs: [StrutOutput; 4]) -> ([[bool; 3]; 4], u16) {
+        match self {
+            Self::Fixed(open) => ([[*open; 3]; 4], if *open { 0x0FFF } else { 0 }),
+            Self::Controlled { configuration, state } => {
+                let inputs = Inputs::from_values(
+                    displacement_m.map(|x| x as f32),
+                    outputs.map(|output| output.pressure_pa.map(|p| p as f32)),
+                );
+                let command = tick(configuration, state, &inputs).command;
+                (command.corners(), command.word())
+            }
+        }
+    }
+}
+
+/// Four struts of the preset, each for its corner's static load.
+pub fn struts(parameters: &VehicleParameters, signals: [bool; 3]) -> Result<[Strut; 4], ModelError> {
+    let [a, b, c, d] = parameters.static_strut_load_n();
+    let strut = |load_n: f64| Strut::at_rest(&StrutModel::defender110(load_n), signals);
+    Ok([strut(a)?, strut(b)?, strut(c)?, strut(d)?])
+}

@@ -1,0 +1,179 @@
+//! `oleo study optimise`: the sweep's optimum with fewer runs, and its path.
+
+use std::io::Write as _;
+use std::process::ExitCode;
+
+use oleo_plant_sim::study::{DAMPER_FACTORS, GAS_VOLUMES_M3, Objective, Optimum, Visit, Weights, optimise};
+use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Progress, Style, Table, significant};
+use serde_json::json;
+
+use super::Drive;
+use crate::failure::Failure;
+
+/// Search gas volume and damper factor for the least weighted sum of ride and handling measures
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    drive: Drive,
+    /// Weight of the weighted RMS acceleration, mean of both seats
+    #[arg(long, value_name = "W", default_value_t = 1.0)]
+    ride: f64,
+    /// Weight of the motion sickness dose, mean of both seats
+    #[arg(long, value_name = "W", default_value_t = 0.0)]
+    sickness: f64,
+    /// Weight of the largest roll angle in the lane change
+    #[arg(long, value_name = "W", default_value_t = 0.0)]
+    roll: f64,
+    /// Front and rear each for itself
+    #[arg(long)]
+    per_axle: bool,
+    /// Most iterations of the search
+    #[arg(long, value_name = "N", default_value_t = 60)]
+    iterations: u64,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode, Failure> {
+    let weights = Weights {
+        ride: args.ride,
+        sickness: args.sickness,
+        roll: args.roll,
+    };
+    let all = [weights.ride, weights.sickness, weights.roll];
+    if !all.iter().all(|w| w.is_finite() && *w >= 0.0) || all.iter().sum::<f64>() <= 0.0 {
+        return Err(Failure::new(
+            "--ride, --sickness, --roll: give weights of 0 or more, one of them above 0",
+        ));
+    }
+    let bench = args.drive.bench()?;
+    let out = args.drive.out.as_ref().map(OutputDirectory::stage).transpose()?;
+    let ledger = args.drive.ledger(&bench)?;
+    let objective = Objective {
+        weights,
+        per_axle: args.per_axle,
+        iterations: args.iterations,
+    };
+    let progress = Progress::new("optimise", args.iterations + 6);
+    let done = |_: &Visit| progress.add(1);
+    let optimum = args
+        .drive
+        .on_threads(|| optimise(&bench, &ledger, objective, &done))??;
+    drop(progress);
+
+    let table = outcome(&optimum);
+    if let Some(mut out) = out {
+        write(&mut out, &optimum, &table)?;
+        out.commit()?;
+    }
+    // A closed standard output (`| head`) is no failure of the study.
+    let _ = std::io::stdout().write_all(table.to_string().as_bytes());
+    Ok(ExitCode::SUCCESS)
+}
+
+fn outcome(optimum: &Optimum) -> Table {
+    let mut table = Table::new([Column::text("Optimum"), Column::number("Value"), Column::text("Unit")]);
+    let best = &optimum.best;
+    let mut row = |name: &str, value: f64, unit: &str| {
+        table.row([name.to_owned(), significant(value, 4), unit.to_owned()]);
+    };
+    for (axle, name) in ["front", "rear"].into_iter().enumerate() {
+        row(
+            &format!("static gas volume, {name}"),
+            1e3 * best.case.gas_volume_m3[axle],
+            "l",
+        );
+        row(&format!("damper factor, {name}"), best.case.damper_factor[axle], "");
+    }
+    if let Some(ride) = best.ride {
+        row("weighted RMS, mean of both seats", ride.mean_rms_m_s2(), "m/s2");
+        row(
+            "motion sickness dose, mean of both seats",
+            ride.mean_msdv_m_s1_5(),
+            "m/s^1.5",
+        );
+    }
+    if let Some(handling) = best.handling {
+        row("largest body roll", handling.max_roll_rad.to_degrees(), "degrees");
+    }
+    row(
+        "objective (reference 0.5 l, factor 1: sum of the weights)",
+        best.objective,
+        "",
+    );
+    row("points looked at", optimum.path.len() as f64, "");
+    row("simulations", optimum.runs as f64, "");
+    table
+}
+
+fn write(out: &mut OutputDirectory, optimum: &Optimum, table: &Table) -> Result<(), Failure> {
+    let column = |of: &dyn Fn(&Visit) -> f64| optimum.path.iter().map(of).collect::<Vec<f64>>();
+    let volume = [0, 1].map(|axle: usize| column(&|v| 1e3 * v.case.gas_volume_m3[axle]));
+    let factor = [0, 1].map(|axle: usize| column(&|v| v.case.damper_factor[axle]));
+    let objective = column(&|v| v.objective);
+    let number: Vec<f64> = (1..=optimum.path.len()).map(|i| i as f64).collect();
+    let best: Vec<f64> = objective
+        .iter()
+        .scan(f64::INFINITY, |best, value| {
+            *best = best.min(*value);
+            Some(*best)
+        })
+        .collect();
+    let nan = f64::NAN;
+    let rms = column(&|v| v.ride.map_or(nan, |ride| ride.mean_rms_m_s2()));
+    let dose = column(&|v| v.ride.map_or(nan, |ride| ride.mean_msdv_m_s1_5()));
+    let roll = column(&|v| v.handling.map_or(nan, |handling| handling.max_roll_rad.to_degrees()));
+    out.csv(
+        "path.csv",
+        &[
+            ("point", &number),
+            ("gas_volume_front_l", &volume[0]),
+            ("gas_volume_rear_l", &volume[1]),
+            ("damper_factor_front", &factor[0]),
+            ("damper_factor_rear", &factor[1]),
+            ("objective", &objective),
+            ("weighted_rms_m_s2", &rms),
+            ("msdv_m_s1_5", &dose),
+            ("max_roll_deg", &roll),
+        ],
+    )?;
+
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut page = Page::new("Design study: optimiser", &format!("oleo {}", arguments.join(" ")));
+    page.outcome(table.clone());
+    let mut path = Curves::new(
+        "Path of the search",
+        Axis::new("Static gas volume", "l")
+            .logarithmic()
+            .range(1e3 * GAS_VOLUMES_M3[0], 1e3 * GAS_VOLUMES_M3[9]),
+    );
+    path.caption("Every point looked at, in its order; the search begins with the reference case.");
+    let panel = path.panel(Axis::new("Damper factor", "").range(DAMPER_FACTORS[0] - 0.1, DAMPER_FACTORS[6] + 0.1));
+    panel.series(Style::LineAndPoints, "front", &volume[0], &factor[0]);
+    if volume[0] != volume[1] || factor[0] != factor[1] {
+        panel.series(Style::LineAndPoints, "rear", &volume[1], &factor[1]);
+    }
+    let case = optimum.best.case;
+    panel.series(
+        Style::Points,
+        "best",
+        &[1e3 * case.gas_volume_m3[0]],
+        &[case.damper_factor[0]],
+    );
+    let mut progress = Curves::new("Objective", Axis::new("Point", ""));
+    let panel = progress.panel(Axis::new("Objective", ""));
+    panel.series(Style::Points, "looked at", &number, &objective);
+    panel.series(Style::Step, "best so far", &number, &best);
+    page.section("Path").figure(path).figure(progress);
+    out.json(
+        "summary.json",
+        &json!({
+            "gas_volume_l": case.gas_volume_m3.map(|v| 1e3 * v),
+            "damper_factor": case.damper_factor,
+            "objective": optimum.best.objective,
+            "points": optimum.path.len(),
+            "simulations": optimum.runs,
+        }),
+    )?;
+    out.page(&page)?;
+    Ok(())
+}

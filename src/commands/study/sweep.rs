@@ -1,0 +1,241 @@
+//! `oleo study sweep`: figures 8 and 9, and the conclusions drawn from them.
+
+use std::io::Write as _;
+use std::process::ExitCode;
+
+use oleo_plant_sim::study::{DAMPER_FACTORS, Finding, GAS_VOLUMES_M3, Surface, findings, sweep};
+use oleo_report::interrupt::Graceful;
+use oleo_report::{Axis, Cell, Column, Field, FieldStyle, OutputDirectory, Page, Progress, Table, Verdict};
+use serde_json::json;
+
+use super::Drive;
+use crate::failure::Failure;
+
+/// Run 10 gas volumes x 7 damper factors over the Belgian block and through the lane change
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    drive: Drive,
+    /// Exit with status 1 where a conclusion of the report is not met
+    #[arg(long)]
+    check: bool,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode, Failure> {
+    let bench = args.drive.bench()?;
+    let out = args.drive.out.as_ref().map(OutputDirectory::stage).transpose()?;
+    let ledger = args.drive.ledger(&bench)?;
+    let progress = Progress::new("sweep", 2 * (GAS_VOLUMES_M3.len() * DAMPER_FACTORS.len()) as u64);
+    let surface = {
+        // The first Ctrl-C lets the runs in hand end and keeps them.
+        let graceful = Graceful::begin();
+        let (bench, ledger, progress, graceful) = (&bench, &ledger, &progress, &graceful);
+        args.drive.on_threads(move || {
+            let stop = || graceful.requested();
+            sweep(
+                bench,
+                ledger,
+                &GAS_VOLUMES_M3,
+                &DAMPER_FACTORS,
+                || progress.add(1),
+                stop,
+            )
+        })??
+    };
+    drop(progress);
+    let conclusions = findings(&surface);
+    let met = conclusions.iter().all(|finding| finding.met);
+
+    let table = conclusions_table(&conclusions);
+    if let Some(mut out) = out {
+        write(&mut out, &surface, &conclusions, &table, met)?;
+        out.commit()?;
+    }
+    let text = format!("{}{table}", grid_table(&surface));
+    // A closed standard output (`| head`) is no failure of the study.
+    let _ = std::io::stdout().write_all(text.as_bytes());
+    Ok(if args.check && !met {
+        ExitCode::FAILURE
+    } else {
+        ExitCode::SUCCESS
+    })
+}
+
+fn conclusions_table(conclusions: &[Finding]) -> Table {
+    let mut table = Table::new([
+        Column::text("The report says (3.2)"),
+        Column::text("Found"),
+        Column::text("Met"),
+    ]);
+    for finding in conclusions {
+        let cells: [Cell; 3] = [
+            finding.report.into(),
+            finding.found.as_str().into(),
+            Cell::check(finding.met),
+        ];
+        table.row(cells);
+    }
+    table
+}
+
+fn grid_table(surface: &Surface) -> Table {
+    let mut columns = vec![Column::text("Gas volume, l: RMS m/s2 | roll degrees at factor")];
+    columns.extend(
+        surface
+            .damper_factors
+            .iter()
+            .map(|factor| Column::number(&format!("{factor}"))),
+    );
+    let mut table = Table::new(columns);
+    for (i, volume) in surface.gas_volumes_m3.iter().enumerate() {
+        let mut row = vec![format!("{:.2}", 1e3 * volume)];
+        for j in 0..surface.damper_factors.len() {
+            let roll = match surface.handling[i][j].completed {
+                true => format!("{:.2}", surface.handling[i][j].max_roll_rad.to_degrees()),
+                false if surface.handling[i][j].rolled_over => "over".to_owned(),
+                false => "lost".to_owned(),
+            };
+            row.push(format!("{:.2} | {roll}", surface.ride[i][j].mean_rms_m_s2()));
+        }
+        table.row(row);
+    }
+    table
+}
+
+/// The field's rows are damper factors, its columns gas volumes.
+fn field(surface: &Surface, value: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
+    let columns = 0..surface.gas_volumes_m3.len();
+    (0..surface.damper_factors.len())
+        .map(|j| columns.clone().map(|i| value(i, j)).collect())
+        .collect()
+}
+
+fn write(
+    out: &mut OutputDirectory,
+    surface: &Surface,
+    conclusions: &[Finding],
+    table: &Table,
+    met: bool,
+) -> Result<(), Failure> {
+    let litres: Vec<f64> = surface.gas_volumes_m3.iter().map(|v| 1e3 * v).collect();
+    let factors = &surface.damper_factors;
+    let ride = |of: fn(&oleo_plant_sim::study::Ride) -> f64| {
+        field(surface, |i, j| {
+            if surface.ride[i][j].completed {
+                of(&surface.ride[i][j])
+            } else {
+                f64::NAN
+            }
+        })
+    };
+    let roll = field(surface, |i, j| match surface.handling[i][j].completed {
+        true => surface.handling[i][j].max_roll_rad.to_degrees(),
+        false => f64::NAN,
+    });
+    let axes = |quantity: &str, unit: &str| {
+        [
+            Axis::new("Static gas volume", "l").logarithmic(),
+            Axis::new("Damper factor", ""),
+            Axis::new(quantity, unit),
+        ]
+    };
+    let both = |title: &str, quantity: &str, unit: &str, values: &[Vec<f64>]| {
+        [FieldStyle::Surface, FieldStyle::Contour]
+            .map(|style| Field::new(title, style, axes(quantity, unit), &litres, factors, values))
+    };
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut page = Page::new(
+        "Design study: gas volume and damping",
+        &format!("oleo {}", arguments.join(" ")),
+    );
+    let verdict = if met { Verdict::Pass } else { Verdict::Fail };
+    let count = conclusions.iter().filter(|finding| finding.met).count();
+    page.verdict(
+        verdict,
+        &format!("{count} of {} conclusions of the report met", conclusions.len()),
+    );
+    page.outcome(table.clone());
+    page.section("Ride comfort (figure 8)").text(
+        "Belgian block at 60 km/h unless set otherwise, BS 6841 weighted vertical acceleration. Gaps: the vehicle did not \
+         stay on the road.",
+    );
+    for (title, values) in [
+        ("Weighted RMS at the driver", ride(|r| r.driver_rms_m_s2)),
+        (
+            "Weighted RMS at the left rear passenger",
+            ride(|r| r.passenger_rms_m_s2),
+        ),
+    ] {
+        for figure in both(title, "Weighted RMS", "m/s2", &values) {
+            page.figure(figure);
+        }
+    }
+    page.section("Motion sickness");
+    for figure in both(
+        "Motion sickness dose, mean of both seats",
+        "Dose",
+        "m/s^1.5",
+        &ride(|r| r.mean_msdv_m_s1_5()),
+    ) {
+        page.figure(figure);
+    }
+    page.section("Handling (figure 9)")
+        .text("Severe double lane change, ISO 3888-1. Gaps: rolled over, spun or left the track.");
+    for figure in both("Largest body roll angle", "Roll", "degrees", &roll) {
+        page.figure(figure);
+    }
+    page.details("All figures", grid_table(surface));
+
+    let cells: Vec<(usize, usize)> = (0..litres.len())
+        .flat_map(|i| (0..factors.len()).map(move |j| (i, j)))
+        .collect();
+    let column = |of: &dyn Fn(usize, usize) -> f64| cells.iter().map(|&(i, j)| of(i, j)).collect::<Vec<f64>>();
+    let flag = |b: bool| f64::from(u8::from(b));
+    let columns: [(&str, Vec<f64>); 11] = [
+        ("gas_volume_l", column(&|i, _| litres[i])),
+        ("damper_factor", column(&|_, j| factors[j])),
+        (
+            "driver_weighted_rms_m_s2",
+            column(&|i, j| surface.ride[i][j].driver_rms_m_s2),
+        ),
+        (
+            "passenger_weighted_rms_m_s2",
+            column(&|i, j| surface.ride[i][j].passenger_rms_m_s2),
+        ),
+        (
+            "driver_msdv_m_s1_5",
+            column(&|i, j| surface.ride[i][j].driver_msdv_m_s1_5),
+        ),
+        (
+            "passenger_msdv_m_s1_5",
+            column(&|i, j| surface.ride[i][j].passenger_msdv_m_s1_5),
+        ),
+        ("ride_completed", column(&|i, j| flag(surface.ride[i][j].completed))),
+        (
+            "max_roll_deg",
+            column(&|i, j| surface.handling[i][j].max_roll_rad.to_degrees()),
+        ),
+        (
+            "max_lateral_m_s2",
+            column(&|i, j| surface.handling[i][j].max_lateral_m_s2),
+        ),
+        (
+            "lane_change_completed",
+            column(&|i, j| flag(surface.handling[i][j].completed)),
+        ),
+        ("rolled_over", column(&|i, j| flag(surface.handling[i][j].rolled_over))),
+    ];
+    let columns: Vec<(&str, &[f64])> = columns
+        .iter()
+        .map(|(name, values)| (*name, values.as_slice()))
+        .collect();
+    out.csv("surfaces.csv", &columns)?;
+    let conclusions: Vec<_> = conclusions
+        .iter()
+        .map(|finding| json!({"report": finding.report, "found": finding.found, "met": finding.met}))
+        .collect();
+    out.json("summary.json", &json!({"conclusions": conclusions, "all_met": met}))?;
+    out.page(&page)?;
+    Ok(())
+}

@@ -44,6 +44,10 @@ pub struct Builder {
     pub guard_roll_rad: [f32; 2],
     /// Lateral surrogate that must come with it, m/s2.
     pub guard_lateral_m_s2: f32,
+    /// Body velocity over the running RMS of vertical acceleration that Karnopp's rule needs to act, s.
+    pub body_velocity_share_s: f32,
+    /// Body acceleration below 4 Hz over the running RMS that Hoelscher and Huang's rule needs to act.
+    pub body_acceleration_share: f32,
     /// Largest shift of the ride height that closing valve 3 may trap, m.
     pub trapped_shift_m: f32,
     /// Largest force step on opening valve 3, as a share of the static load.
@@ -69,8 +73,10 @@ impl Default for Builder {
             handling_floor_m_s2: [1.0, 0.6], // assumed: on a smooth straight both are near nothing
             guard_roll_rad: [0.08, 0.04],    // assumed: 4.6 and 2.3 degrees relative to the axles
             guard_lateral_m_s2: 3.0,         // assumed
-            trapped_shift_m: 0.008,          // assumed
-            opening_step_share: 0.05,        // assumed
+            body_velocity_share_s: 0.12,
+            body_acceleration_share: 0.8,
+            trapped_shift_m: 0.008,   // assumed
+            opening_step_share: 0.05, // assumed
         }
     }
 }
@@ -114,6 +120,8 @@ impl Builder {
             ("lateral_corner_hz", self.lateral_corner_hz, (0.1, 5.0)),
             ("running_rms_s", self.running_rms_s, (0.1, 20.0)),
             ("guard_lateral_m_s2", self.guard_lateral_m_s2, (0.5, 10.0)),
+            ("body_velocity_share_s", self.body_velocity_share_s, (0.0, 10.0)),
+            ("body_acceleration_share", self.body_acceleration_share, (0.0, 100.0)),
             ("trapped_shift_m", self.trapped_shift_m, (1e-4, 0.1)),
             ("opening_step_share", self.opening_step_share, (1e-3, 1.0)),
         ];
@@ -171,7 +179,7 @@ pub struct Configuration {
     pub(crate) per_pitch_gyration_2: f32,
     pub(crate) strut_speed: Derivative,
     pub(crate) pressure_rate: Derivative,
-    pub(crate) relative_speed: LowPass,
+    pub(crate) body_band: LowPass,
     pub(crate) static_load: LowPass,
     pub(crate) lateral: LowPass,
     pub(crate) lateral_bias: LowPass,
@@ -184,6 +192,8 @@ pub struct Configuration {
     pub(crate) handling_floor_2: [f32; 2],
     pub(crate) guard_roll_rad: [f32; 2],
     pub(crate) guard_lateral_m_s2: f32,
+    pub(crate) body_velocity_share_2: f32,
+    pub(crate) body_acceleration_share_2: f32,
     pub(crate) trapped_shift_m: f32,
     pub(crate) opening_step_share: f32,
 }
@@ -225,7 +235,7 @@ impl Configuration {
             // Slower than the strut speed: 5 kPa steps.
             pressure_rate: Derivative::from_corner_hz(8.0),
             // Body frequencies only: the valves cannot follow the wheel.
-            relative_speed: LowPass::from_corner_hz(4.0),
+            body_band: LowPass::from_corner_hz(4.0),
             static_load: LowPass::from_time_constant_s(20.0),
             lateral: LowPass::from_corner_hz(b.lateral_corner_hz),
             lateral_bias: LowPass::from_time_constant_s(30.0),
@@ -238,6 +248,8 @@ impl Configuration {
             handling_floor_2: b.handling_floor_m_s2.map(square),
             guard_roll_rad: b.guard_roll_rad,
             guard_lateral_m_s2: b.guard_lateral_m_s2,
+            body_velocity_share_2: square(b.body_velocity_share_s),
+            body_acceleration_share_2: square(b.body_acceleration_share),
             trapped_shift_m: b.trapped_shift_m,
             opening_step_share: b.opening_step_share,
         }

@@ -11,9 +11,10 @@ use crate::valves::ValveCommand;
 
 /// Step of a pressure signal, Pa.
 pub const PRESSURE_STEP_PA: f32 = 5_000.0;
-/// Pressure of raw value 0, Pa gauge: well below vacuum, so that a dead sensor is not mistaken for an empty strut.
-pub const PRESSURE_OFFSET_PA: f32 = -500_000.0;
-/// Largest raw pressure that is a measurement: 40.445 MPa.
+/// Pressure of raw value 0, Pa gauge. Far below vacuum on purpose: a dead sensor is not mistaken for an empty strut, and
+/// simulated oil, which knows no cavitation, can be sent as it is (a fast rebound pulls p1 some MPa below p2).
+pub const PRESSURE_OFFSET_PA: f32 = -5_000_000.0;
+/// Largest raw pressure that is a measurement: 35.945 MPa.
 pub const PRESSURE_RAW_MAX: u16 = 8_189;
 /// Raw pressure of a sensor that reports an error. 8191 is "not available".
 pub const PRESSURE_RAW_ERROR: u16 = 8_190;

@@ -12,7 +12,9 @@
 //! as described by Nell & Steyn (report, reference 16). Both *recalled*.
 //!
 //! Valves of 40 to 90 ms lag 14 to 65 degrees at 1 to 2 Hz and cannot follow the wheel at all, so `w` is lagged at 4 Hz and switching has
-//! a dead band and a least body motion: where the body hardly moves the damping stays low and the valves rest.
+//! a dead band and a least body motion: where the body hardly moves the damping stays low and the valves rest. The least motion grows with
+//! the running RMS of the vertical acceleration: a body that swings at 1.5 Hz has `v = a / 9.4 s`, so where the velocity is much less
+//! than that the acceleration comes from the wheels, and high damping would only pass on more of it.
 
 use super::DamperPolicy;
 use crate::configuration::Configuration;
@@ -20,10 +22,10 @@ use crate::estimate::Estimate;
 use crate::plausibility::Trusted;
 use crate::valves::CORNERS;
 
-/// Body velocity below which Karnopp's rule is not asked, m/s.
-const LEAST_VELOCITY_M_S: f32 = 0.08;
-/// Body acceleration below which Hoelscher and Huang's rule is not asked, m/s2.
-const LEAST_ACCELERATION_M_S2: f32 = 0.8;
+/// Square of the body velocity below which Karnopp's rule is not asked, m2/s2.
+const LEAST_VELOCITY_2: f32 = 0.08 * 0.08;
+/// Square of the body acceleration below which Hoelscher and Huang's rule is not asked, m2/s4.
+const LEAST_ACCELERATION_2: f32 = 0.5 * 0.5;
 /// Half width of the dead band of the relative speed, m/s.
 const DEAD_BAND_M_S: f32 = 0.02;
 /// Compression from which damping is high going further in, and extension from which it is high going further out, m: the stops are harder than any damper.
@@ -33,33 +35,42 @@ const NEAR_STOP_M: (f32, f32) = (0.06, 0.11);
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SemiActive {
     speed_m_s: [f32; CORNERS],
+    acceleration_m_s2: [f32; CORNERS],
     high: [bool; CORNERS],
 }
 
 impl SemiActive {
     /// One tick; low damping wanted, by corner.
     pub fn step(&mut self, c: &Configuration, estimate: &Estimate, trusted: &Trusted) -> [bool; CORNERS] {
-        for (((((lagged, high), speed), velocity), acceleration), x) in self
+        for ((((((lagged, lagged_acceleration), high), speed), velocity), acceleration), x) in self
             .speed_m_s
             .iter_mut()
+            .zip(&mut self.acceleration_m_s2)
             .zip(&mut self.high)
             .zip(estimate.strut_speed_m_s)
             .zip(estimate.corner_velocity_m_s)
             .zip(estimate.corner_acceleration_m_s2)
             .zip(trusted.displacement_m)
         {
-            let extension = -c.relative_speed.step(lagged, speed);
-            let (body, least) = match c.damper_policy {
-                DamperPolicy::Low => (0.0, LEAST_VELOCITY_M_S),
-                DamperPolicy::Karnopp => (velocity, LEAST_VELOCITY_M_S),
-                DamperPolicy::HoelscherHuang => (acceleration, LEAST_ACCELERATION_M_S2),
+            let extension = -c.body_band.step(lagged, speed);
+            let body_acceleration = c.body_band.step(lagged_acceleration, acceleration);
+            let (body, least_2) = match c.damper_policy {
+                DamperPolicy::Low => (0.0, f32::MAX),
+                DamperPolicy::Karnopp => (
+                    velocity,
+                    LEAST_VELOCITY_2.max(c.body_velocity_share_2 * estimate.vertical_mean_square),
+                ),
+                DamperPolicy::HoelscherHuang => (
+                    body_acceleration,
+                    LEAST_ACCELERATION_2.max(c.body_acceleration_share_2 * estimate.vertical_mean_square),
+                ),
             };
             let (jounce, rebound) = NEAR_STOP_M;
             let near_stop = (x > jounce && speed > 0.0) || (x < -rebound && speed < 0.0);
             let opposes = if body < 0.0 { -extension } else { extension };
             if near_stop {
                 *high = true;
-            } else if body.abs() < least || opposes < -DEAD_BAND_M_S {
+            } else if body * body < least_2 || opposes < -DEAD_BAND_M_S {
                 *high = false;
             } else if opposes > DEAD_BAND_M_S {
                 *high = true;

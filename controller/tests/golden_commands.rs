@@ -26,6 +26,10 @@ fn drive(tick_number: u32, struts: &mut [QuietStrut; 4], command: ValveCommand) 
     let mut pressure = [[0.0; 4]; 4];
     for (corner, side) in [-1.0, 1.0, -1.0, 1.0].into_iter().enumerate() {
         displacement[corner] = level * rough[corner] + 0.006 * side * lateral;
+        // A body on stiff springs settles where the trapped oil lets it.
+        if tick_number >= 2400 && !command.valve(corner, 2) {
+            displacement[corner] += struts[corner].rest_m();
+        }
         pressure[corner] = struts[corner].pressures(displacement[corner], command.valve(corner, 2));
         // The damper's share of p1, and the strut's share of the load transfer at the given roll.
         let damping = 0.3e6 * libm::cosf(8.2 * t + corner as f32);

@@ -30,6 +30,11 @@ impl Default for QuietStrut {
 }
 
 impl QuietStrut {
+    /// Displacement at which the strut carries its static load while valve 3 is closed: oil behind the valve lowers it.
+    pub fn rest_m(&self) -> f32 {
+        (VOLUME_M3[1] - self.gas2_m3) / AREA_M2
+    }
+
     /// Gauge pressures p1 to p4 at a displacement, compression positive.
     pub fn pressures(&mut self, displacement_m: f32, spring_open: bool) -> [f32; 4] {
         let oil_m3 = AREA_M2 * displacement_m;

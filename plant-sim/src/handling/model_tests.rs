@@ -228,7 +228,7 @@ fn understeer_gradient_is_the_bicycle_models() {
         p.body.front_mass_share = front_share;
         let loads = p.static_wheel_load_n();
         let [front, rear] = [0, 2].map(|corner: usize| {
-            let free = 0.389 + loads[corner] / 240_000.0;
+            let free = 0.382 + loads[corner] / 240_000.0;
             let tyre = handling.tyre.at(loads[corner], 0.0, free);
             (2.0 * tyre.cornering_stiffness_n_rad(), tyre.pneumatic_trail_m())
         });

@@ -99,6 +99,26 @@ fn slcan() {
 }
 
 #[test]
+fn candump() {
+    drive(
+        targets::candump,
+        &[b"(0000000001.005270) vcan0 110#0011223344556677\n(0000000002.005500) vcan0 1FFF01E0#R4\n(0000000003.1) can0 0A0#\n"],
+    );
+}
+
+#[test]
+fn scenario() {
+    drive(
+        targets::scenario,
+        &[
+            include_bytes!("../hil/scenarios/belgian.toml"),
+            include_bytes!("../hil/scenarios/nan.toml"),
+            include_bytes!("../hil/scenarios/corrupt-burst.toml"),
+        ],
+    );
+}
+
+#[test]
 fn road_crg() {
     let text = b"$ROAD_CRG\nreference_line_increment = 0.5\nlong_section_v_right = -1\nlong_section_v_left = 1\n$\n\
         $KD_DEFINITION\n#:LRFI\nD:long section 1,m\nD:long section 2,m\nD:long section 3,m\n$\n$$$$\n 0.0000000 0.0000000 0.0111111\n\

@@ -7,9 +7,11 @@
 use oleo_controller::can::{PlantEnd, SENSOR_MESSAGES};
 use oleo_controller::{Configuration, Node};
 use oleo_hil::bus::{SlcanDecoder, slcan_encode};
+use oleo_hil::candump::{parse_line, write_line};
 use oleo_plant_sim::road::{Road, crg, profile_from_csv};
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::VehicleParameters;
+use std::path::Path;
 
 /// A bus full of strangers: frames of any identifier, length and content, ticks in between.
 ///
@@ -45,6 +47,25 @@ pub fn slcan(bytes: &[u8]) {
         let mut second = SlcanDecoder::default();
         let again = slcan_encode(&frame).bytes().find_map(|byte| second.push(byte));
         assert_eq!(again, Some(frame));
+    }
+}
+
+/// Lines of a candump log. What is read is written and read again as the same.
+pub fn candump(bytes: &[u8]) {
+    for line in String::from_utf8_lossy(bytes).lines() {
+        let Some(entry) = parse_line(line) else { continue };
+        let mut written = Vec::new();
+        write_line(&mut written, entry.time_us, &entry.interface, &entry.frame).expect("memory takes it");
+        let written = String::from_utf8(written).expect("the format is ASCII and the interface was text");
+        assert_eq!(parse_line(&written), Some(entry), "{line}");
+    }
+}
+
+/// A scenario file.
+pub fn scenario(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    if let Err(error) = oleo_hil::scenario::file::parse(text, "any.toml", Path::new(".")) {
+        one_line(&error);
     }
 }
 

@@ -352,7 +352,7 @@ mod library {
             let a = equations.acceleration(&q, &v, tension, road).to_array();
             core::array::from_fn(|i| if i < 7 { x[7 + i] } else { a[i - 7] })
         };
-        let jacobian_rates = rates.clone();
+        let jacobian_rates = rates;
         let problem = OdeBuilder::<NalgebraMat<f64>>::new()
             .rtol(1e-9)
             .atol([1e-11])

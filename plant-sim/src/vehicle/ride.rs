@@ -167,7 +167,8 @@ impl<E: SuspensionElement> RideModel<E> {
         let needed = parameters.static_strut_load_n();
         for (corner, (element, needed_n)) in elements.iter().zip(needed).enumerate() {
             let carried_n = element.force_n();
-            if !((carried_n - needed_n).abs() <= STATIC_LOAD_TOLERANCE * needed_n) {
+            let missed_n = (carried_n - needed_n).abs();
+            if missed_n.is_nan() || missed_n > STATIC_LOAD_TOLERANCE * needed_n {
                 return Err(RideError::StaticLoad {
                     corner,
                     carried_n,

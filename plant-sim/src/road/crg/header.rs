@@ -49,7 +49,7 @@ struct Draft {
     defined: bool,
 }
 
-/// Largest grid that is accepted: 2e9 bytes of heights. A corrupt header must not exhaust the memory.
+/// Most rows that are accepted: a corrupt header must not exhaust the memory.
 const MAX_ROWS: f64 = 1e8;
 
 /// Reads the header.
@@ -183,14 +183,16 @@ fn finish(draft: Draft, data_start: usize, data_line: usize, path: &str) -> Resu
         .format
         .ok_or_else(|| fail("$KD_DEFINITION has no '#:' line with the data format".into()))?;
     let spacing_m = draft.increment.unwrap_or(0.01);
-    if !(spacing_m > 0.0) {
-        return Err(fail(format!("reference_line_increment {spacing_m} must be positive")));
+    if !(1e-6..=1e6).contains(&spacing_m) {
+        return Err(fail(format!(
+            "reference_line_increment {spacing_m} must lie between 1e-6 and 1e6 m"
+        )));
     }
     let (columns, lateral_m) = long_sections(&draft, path, header_line)?;
     let rows = match draft.end_u {
         Some(end) => {
             let rows = ((end - draft.start_u.unwrap_or(0.0)) / spacing_m).round() + 1.0;
-            if !(rows >= 2.0 && rows <= MAX_ROWS) {
+            if !(2.0..=MAX_ROWS).contains(&rows) {
                 return Err(fail(format!(
                     "reference_line_start_u, _end_u and _increment make {rows} rows"
                 )));
@@ -249,10 +251,10 @@ fn long_sections(draft: &Draft, path: &str, header_line: usize) -> Result<(Vec<u
         (Some(right), Some(left), _) if intervals > 0.0 => (left - right) / intervals,
         (_, _, increment) => increment.unwrap_or(0.01),
     };
-    if !(step > 0.0) {
+    if !(1e-6..=1e6).contains(&step) {
         return Err(fail(
             header_line,
-            "long_section_v_right, _left and _increment do not ascend".into(),
+            "long_section_v_right, _left and _increment do not ascend by 1e-6 to 1e6 m".into(),
         ));
     }
     let right = draft

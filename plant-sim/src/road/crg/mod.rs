@@ -52,8 +52,8 @@ fn fill_gaps(rows: Vec<f64>, header: &header::Header, path: &str) -> Result<Vec<
             }
             let (from, to) = (section[known], section[i]);
             let gap = (i - known) as f32;
-            for k in known + 1..i {
-                section[k] = from + (to - from) * ((k - known) as f32 / gap);
+            for (k, height) in section[known..i].iter_mut().enumerate().skip(1) {
+                *height = from + (to - from) * (k as f32 / gap);
             }
             known = i;
         }

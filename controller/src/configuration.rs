@@ -73,10 +73,10 @@ impl Default for Builder {
             handling_floor_m_s2: [1.0, 0.6], // assumed: on a smooth straight both are near nothing
             guard_roll_rad: [0.08, 0.04],    // assumed: 4.6 and 2.3 degrees relative to the axles
             guard_lateral_m_s2: 3.0,         // assumed
-            body_velocity_share_s: 0.12,
-            body_acceleration_share: 0.8,
-            trapped_shift_m: 0.008,   // assumed
-            opening_step_share: 0.05, // assumed
+            body_velocity_share_s: 0.35,     // measured: docs/controller.md
+            body_acceleration_share: 2.2,    // measured: docs/controller.md
+            trapped_shift_m: 0.008,          // assumed
+            opening_step_share: 0.05,        // assumed
         }
     }
 }

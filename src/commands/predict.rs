@@ -1,0 +1,242 @@
+//! `oleo predict`: what a model says the instruments should have read, from a recording's inputs alone.
+//!
+//! Displacement and switching signals are the inputs of a strut. A gas spring and a cylinder need one more thing that no
+//! model of theirs holds: the gas spring its first pressure (how much gas there is), the cylinder its pressures (it has no
+//! accumulator to make them).
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use oleo_plant_sim::rig::{Columns, RecordedStrut};
+use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, smooth_motion, specimen_name};
+use oleo_plant_sim::strut::{StrutModel, replay};
+use oleo_report::{Column, OutputDirectory, Table};
+
+use crate::failure::Failure;
+
+/// Simulate a recording's inputs with a model and write the recording's columns as predicted.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Example:\n  oleo predict --model found/model.toml campaign/slow_hold.csv --out slow_hold.sim.csv\n\n\
+                  Prints the noise ratio of each channel that was recorded: RMS of recording minus prediction over the\n\
+                  model's stated sensor noise; 1 is perfect."
+)]
+pub struct Args {
+    /// The model (model.toml): two-stage hydropneumatic strut, gas spring or cylinder
+    #[arg(long, value_name = "MODEL.toml")]
+    model: PathBuf,
+    /// The recording whose inputs are simulated
+    #[arg(value_name = "RECORDING.csv")]
+    recording: PathBuf,
+    /// File to write
+    #[arg(long, value_name = "SIM.csv")]
+    out: PathBuf,
+}
+
+/// A channel: its name, what was recorded, what is predicted, its stated noise.
+struct Channel {
+    name: String,
+    recorded: Option<Vec<f64>>,
+    predicted: Vec<f64>,
+    noise: Option<f64>,
+}
+
+/// Samples to either side that a cylinder's motion is smoothed over, as in its diagnosis.
+const CYLINDER_WINDOW: f64 = 5.0;
+
+/// Runs the command.
+pub fn run(args: Args) -> Result<ExitCode, Failure> {
+    let (model_file, file) = (args.model.display().to_string(), args.recording.display().to_string());
+    let text = std::fs::read_to_string(&args.model)
+        .map_err(|error| Failure::new(format!("{model_file}: cannot read the model: {error}; check the path")))?;
+    let source = File::open(&args.recording)
+        .map_err(|error| Failure::new(format!("{file}: cannot read the recording: {error}; check the path")))?;
+    let (folder, name) = place(&args.out)?;
+    let mut out = OutputDirectory::stage(&folder)?;
+
+    let kind = specimen_name(&text, &model_file).map_err(Failure::new)?.kind;
+    let (inputs, channels) = match kind.as_str() {
+        "gas spring" => gas_spring(&text, &model_file, source, &file)?,
+        "cylinder" => cylinder(&text, &model_file, source, &file)?,
+        _ => strut(&text, &model_file, source, &file)?,
+    };
+
+    let mut columns: Vec<(&str, &[f64])> = Vec::new();
+    let is_signal = |name: &str| name.starts_with("valve");
+    columns.extend(
+        inputs
+            .iter()
+            .filter(|input| !is_signal(&input.0))
+            .map(|input| (input.0.as_str(), input.1.as_slice())),
+    );
+    columns.extend(
+        channels
+            .iter()
+            .map(|channel| (channel.name.as_str(), channel.predicted.as_slice())),
+    );
+    columns.extend(
+        inputs
+            .iter()
+            .filter(|input| is_signal(&input.0))
+            .map(|input| (input.0.as_str(), input.1.as_slice())),
+    );
+    out.csv(&name, &columns)?;
+    out.commit()?;
+
+    let table = compare(&channels);
+    if !table.is_empty() {
+        let _ = std::io::Write::write_all(&mut std::io::stdout(), table.to_string().as_bytes());
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Inputs by name, in the order of a recording, and the channels predicted.
+type Predicted = (Vec<(String, Vec<f64>)>, Vec<Channel>);
+
+fn strut(text: &str, model_file: &str, source: File, file: &str) -> Result<Predicted, Failure> {
+    let model = StrutModel::from_toml(text, model_file)?;
+    let recording = RecordedStrut::read(source, file)?;
+    let noise = |name: &str| model.noise.get(name).copied();
+    let predicted = replay(&model, &recording.inputs(noise("displacement_m").unwrap_or(0.0)))?;
+    let signal = |valve: usize| {
+        recording
+            .signals
+            .iter()
+            .map(|signals| f64::from(u8::from(signals[valve])))
+            .collect()
+    };
+    let inputs = vec![
+        ("time_s".to_owned(), recording.time_s.clone()),
+        ("displacement_m".to_owned(), recording.displacement_m.clone()),
+        ("valve1".to_owned(), signal(0)),
+        ("valve2".to_owned(), signal(1)),
+        ("valve3".to_owned(), signal(2)),
+    ];
+    let mut channels = vec![Channel {
+        name: "force_N".into(),
+        recorded: recording.force_n,
+        predicted: predicted.force_n,
+        noise: noise("force_N"),
+    }];
+    let names = ["p1_Pa", "p2_Pa", "p3_Pa", "p4_Pa"];
+    for ((name, recorded), predicted) in names.into_iter().zip(recording.pressure_pa).zip(predicted.pressure_pa) {
+        channels.push(Channel {
+            name: name.into(),
+            recorded,
+            predicted,
+            noise: noise(name),
+        });
+    }
+    Ok((inputs, channels))
+}
+
+fn gas_spring(text: &str, model_file: &str, source: File, file: &str) -> Result<Predicted, Failure> {
+    let model = GasSpringModel::from_toml(text, model_file).map_err(Failure::new)?;
+    let recording = Columns::read(source, file, &["displacement_m", "p_Pa"], &[])?;
+    let (time, x) = (recording.time_s(), column(&recording, "displacement_m"));
+    let recorded = column(&recording, "p_Pa");
+    let pressure = model
+        .pressure_pa(time, x, recorded[0])
+        .map_err(|what| Failure::new(format!("{file}: {what}")))?;
+    let inputs = vec![
+        ("time_s".to_owned(), time.to_vec()),
+        ("displacement_m".to_owned(), x.to_vec()),
+    ];
+    let channel = Channel {
+        name: "p_Pa".into(),
+        recorded: Some(recorded.to_vec()),
+        predicted: model.shown(time, pressure),
+        noise: model.noise.get("p_Pa").copied(),
+    };
+    Ok((inputs, vec![channel]))
+}
+
+fn cylinder(text: &str, model_file: &str, source: File, file: &str) -> Result<Predicted, Failure> {
+    let model = CylinderModel::from_toml(text, model_file).map_err(Failure::new)?;
+    let mut needed = vec!["displacement_m"];
+    needed.extend(model.chamber.iter().map(|chamber| chamber.column.as_str()));
+    let recording = Columns::read(source, file, &needed, &["force_N"])?;
+    let (time, x) = (recording.time_s(), column(&recording, "displacement_m"));
+    let interval = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
+    let motion = smooth_motion(time, x, CYLINDER_WINDOW * interval);
+    let pressures: Vec<Vec<f64>> = model
+        .chamber
+        .iter()
+        .map(|chamber| column(&recording, &chamber.column).to_vec())
+        .collect();
+    let force = model.force_n(time, &motion, &pressures);
+    let mut inputs = vec![
+        ("time_s".to_owned(), time.to_vec()),
+        ("displacement_m".to_owned(), x.to_vec()),
+    ];
+    inputs.extend(
+        model
+            .chamber
+            .iter()
+            .map(|chamber| chamber.column.clone())
+            .zip(pressures),
+    );
+    let channel = Channel {
+        name: "force_N".into(),
+        recorded: recording.column("force_N").map(<[f64]>::to_vec),
+        predicted: model.shown(time, force),
+        noise: model.noise.get("force_N").copied(),
+    };
+    Ok((inputs, vec![channel]))
+}
+
+/// A column that was asked for as needed.
+fn column<'a>(recording: &'a Columns, name: &str) -> &'a [f64] {
+    recording.column(name).unwrap_or_default()
+}
+
+/// Noise ratio of each channel that was recorded.
+fn compare(channels: &[Channel]) -> Table {
+    let mut table = Table::new([
+        Column::text("Channel"),
+        Column::number("RMS of recording - prediction"),
+        Column::number("Stated noise"),
+        Column::number("Noise ratio"),
+    ]);
+    for channel in channels {
+        let Some(recorded) = &channel.recorded else { continue };
+        let pairs = recorded.iter().zip(&channel.predicted);
+        let rms = (pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>() / recorded.len() as f64).sqrt();
+        let noise = channel.noise.filter(|noise| *noise > 0.0);
+        table.row([
+            channel.name.clone(),
+            oleo_report::significant(rms, 4),
+            noise.map_or("-".into(), |noise| oleo_report::significant(noise, 3)),
+            noise.map_or("-".into(), |noise| format!("{:.2}", rms / noise)),
+        ]);
+    }
+    table
+}
+
+/// Folder and file name of `--out`.
+fn place(out: &Path) -> Result<(PathBuf, String), Failure> {
+    let bad = || {
+        Failure::new(format!(
+            "--out {}: name a file to write, such as sim.csv",
+            out.display()
+        ))
+    };
+    if out.is_dir() {
+        return Err(bad());
+    }
+    let name = out.file_name().and_then(|name| name.to_str()).ok_or_else(bad)?;
+    let folder = match out.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
+        _ => PathBuf::from("."),
+    };
+    if folder.is_dir() {
+        Ok((folder, name.to_owned()))
+    } else {
+        Err(Failure::new(format!(
+            "--out {}: the folder {} does not exist; create it first",
+            out.display(),
+            folder.display()
+        )))
+    }
+}

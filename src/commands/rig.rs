@@ -1,0 +1,46 @@
+//! `oleo rig`: the report's test rig, with the simulated strut in it. One file a measurement in `rig/`.
+
+mod bulk_modulus;
+mod damping;
+mod limits;
+mod replay;
+mod sheet;
+mod spring;
+mod valve_response;
+
+use std::process::ExitCode;
+
+use crate::failure::Failure;
+
+/// Measure the simulated strut as the prototype was measured on its test rig.
+#[derive(clap::Args)]
+#[command(
+    after_help = "Examples:\n  oleo rig spring --out spring\n  oleo rig damping --strut model.toml --out damping\n  \
+                  oleo rig limits --static-load 4000"
+)]
+pub struct Args {
+    #[command(subcommand)]
+    measurement: Measurement,
+}
+
+#[derive(clap::Subcommand)]
+enum Measurement {
+    Spring(spring::Args),
+    Damping(damping::Args),
+    BulkModulus(bulk_modulus::Args),
+    ValveResponse(valve_response::Args),
+    Replay(replay::Args),
+    Limits(limits::Args),
+}
+
+/// Runs the command.
+pub fn run(args: Args) -> Result<ExitCode, Failure> {
+    match args.measurement {
+        Measurement::Spring(args) => spring::run(&args),
+        Measurement::Damping(args) => damping::run(&args),
+        Measurement::BulkModulus(args) => bulk_modulus::run(&args),
+        Measurement::ValveResponse(args) => valve_response::run(&args),
+        Measurement::Replay(args) => replay::run(&args),
+        Measurement::Limits(args) => limits::run(&args),
+    }
+}

@@ -33,8 +33,14 @@ impl Bench {
             charge_pa: [CHARGE_PA; 4],
             ..Trusted::default()
         };
-        for corner in 0..4 {
-            trusted.pressure_pa[corner] = self.struts[corner].pressures(x[corner], self.open[corner]);
+        for (((pressure, strut), x), open) in trusted
+            .pressure_pa
+            .iter_mut()
+            .zip(&mut self.struts)
+            .zip(x)
+            .zip(self.open)
+        {
+            *pressure = strut.pressures(x, open);
         }
         self.open = self
             .springs

@@ -21,7 +21,7 @@
 //! stops that press past the oil are not in p1; axle roll on the tyres is missing from `phi`. Figures in `docs/controller.md`.
 
 use crate::configuration::Configuration;
-use crate::filter::DerivativeState;
+use crate::filter::{DerivativeState, at_least};
 use crate::plausibility::Trusted;
 use crate::valves::CORNERS;
 
@@ -120,7 +120,7 @@ impl State {
         }
         for (load, force) in self.static_load_n.iter_mut().zip(force) {
             // A strut without load (jacked up, empty) must not divide by nothing.
-            *load = c.static_load.step(load, force).max(1.0);
+            *load = at_least(c.static_load.step(load, force), 1.0);
         }
         let weight: f32 = self.static_load_n.iter().sum();
         let per_mass = GRAVITY_M_S2 / weight;

@@ -39,6 +39,11 @@ impl LowPass {
     }
 }
 
+/// The greater of a value and its bound. `f32::max` is a library call on a Cortex-M4F; this is three instructions. NaN gives the bound.
+pub(crate) fn at_least(value: f32, least: f32) -> f32 {
+    if value > least { value } else { least }
+}
+
 /// Derivative behind two first-order lags of the same corner: a plain difference would turn each 0.01 mm step of the displacement signal
 /// into 2 mm/s of speed.
 #[derive(Clone, Copy, Debug, PartialEq)]

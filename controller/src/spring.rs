@@ -21,7 +21,7 @@
 //! What an emergency traps is not bounded; it is reported ([`Springs::trapped_shift_m`]) and goes at the next opening.
 
 use crate::configuration::Configuration;
-use crate::filter::DerivativeState;
+use crate::filter::{DerivativeState, at_least};
 use crate::plausibility::Trusted;
 use crate::strategy::Urgency;
 use crate::timing::ticks;
@@ -63,7 +63,8 @@ pub struct Springs {
 }
 
 impl Springs {
-    /// One tick: whether valve 3 is to be open at each corner. `closed_by_force`: the mode machine keeps all closed.
+    /// One tick: whether valve 3 is to be open at each corner. Not to be called while the mode machine keeps all closed:
+    /// that is [`Springs::forced_closed`].
     pub fn step(
         &mut self,
         c: &Configuration,
@@ -145,14 +146,20 @@ impl Corner {
             self.waiting.saturating_add(1)
         };
         let [v1, v2] = c.gas_volume_m3;
-        let p1_ahead = (p1 + ATMOSPHERE_PA + AHEAD_S * c.pressure_rate.step(&mut self.p1_rate, p1)).max(LEAST_PA);
-        let p4_ahead = (p4 + ATMOSPHERE_PA + AHEAD_S * c.pressure_rate.step(&mut self.p4_rate, p4)).max(LEAST_PA);
+        let p1_ahead = at_least(
+            p1 + ATMOSPHERE_PA + AHEAD_S * c.pressure_rate.step(&mut self.p1_rate, p1),
+            LEAST_PA,
+        );
+        let p4_ahead = at_least(
+            p4 + ATMOSPHERE_PA + AHEAD_S * c.pressure_rate.step(&mut self.p4_rate, p4),
+            LEAST_PA,
+        );
         let gas4 = v2 * charge_pa / p4_ahead;
         self.trapped_shift_m = (v2 - gas4) * c.per_piston_area;
         if !self.open {
             let gas1 = v1 * charge_pa / p1_ahead;
             self.opening_step_n =
-                c.piston_area_m2 * (p4_ahead - p1_ahead) * gas4 / (gas1 + gas4).max(f32::MIN_POSITIVE);
+                c.piston_area_m2 * (p4_ahead - p1_ahead) * gas4 / at_least(gas1 + gas4, f32::MIN_POSITIVE);
         }
         if self.throttled
             && ((p3 - p4).abs() < EQUAL_PA && self.since >= SETTLE_TICKS || self.since >= LONGEST_THROTTLE_TICKS)

@@ -37,7 +37,7 @@ fn pressure_to_raw(reading: Reading) -> u64 {
     };
     let raw = libm::rintf((pressure_pa - PRESSURE_OFFSET_PA) / PRESSURE_STEP_PA);
     if raw >= 0.0 && raw <= f32::from(PRESSURE_RAW_MAX) {
-        raw as u64
+        u64::from(raw as u16)
     } else {
         u64::from(PRESSURE_RAW_ERROR)
     }
@@ -73,7 +73,7 @@ fn displacement_from_raw(raw: u64, status: u64) -> Reading {
 
 /// Non-negative, saturating.
 fn acceleration_to_raw(acceleration_m_s2: f32) -> u64 {
-    libm::rintf(acceleration_m_s2 / ACCELERATION_STEP_M_S2).clamp(0.0, 1023.0) as u64
+    u64::from(libm::rintf(acceleration_m_s2 / ACCELERATION_STEP_M_S2).clamp(0.0, 1023.0) as u16)
 }
 
 /// Pressures p1 to p4 of one strut, gauge, Pa. Resolution 5 kPa (9.8 N on the 50 mm piston).

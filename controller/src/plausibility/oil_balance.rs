@@ -15,6 +15,7 @@
 use super::{Verdicts, blame};
 use crate::configuration::Configuration;
 use crate::failsafe::FaultCode;
+use crate::filter::at_least;
 
 /// Standard atmosphere, Pa.
 pub const ATMOSPHERE_PA: f32 = 101_325.0;
@@ -51,7 +52,7 @@ impl OilBalance {
             .all(|&fault| fault == FaultCode::None);
         if measured {
             let [v1, v2] = c.gas_volume_m3;
-            let s = v1 / (p2 + ATMOSPHERE_PA).max(LEAST_PA) + v2 / (p4 + ATMOSPHERE_PA).max(LEAST_PA);
+            let s = v1 / at_least(p2 + ATMOSPHERE_PA, LEAST_PA) + v2 / at_least(p4 + ATMOSPHERE_PA, LEAST_PA);
             let now_pa = (v1 + v2 - c.piston_area_m2 * displacement_m) / s;
             if !self.started {
                 self.started = true;

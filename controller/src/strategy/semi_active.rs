@@ -19,6 +19,7 @@
 use super::DamperPolicy;
 use crate::configuration::Configuration;
 use crate::estimate::Estimate;
+use crate::filter::at_least;
 use crate::plausibility::Trusted;
 use crate::valves::CORNERS;
 
@@ -58,11 +59,17 @@ impl SemiActive {
                 DamperPolicy::Low => (0.0, f32::MAX),
                 DamperPolicy::Karnopp => (
                     velocity,
-                    LEAST_VELOCITY_2.max(c.body_velocity_share_2 * estimate.vertical_mean_square),
+                    at_least(
+                        c.body_velocity_share_2 * estimate.vertical_mean_square,
+                        LEAST_VELOCITY_2,
+                    ),
                 ),
                 DamperPolicy::HoelscherHuang => (
                     body_acceleration,
-                    LEAST_ACCELERATION_2.max(c.body_acceleration_share_2 * estimate.vertical_mean_square),
+                    at_least(
+                        c.body_acceleration_share_2 * estimate.vertical_mean_square,
+                        LEAST_ACCELERATION_2,
+                    ),
                 ),
             };
             let (jounce, rebound) = NEAR_STOP_M;

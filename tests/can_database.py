@@ -67,10 +67,10 @@ frame = db.get_message_by_name("PRESSURE_REAR_LEFT").encode(
 bits = int.from_bytes(frame, "little")
 check("pressure bits", bits == 1000 << 12 | 1400 << 25 | 3000 << 38 | 8190 << 51)
 
-# AUTOSAR protocol example of profile 2: zeros, counter 1, data ids 1 to 16.
+# The vector of controller/tests/end_to_end_protection.rs: zeros, counter 1, data ids 1 to 16.
 example = bytearray([0, 1, 0, 0, 0, 0, 0, 0])
 e2e.p02.e2e_p02_protect(example, bytes(range(1, 17)), increment_counter=False)
-check("published example", example[0] == 0x1B)
+check("vector of the Rust tests", example[0] == 0x1B)
 
 for rate in (500e3, 1e6):
     load = bits_a_second / rate

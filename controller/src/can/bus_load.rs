@@ -2,7 +2,7 @@
 //!
 //! Worst-case length of a data frame with an 11-bit identifier and n bytes, with stuff bits and the
 //! interframe space, in bit times (Davis, Burns, Bril & Lukkien, "Controller Area Network (CAN) schedulability analysis:
-//! refuted, revisited and revised", Real-Time Systems 35, 2007, equation 1, g = 34):
+//! refuted, revisited and revised", Real-Time Systems 35, 2007, g = 34; *recalled*):
 //!
 //! ```text
 //!   C = g + 8 n + 13 + floor((g + 8 n - 1) / 4)        135 bits for n = 8

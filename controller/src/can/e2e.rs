@@ -3,7 +3,7 @@
 //! CAN's own CRC protects a frame on the wire; it does not see a frame that was stored twice, sent by the wrong node, or
 //! frozen in a gateway. Profile 2 adds an 8-bit CRC with polynomial 0x2F over counter, payload and a data identifier which is not sent, and a
 //! 4-bit counter.
-//! Source: AUTOSAR FO R20-11, "E2E Protocol Specification" (document 849), profile 2; CRC8H2F of "Specification of CRC
+//! Source (*recalled*, held against the Python package `autosar-e2e`): AUTOSAR FO R20-11, "E2E Protocol Specification" (document 849), profile 2; CRC8H2F of "Specification of CRC
 //! Routines" (start 0xFF, final XOR 0xFF; check value of "123456789" 0xDF). Layout: byte 0 CRC, low nibble of byte 1 the counter.
 //!
 //! ```text

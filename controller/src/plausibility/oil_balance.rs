@@ -9,7 +9,7 @@
 //!
 //! which holds for any valve position and any load, also with oil trapped behind valve 3. `k` is not configured but learnt
 //! while the controller starts, from the same equation, and then follows the gas temperature slowly (60 s). What remains, lagged by 1 s,
-//! is within about 15 mm for real, warm nitrogen; 40 mm for 40 ticks condemns the displacement reading. A charge outside
+//! is expected within 25 mm (gas 30 K warmer: 10 % of 0.255 m); 40 mm for 40 ticks condemns the displacement reading. A charge outside
 //! 0.3 to 15 MPa is not a suspension.
 
 use super::{Verdicts, blame};

@@ -1,7 +1,7 @@
 //! The pressures of one strut against each other.
 //!
 //! At rest p1 = p2 = p3, and = p4 behind an open valve 3: dampers and orifices take pressure only from moving oil. In motion the *means* over
-//! a second still agree but for the asymmetry of the damper packs (rebound takes about twice jounce: up to some 0.4 MPa on Belgian block).
+//! a second still agree but for the asymmetry of the damper packs (rebound takes about twice jounce: estimated 0.4 MPa at 0.5 m/s).
 //! So lagged pressures are compared, and the one that is more than 1 MPa off two that agree is wrong. An offset of
 //! `d` is seen after `tau ln(d / (d - 1 MPa))` and 40 ticks of confirmation: 1.1 s for 1.7 MPa, 0.5 s for 4 MPa.
 //! Smaller offsets are not seen by this check.

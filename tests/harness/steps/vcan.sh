@@ -4,19 +4,32 @@
 readonly with_vcan=tests/harness/with-vcan.sh
 
 packages iproute2 can-utils
-OLEO_VCAN_BY=namespace $with_vcan true > /dev/null 2>&1 || packages user-mode-linux busybox-static
+OLEO_VCAN_BY=namespace "$with_vcan" true > /dev/null 2>&1 || packages user-mode-linux busybox-static
 
 # shellcheck disable=SC2016
 loopback='candump -n 1 vcan0 > "$0" & sleep 0.3; cansend vcan0 123#DEADBEEF; wait $!; grep "DE AD BE EF" "$0"'
-check "frames cross vcan0" $with_vcan bash -c "$loopback" "$OLEO_LOGS/candump" || exit 0
+check "frames cross vcan0" "$with_vcan" bash -c "$loopback" "$OLEO_LOGS/candump" || exit 0
 
 # Built out here, run in there: the emulated kernel has no network and one processor.
 cargo test --locked --release --test vcan --no-run > "$OLEO_LOGS/vcan.build.log" 2>&1
 binary=$(sed -n 's/.*Executable tests\/vcan.rs (\(.*\))/\1/p' "$OLEO_LOGS/vcan.build.log")
 if [ -x "$binary" ]; then
-    libtest "vcan tests" $with_vcan "$binary" --test-threads=1 --show-output
+    libtest "vcan tests" "$with_vcan" "$binary" --test-threads=1 --show-output
 else
     fail "tests/vcan.rs" "does not build"
     tail -n 40 "$OLEO_LOGS/vcan.build.log"
 fi
+
+# The same valve words whatever carries the frames.
+oleo=$CARGO_TARGET_DIR/release/oleo
+same_on_vcan() {
+    local here there
+    here=$(tests/harness/hil-hash.sh "$oleo" "$OLEO_LOGS/hil-inproc")
+    there=$("$with_vcan" tests/harness/hil-hash.sh "$oleo" "$OLEO_LOGS/hil-vcan" --bus socketcan:vcan0)
+    echo "in process $here, on vcan0 $there"
+    [ -n "$here" ] && [ "$here" = "$there" ]
+}
+check "release build" cargo build --locked --quiet --release
+check "hil on vcan0 commands what hil in process commands" same_on_vcan
+sed 's/^/   /' "$log"
 exit 0

@@ -11,6 +11,8 @@ pub struct Finding {
     pub found: String,
     /// They agree.
     pub met: bool,
+    /// A conclusion the report draws, which a check holds the sweep to; else an observation beside it.
+    pub conclusion: bool,
 }
 
 /// Roll may spread this much over the damper factors, of its spread over the volumes, and still be "insensitive".
@@ -39,11 +41,13 @@ pub fn findings(surface: &Surface) -> Vec<Finding> {
             report: "lowest acceleration with low damping (damper scale factor of 0.8) ...",
             found: format!("lowest mean weighted RMS {:.3} m/s2 at factor {factor}", rms(i, j)),
             met: factor <= 0.8 + 1e-9,
+            conclusion: true,
         });
         list.push(Finding {
             report: "... and soft springs (static gas volume > 0.5 liters)",
             found: format!("lowest at {:.2} l", 1e3 * volume),
             met: volume > 5e-4 + 1e-12,
+            conclusion: true,
         });
     }
 
@@ -66,6 +70,7 @@ pub fn findings(surface: &Surface) -> Vec<Finding> {
                 1e3 * surface.gas_volumes_m3[soft]
             ),
             met: sick(soft) > sick(half),
+            conclusion: true,
         });
     }
 
@@ -79,6 +84,7 @@ pub fn findings(surface: &Surface) -> Vec<Finding> {
             report: "smallest body roll angle with the stiffest spring (static gas volume of 0.01 liter)",
             found: format!("smallest {:.2} degrees at {:.3} l", roll(i, j), 1e3 * volume),
             met: i == 0,
+            conclusion: true,
         });
     }
     let range = |values: &mut dyn Iterator<Item = f64>| {
@@ -108,6 +114,7 @@ pub fn findings(surface: &Surface) -> Vec<Finding> {
                 high - low
             ),
             met: over_factors < INSENSITIVE * (high - low),
+            conclusion: true,
         });
     }
     let gaps = cells().filter(|&(i, j, ..)| !done(i, j)).count();
@@ -116,6 +123,7 @@ pub fn findings(surface: &Surface) -> Vec<Finding> {
         report: "gaps in the graph are where the vehicle could not complete the lane change without rolling over",
         found: format!("{gaps} gaps, {rolled} of them roll-overs"),
         met: gaps > 0 && gaps == rolled,
+        conclusion: false,
     });
     list
 }

@@ -45,7 +45,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     };
     drop(progress);
     let conclusions = findings(&surface);
-    let met = conclusions.iter().all(|finding| finding.met);
+    let met = conclusions.iter().all(|finding| finding.met || !finding.conclusion);
 
     let table = conclusions_table(&conclusions);
     if let Some(mut out) = out {
@@ -150,10 +150,11 @@ fn write(
         &format!("oleo {}", arguments.join(" ")),
     );
     let verdict = if met { Verdict::Pass } else { Verdict::Fail };
-    let count = conclusions.iter().filter(|finding| finding.met).count();
+    let decisive = || conclusions.iter().filter(|finding| finding.conclusion);
+    let count = decisive().filter(|finding| finding.met).count();
     page.verdict(
         verdict,
-        &format!("{count} of {} conclusions of the report met", conclusions.len()),
+        &format!("{count} of {} conclusions of the report met", decisive().count()),
     );
     page.outcome(table.clone());
     page.section("Ride comfort (figure 8)").text(
@@ -233,7 +234,7 @@ fn write(
     out.csv("surfaces.csv", &columns)?;
     let conclusions: Vec<_> = conclusions
         .iter()
-        .map(|finding| json!({"report": finding.report, "found": finding.found, "met": finding.met}))
+        .map(|finding| json!({"report": finding.report, "found": finding.found, "met": finding.met, "conclusion": finding.conclusion}))
         .collect();
     out.json("summary.json", &json!({"conclusions": conclusions, "all_met": met}))?;
     out.page(&page)?;

@@ -1,0 +1,135 @@
+//! `oleo drive` and `oleo study` as a user meets them: files whole, the same on any number of threads, one clear line on
+//! bad input.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn oleo(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_oleo"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+fn summary(folder: &Path) -> serde_json::Value {
+    let file = std::fs::read_to_string(folder.join("summary.json")).expect("a summary");
+    serde_json::from_str(&file).expect("JSON")
+}
+
+#[test]
+fn every_manoeuvre_leaves_table_data_summary_and_page() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, more) in [
+        ("lane-change", &["--setting", "controlled"][..]),
+        ("lane-change-2", &["--setting", "stiff", "--speed-km-h", "50"]),
+        ("step-steer", &["--setting", "baseline", "--duration-s", "4"]),
+        (
+            "constant-radius",
+            &["--setting", "baseline", "--duration-s", "20", "--speed-km-h", "40"],
+        ),
+        (
+            "belgian",
+            &["--model", "both", "--setting", "baseline", "--duration-s", "3"],
+        ),
+        ("bump", &["--model", "both", "--setting", "soft", "--speed-km-h", "10"]),
+        ("straight", &["--model", "ride", "--road", "iso-d", "--duration-s", "3"]),
+    ] {
+        let arguments = [&["drive", "--manoeuvre", name, "--out", name], more].concat();
+        let run = oleo(folder.path(), &arguments);
+        assert!(run.status.success(), "{name}: {}", text(&run.stderr));
+        assert!(text(&run.stdout).contains("completed"), "{name}: {}", text(&run.stdout));
+        assert!(run.stderr.is_empty(), "{name}: {}", text(&run.stderr));
+        let out = folder.path().join(name);
+        summary(&out);
+        let page = std::fs::metadata(out.join("report.html")).expect("a page");
+        assert!(page.len() < 8_000_000, "{name}: {} bytes", page.len());
+        let data = if name == "straight" {
+            "ride-model.csv"
+        } else {
+            "handling-model.csv"
+        };
+        assert!(out.join(data).exists(), "{name}");
+    }
+}
+
+#[test]
+fn bad_input_is_one_line_and_nothing_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(folder.path().join("car.toml"), "name = \"x\"\n").expect("a file");
+    for (arguments, says) in [
+        (
+            &["drive", "--manoeuvre", "lane-change", "--model", "ride", "--out", "o"][..],
+            "does not steer",
+        ),
+        (
+            &["drive", "--manoeuvre", "straight", "--road", "mars", "--out", "o"],
+            "mars",
+        ),
+        (
+            &["drive", "--manoeuvre", "belgian", "--speed-km-h", "-3", "--out", "o"],
+            "speed-km-h",
+        ),
+        (
+            &["drive", "--manoeuvre", "belgian", "--vehicle", "car.toml", "--out", "o"],
+            "car.toml:1",
+        ),
+        (
+            &[
+                "drive",
+                "--manoeuvre",
+                "belgian",
+                "--handling",
+                "none.toml",
+                "--out",
+                "o",
+            ],
+            "none.toml",
+        ),
+        (&["study", "optimise", "--ride", "-1", "--out", "o"], "--ride"),
+    ] {
+        let run = oleo(folder.path(), arguments);
+        let line = text(&run.stderr);
+        assert_eq!(run.status.code(), Some(2), "{arguments:?}: {line}");
+        assert_eq!(line.trim_end().lines().count(), 1, "{line}");
+        assert!(line.contains(says), "{line}");
+        assert!(!folder.path().join("o").exists(), "{arguments:?}");
+    }
+}
+
+#[test]
+fn the_optimiser_shares_finished_runs_and_does_not_depend_on_threads() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let optimise = |out: &str, threads: &str| {
+        let arguments = [
+            "study",
+            "optimise",
+            "--duration-s",
+            "3",
+            "--iterations",
+            "2",
+            "--roll",
+            "1",
+            "--out",
+            out,
+        ];
+        let run = oleo(folder.path(), &[&arguments[..], &["--threads", threads]].concat());
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        (
+            summary(&folder.path().join(out)),
+            std::fs::read(folder.path().join(out).join("path.csv")).expect("a path"),
+        )
+    };
+    let one = optimise("one", "1");
+    assert_eq!(one, optimise("two", "2"));
+    let before = std::fs::read(folder.path().join("one").join("runs.csv")).expect("finished runs");
+    assert_eq!(one, optimise("one", "2"));
+    assert_eq!(
+        before,
+        std::fs::read(folder.path().join("one").join("runs.csv")).expect("finished runs")
+    );
+}

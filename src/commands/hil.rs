@@ -1,14 +1,282 @@
-//! `oleo hil`: the loop of controller and plant over a CAN bus.
+//! `oleo hil`: reads what is to be run, lets `oleo_hil` run it, writes what it leaves.
 
+use std::io::Write as _;
+use std::path::PathBuf;
 use std::process::ExitCode;
+
+use oleo_controller::strategy::{DamperPolicy, Strategy};
+use oleo_hil::bus::BusAddress;
+use oleo_hil::metrics::Metrics;
+use oleo_hil::output::{self, Summary};
+use oleo_hil::record::{command_hash, fault_name, mode_name};
+use oleo_hil::run::{self, ControllerOutcome, Outcome, Plant};
+use oleo_hil::scenario::{self, Clock, Scenario, TICK_S};
+use oleo_hil::{page, sync::Role};
+use oleo_report::{Column, OutputDirectory, Progress, Table, interrupt::Graceful, significant};
 
 use crate::failure::Failure;
 
 /// Drive the vehicle with controller and plant talking only through CAN frames.
+///
+/// Without arguments: 20 s of Belgian block at 60 km/h with the ride/handling strategy, in this process, as fast as it goes.
 #[derive(clap::Args)]
-pub struct Args {}
+#[command(after_help = "\
+Examples:
+  oleo hil --out belgian                                    the default scenario, with report.html
+  oleo hil --scenario bus-silence                           a built-in fault scenario (--list names them)
+  oleo hil --road ../shared/roads/belgian_block.crg         on a measured surface
+  oleo hil --bus socketcan:vcan0                            over a real CAN interface
+  oleo hil --clock realtime --duration 5                    against the wall clock
+  oleo hil --node controller --bus socketcan:vcan0          two processes, in either order:
+  oleo hil --node plant --bus socketcan:vcan0 --out run
+
+Exit status: 0 all checks met; 1 a check failed or the plant was lost; 2 bad input.")]
+pub struct Args {
+    /// Built-in scenario or a TOML file
+    #[arg(long, value_name = "FILE|NAME", default_value = "belgian")]
+    scenario: String,
+    /// List the built-in scenarios and end
+    #[arg(long)]
+    list: bool,
+    /// Where frames go: inproc, socketcan:IFACE, slcan:DEVICE, slcan:tcp:HOST:PORT
+    #[arg(long)]
+    bus: Option<String>,
+    /// How time passes: lockstep or realtime
+    #[arg(long)]
+    clock: Option<String>,
+    /// Built-in road (belgian, apg-left, iso-c, flat, ...) or a .crg or .csv file
+    #[arg(long, value_name = "FILE|NAME")]
+    road: Option<String>,
+    /// Forward speed, km/h
+    #[arg(long, value_name = "KM_H")]
+    speed: Option<f64>,
+    /// Simulated time, s
+    #[arg(long, value_name = "S")]
+    duration: Option<f64>,
+    /// always-soft, always-stiff or ride-handling
+    #[arg(long, value_name = "NAME")]
+    strategy: Option<String>,
+    /// Dampers in ride mode: low, karnopp or hoelscher-huang
+    #[arg(long, value_name = "NAME")]
+    damper_policy: Option<String>,
+    /// Strut model, as oleo diagnose writes it
+    #[arg(long, value_name = "MODEL.toml")]
+    strut: Option<String>,
+    /// Vehicle parameters
+    #[arg(long, value_name = "VEHICLE.toml")]
+    vehicle: Option<String>,
+    /// Of random roads and injected faults
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Run only this node; the other one is another process on the same bus
+    #[arg(long, value_parser = ["plant", "controller"])]
+    node: Option<String>,
+    /// Threads for the two nodes, 1 or 2 (real time always takes 2)
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=2))]
+    threads: u8,
+    /// Folder for summary.json, timeseries.csv, candump.log, junit.xml and report.html
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
 
 /// Runs the command.
-pub fn run(_args: Args) -> Result<ExitCode, Failure> {
+pub fn run(args: Args) -> Result<ExitCode, Failure> {
+    if args.list {
+        return list();
+    }
+    let scenario = chosen(&args)?;
+    if args.node.as_deref() == Some("controller") {
+        return controller(&scenario, args.out);
+    }
+    // Refused before the run, not after it.
+    let staged = args.out.as_ref().map(OutputDirectory::stage).transpose()?;
+    let plant = Plant::build(&scenario)?;
+    let progress = Progress::new(&scenario.name, scenario.ticks.into());
+    // In real time Ctrl-C ends the run in order; what has been driven is reported.
+    let graceful = (scenario.clock == Clock::RealTime).then(Graceful::begin);
+    let mut watch = |ticks: u32| {
+        progress.set(ticks.into());
+        !graceful.as_ref().is_some_and(Graceful::requested)
+    };
+    let outcome = match args.node {
+        Some(_) => run::plant_alone(&scenario, plant, &mut watch)?,
+        None => run::both(&scenario, plant, args.threads.into(), &mut watch)?,
+    };
+    drop(progress);
+    report(&scenario, &outcome, staged)
+}
+
+fn list() -> Result<ExitCode, Failure> {
+    let mut table = Table::new([Column::text("Scenario"), Column::text("What it shows")]);
+    for (name, _) in scenario::BUILT_IN {
+        table.row([name.to_string(), scenario::named(name)?.description]);
+    }
+    say(&table.to_string());
     Ok(ExitCode::SUCCESS)
+}
+
+/// The scenario with what the command line changes.
+fn chosen(args: &Args) -> Result<Scenario, Failure> {
+    let mut chosen = scenario::named(&args.scenario)?;
+    let own = |given: &Option<String>, value: &mut String| {
+        if let Some(given) = given {
+            value.clone_from(given);
+        }
+    };
+    own(&args.road, &mut chosen.road);
+    own(&args.strut, &mut chosen.strut);
+    own(&args.vehicle, &mut chosen.vehicle);
+    if let Some(bus) = &args.bus {
+        chosen.bus = bus
+            .parse::<BusAddress>()
+            .map_err(|e| Failure::new(format!("--bus: {e}")))?;
+    }
+    if let Some(clock) = &args.clock {
+        chosen.clock = by_name("--clock", clock, &Clock::ALL)?;
+    }
+    if let Some(strategy) = &args.strategy {
+        chosen.strategy = by_name("--strategy", strategy, &Strategy::ALL)?;
+    }
+    if let Some(policy) = &args.damper_policy {
+        chosen.damper_policy = by_name("--damper-policy", policy, &DamperPolicy::ALL)?;
+    }
+    if let Some(speed_km_h) = args.speed {
+        chosen.speed_m_s = within("--speed", speed_km_h, 0.0, scenario::file::FASTEST_KM_H)? / 3.6;
+    }
+    if let Some(duration_s) = args.duration {
+        chosen.ticks = (within("--duration", duration_s, TICK_S, scenario::file::LONGEST_S)? / TICK_S).round() as u32;
+    }
+    if let Some(seed) = args.seed {
+        chosen.seed = seed;
+    }
+    Ok(chosen)
+}
+
+fn by_name<T: Copy>(option: &str, name: &str, all: &[(&str, T)]) -> Result<T, Failure> {
+    all.iter()
+        .find_map(|(n, value)| (*n == name).then_some(*value))
+        .ok_or_else(|| {
+            let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
+            Failure::new(format!("{option} {name}: must be one of {}", names.join(", ")))
+        })
+}
+
+fn within(option: &str, value: f64, low: f64, high: f64) -> Result<f64, Failure> {
+    if (low..=high).contains(&value) {
+        return Ok(value);
+    }
+    Err(Failure::new(format!("{option} {value}: must be from {low} to {high}")))
+}
+
+fn report(scenario: &Scenario, outcome: &Outcome, staged: Option<OutputDirectory>) -> Result<ExitCode, Failure> {
+    let metrics = Metrics::of(scenario, outcome);
+    let summary = Summary::of(scenario, outcome, &metrics);
+    say(&page::outcome_table(&summary).to_string());
+    if !summary.checks.is_empty() {
+        say(&page::check_table(&summary).to_string());
+    }
+    if let Some(mut out) = staged {
+        output::write(&mut out, scenario, outcome, &metrics, &summary)?;
+        out.page(&page::page(scenario, outcome, &metrics, &summary, &command_line()))?;
+        let folder = out.commit()?;
+        say(&format!("{}\n", folder.join("report.html").display()));
+    }
+    Ok(if summary.passed() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+/// The command as it was given, for the page.
+fn command_line() -> String {
+    let words = std::env::args()
+        .skip(1)
+        .map(|word| if word.contains(' ') { format!("{word:?}") } else { word });
+    std::iter::once("oleo".to_owned())
+        .chain(words)
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+/// The controller's node: no plant, no road; its account of the run goes to standard output and, if wanted, to `summary.json`.
+fn controller(scenario: &Scenario, out: Option<PathBuf>) -> Result<ExitCode, Failure> {
+    let staged = out.map(OutputDirectory::stage).transpose()?;
+    let ended = run::controller_alone(scenario)?;
+    let mut table = Table::new([Column::text("Quantity"), Column::number("Value")]);
+    table.row(["node".to_owned(), Role::Controller.name().to_owned()]);
+    table.row(["ticks".to_owned(), ended.words.len().to_string()]);
+    table.row(["command hash".to_owned(), command_hash(ended.words.iter().copied())]);
+    table.row(["wall clock, s".to_owned(), significant(ended.wall_s, 3)]);
+    table.row(["frames lost".to_owned(), ended.frames_lost.to_string()]);
+    table.row(["end-to-end errors".to_owned(), ended.e2e_errors.to_string()]);
+    for (tick, mode, fault) in &ended.account {
+        let cause = if *mode == oleo_controller::Mode::Normal {
+            ""
+        } else {
+            fault_name(*fault)
+        };
+        table.row([
+            format!("tick {tick}: mode"),
+            format!("{} {cause}", mode_name(*mode)).trim_end().to_owned(),
+        ]);
+    }
+    if let Some(late) = &ended.lateness {
+        let figures = format!("{} / {} / {}", late.p50_us, late.p99_us, late.max_us);
+        table.row(["late, median / p99 / worst, us".to_owned(), figures]);
+        table.row(["overruns".to_owned(), late.overruns.to_string()]);
+    }
+    say(&table.to_string());
+    if let Some(mut out) = staged {
+        out.json("summary.json", &controller_summary(&ended))?;
+        out.commit()?;
+    }
+    let Some((last, taken)) = ended.plant_lost else {
+        return Ok(ExitCode::SUCCESS);
+    };
+    let answer = match taken {
+        Some(ticks) => format!("mode safe and all valves closed {ticks} ticks later"),
+        None => "it had not left start-up, all valves were closed".into(),
+    };
+    let _ = writeln!(std::io::stderr(), "the plant fell silent after tick {last}: {answer}");
+    Ok(ExitCode::FAILURE)
+}
+
+#[derive(serde::Serialize)]
+struct ControllerSummary {
+    schema: u32,
+    node: &'static str,
+    ticks: usize,
+    wall_s: f64,
+    command_hash: String,
+    frames_lost: u64,
+    e2e_errors: u64,
+    modes: Vec<output::ModeEntry>,
+    plant_lost_after_tick: Option<u32>,
+    ticks_to_safe: Option<u32>,
+}
+
+fn controller_summary(ended: &ControllerOutcome) -> ControllerSummary {
+    let entry = |(tick, mode, fault): &(u32, _, _)| output::ModeEntry {
+        tick: *tick,
+        mode: mode_name(*mode),
+        fault: fault_name(*fault),
+    };
+    ControllerSummary {
+        schema: 1,
+        node: Role::Controller.name(),
+        ticks: ended.words.len(),
+        wall_s: ended.wall_s,
+        command_hash: command_hash(ended.words.iter().copied()),
+        frames_lost: ended.frames_lost,
+        e2e_errors: ended.e2e_errors,
+        modes: ended.account.iter().map(entry).collect(),
+        plant_lost_after_tick: ended.plant_lost.map(|(last, _)| last),
+        ticks_to_safe: ended.plant_lost.and_then(|(_, taken)| taken),
+    }
+}
+
+/// A reader that went away (`oleo hil | head`) is no failure.
+fn say(text: &str) {
+    let _ = std::io::stdout().write_all(text.as_bytes());
 }

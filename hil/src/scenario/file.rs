@@ -16,9 +16,9 @@ use crate::bus::{Disturbance, Target};
 use crate::sync::Role;
 
 /// Longest run, s: an hour, so that a slip of a zero does not fill the memory.
-const LONGEST_S: f64 = 3600.0;
+pub const LONGEST_S: f64 = 3600.0;
 /// Fastest vehicle, km/h.
-const FASTEST_KM_H: f64 = 250.0;
+pub const FASTEST_KM_H: f64 = 250.0;
 
 /// A scenario that cannot be run.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,0 +1,256 @@
+//! A recording to figures: ride measures, extremes, and how many ticks the answer to a fault took.
+//!
+//! Everything here is a function of what the run left in memory, so that it costs the loop nothing and is the same whichever bus carried
+//! the frames.
+
+use oleo_controller::can::bus_load;
+use oleo_controller::{FaultCode, Mode};
+use oleo_plant_sim::measures::{RideMeasures, RideMeter};
+
+use crate::bit_timing::WireModel;
+use crate::record::{Sample, controller_account, fault_name, mode_name};
+use crate::run::Outcome;
+use crate::scenario::check::{Figure, Metric};
+use crate::scenario::{Scenario, TICK_US};
+
+/// Figures of a run, and what they were worked out from.
+#[derive(Debug)]
+pub struct Metrics {
+    /// Ticks run.
+    pub ticks: u32,
+    /// Driver's and left rear passenger's seat.
+    pub seats: [RideMeasures; 2],
+    /// Edges of each valve signal, in the order of the word's bits.
+    pub valve_switches: [u64; 12],
+    /// Frames sent and not received, injected drops included.
+    pub frames_lost: u64,
+    /// Of these, lost by the bus itself.
+    pub bus_frames_lost: u64,
+    /// Frames that failed their end-to-end check.
+    pub e2e_errors: u64,
+    /// Mode and cause in each tick, as the controller said.
+    pub account: Vec<Option<(Mode, FaultCode)>>,
+    /// The traced frames on a wire of 500 kbit/s and of 1 Mbit/s.
+    pub wires: [WireModel; 2],
+    extremes: Extremes,
+    answer: Answer,
+}
+
+#[derive(Debug, Default)]
+struct Extremes {
+    heave_m: f64,
+    roll_rad: f64,
+    pitch_rad: f64,
+    jounce_m: f64,
+    rebound_m: f64,
+    pressure_pa: f64,
+    lifted_ticks: u64,
+}
+
+/// Ticks from the first fault, or from the end of the last.
+#[derive(Debug, Default)]
+struct Answer {
+    detect: Option<u32>,
+    safe: Option<u32>,
+    closed: Option<u32>,
+    recover: Option<u32>,
+}
+
+impl Metrics {
+    /// Works everything out.
+    pub fn of(scenario: &Scenario, outcome: &Outcome) -> Self {
+        let remains = &outcome.remains;
+        let samples = &remains.recording.samples;
+        let ticks = samples.len() as u32;
+        let account = controller_account(&remains.trace, samples.len());
+        let mut meters = [
+            RideMeter::new(remains.recording.step_s),
+            RideMeter::new(remains.recording.step_s),
+        ];
+        for felt in &remains.recording.seat_acceleration_m_s2 {
+            meters.iter_mut().zip(felt).for_each(|(meter, a)| meter.add(*a));
+        }
+        Self {
+            ticks,
+            seats: meters.each_ref().map(RideMeter::measures),
+            valve_switches: remains.recording.valve_switches(),
+            frames_lost: remains.bus_frames_lost + remains.injected.dropped,
+            bus_frames_lost: remains.bus_frames_lost,
+            e2e_errors: remains.e2e_errors,
+            wires: bus_load::BIT_RATES.map(|rate| WireModel::of(&remains.trace, rate, TICK_US, ticks)),
+            extremes: Extremes::of(samples),
+            answer: scenario
+                .fault_ticks()
+                .map(|span| Answer::of(span, &account, samples))
+                .unwrap_or_default(),
+            account,
+        }
+    }
+
+    /// One figure.
+    pub fn figure(&self, metric: Metric) -> Figure {
+        let degrees = |rad: f64| Figure::Number(rad.to_degrees());
+        let count = |n: u64| Figure::Number(n as f64);
+        let ticks = |n: Option<u32>| n.map_or(Figure::Never, |n| Figure::Number(f64::from(n)));
+        let [driver, rear_left] = &self.seats;
+        match metric {
+            Metric::Ticks => count(self.ticks.into()),
+            Metric::WeightedRmsDriver => Figure::Number(driver.weighted_rms_m_s2),
+            Metric::WeightedRmsRearLeft => Figure::Number(rear_left.weighted_rms_m_s2),
+            Metric::VdvDriver => Figure::Number(driver.vdv_m_s1_75),
+            Metric::VdvRearLeft => Figure::Number(rear_left.vdv_m_s1_75),
+            Metric::MsdvDriver => Figure::Number(driver.msdv_m_s1_5),
+            Metric::MsdvRearLeft => Figure::Number(rear_left.msdv_m_s1_5),
+            Metric::MaxHeave => Figure::Number(self.extremes.heave_m),
+            Metric::MaxRoll => degrees(self.extremes.roll_rad),
+            Metric::MaxPitch => degrees(self.extremes.pitch_rad),
+            Metric::MaxJounce => Figure::Number(self.extremes.jounce_m),
+            Metric::MaxRebound => Figure::Number(self.extremes.rebound_m),
+            Metric::MaxPressure => Figure::Number(self.extremes.pressure_pa),
+            Metric::WheelLift => Figure::Number(self.extremes.lifted_ticks as f64 / f64::from(self.ticks.max(1))),
+            Metric::ValveSwitches => count(self.valve_switches.iter().sum()),
+            Metric::FramesLost => count(self.frames_lost),
+            Metric::BusFramesLost => count(self.bus_frames_lost),
+            Metric::E2eErrors => count(self.e2e_errors),
+            Metric::BusLoad500k => Figure::Number(self.wires[0].utilisation),
+            Metric::TicksToDetect => ticks(self.answer.detect),
+            Metric::TicksToSafe => ticks(self.answer.safe),
+            Metric::TicksToClosed => ticks(self.answer.closed),
+            Metric::TicksToRecover => ticks(self.answer.recover),
+            Metric::WorstMode => Figure::Word(self.worst_mode()),
+            Metric::FinalMode => {
+                let last = self.account.iter().rev().flatten().next();
+                Figure::Word(mode_name(last.map_or(Mode::StartUp, |(mode, _)| *mode)))
+            }
+            Metric::FirstFault => {
+                let first = self
+                    .account
+                    .iter()
+                    .flatten()
+                    .map(|(_, fault)| *fault)
+                    .find(|fault| *fault != FaultCode::None);
+                Figure::Word(fault_name(first.unwrap_or_default()))
+            }
+        }
+    }
+
+    /// After start-up is over for the first time; the numbers on the bus grow with restriction.
+    fn worst_mode(&self) -> &'static str {
+        let modes = self
+            .account
+            .iter()
+            .flatten()
+            .map(|(mode, _)| *mode)
+            .skip_while(|mode| *mode == Mode::StartUp);
+        let worst = modes
+            .filter(|mode| *mode != Mode::StartUp)
+            .max_by_key(|mode| mode.raw());
+        mode_name(worst.unwrap_or(Mode::StartUp))
+    }
+}
+
+impl Extremes {
+    fn of(samples: &[Sample]) -> Self {
+        samples.iter().fold(Self::default(), |mut most, sample| {
+            let body = &sample.body;
+            most.heave_m = most.heave_m.max(body.heave_m.abs());
+            most.roll_rad = most.roll_rad.max(body.roll_rad.abs());
+            most.pitch_rad = most.pitch_rad.max(body.pitch_rad.abs());
+            for (displacement_m, strut) in sample.displacement_m.iter().zip(&sample.strut) {
+                most.jounce_m = most.jounce_m.max(*displacement_m);
+                most.rebound_m = most.rebound_m.max(-displacement_m);
+                most.pressure_pa = strut.pressure_pa.iter().fold(most.pressure_pa, |p, q| p.max(*q));
+            }
+            most.lifted_ticks += u64::from(sample.wheel.iter().any(|wheel| wheel.force_n <= 0.0));
+            most
+        })
+    }
+}
+
+impl Answer {
+    fn of((from, until): (u32, u32), account: &[Option<(Mode, FaultCode)>], samples: &[Sample]) -> Self {
+        let mode_at = |tick: u32| account.get(tick as usize).copied().flatten().map(|(mode, _)| mode);
+        let end = samples.len() as u32;
+        let before = from.checked_sub(1).and_then(mode_at);
+        let first = |begin: u32, wanted: &dyn Fn(Mode) -> bool| {
+            (begin..end)
+                .find(|tick| mode_at(*tick).is_some_and(wanted))
+                .map(|tick| tick - begin)
+        };
+        let closed = |tick: u32| {
+            samples
+                .get(tick as usize)
+                .is_some_and(|sample| sample.energised.word() == 0)
+        };
+        // The last open tick while the fault lasts; from the next on, all stay closed.
+        let last_open = (from..until.min(end)).rev().find(|tick| !closed(*tick));
+        let closed_from = last_open.map_or(from, |tick| tick + 1);
+        Self {
+            detect: first(from, &|mode| Some(mode) != before),
+            safe: first(from, &|mode| matches!(mode, Mode::Safe | Mode::Latched)),
+            closed: (closed_from < until.min(end)).then(|| closed_from - from),
+            recover: first(until, &|mode| mode == Mode::Normal),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use oleo_controller::ValveCommand;
+    use oleo_plant_sim::strut::StrutOutput;
+    use oleo_plant_sim::vehicle::{BodyMotion, WheelMotion};
+
+    fn sample(word: u16) -> Sample {
+        Sample {
+            station_m: 0.0,
+            body: BodyMotion::default(),
+            displacement_m: [0.01, -0.02, 0.0, 0.0],
+            strut: [StrutOutput {
+                force_n: 0.0,
+                pressure_pa: [4e6; 4],
+            }; 4],
+            wheel: [WheelMotion {
+                force_n: 1.0,
+                ..WheelMotion::default()
+            }; 4],
+            command: ValveCommand::from_word(word),
+            energised: ValveCommand::from_word(word),
+        }
+    }
+
+    #[test]
+    fn ticks_are_counted_from_the_fault_and_from_its_end() {
+        let modes = [
+            Mode::Normal,
+            Mode::Normal,
+            Mode::Normal,
+            Mode::Safe,
+            Mode::Safe,
+            Mode::Safe,
+            Mode::StartUp,
+            Mode::Normal,
+        ];
+        let account: Vec<_> = modes.iter().map(|mode| Some((*mode, FaultCode::None))).collect();
+        let samples: Vec<_> = [7, 7, 7, 0, 0, 0, 0, 7].map(sample).into();
+        let answer = Answer::of((2, 5), &account, &samples);
+        assert_eq!(
+            (answer.detect, answer.safe, answer.closed, answer.recover),
+            (Some(1), Some(1), Some(1), Some(2))
+        );
+        let never = Answer::of((2, 3), &account[..3], &samples[..3]);
+        assert_eq!(
+            (never.detect, never.safe, never.closed, never.recover),
+            (None, None, None, None)
+        );
+    }
+
+    #[test]
+    fn extremes_by_hand() {
+        let most = Extremes::of(&[sample(0), sample(0)]);
+        assert_eq!(
+            (most.jounce_m, most.rebound_m, most.pressure_pa, most.lifted_ticks),
+            (0.01, 0.02, 4e6, 0)
+        );
+    }
+}

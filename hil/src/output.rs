@@ -1,0 +1,352 @@
+//! A run's files: `summary.json`, `timeseries.csv`, `candump.log`, `junit.xml`, `report.html`.
+//!
+//! Written through [`OutputDirectory`], so they appear together or not at all. Only wall-clock figures differ between two runs of one
+//! scenario; everything else has the same bytes.
+
+
+use oleo_report::{OutputDirectory, OutputError};
+use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
+use serde::Serialize;
+
+use crate::bus::BusCounters;
+use crate::candump::write_line;
+use crate::clock::Lateness;
+use crate::metrics::Metrics;
+use crate::record::{command_hash, fault_name, mode_name};
+use crate::run::Outcome;
+use crate::scenario::check::{Figure, Metric};
+use crate::scenario::fault::CORNER_NAMES;
+use crate::scenario::{Scenario, TICK_S};
+
+/// Outcome of one check.
+#[derive(Clone, Debug, Serialize)]
+pub struct CheckOutcome {
+    /// "max_roll_deg at most 3".
+    pub name: String,
+    /// Whether it is met.
+    pub passed: bool,
+    /// The figure, as text: "2.1", "safe", "never".
+    pub figure: String,
+}
+
+/// `summary.json`. Shares (`bus_load_*`) are 0 to 1.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Of this file's layout.
+    pub schema: u32,
+    /// Which scenario.
+    pub scenario: String,
+    /// Which road.
+    pub road: String,
+    /// Speed.
+    pub speed_km_h: f64,
+    /// How valves were decided.
+    pub strategy: &'static str,
+    /// Where frames went.
+    pub bus: String,
+    /// How time passed.
+    pub clock: &'static str,
+    /// Of roads and fault randomness.
+    pub seed: u64,
+    /// Ticks run.
+    pub ticks: u32,
+    /// Simulated time.
+    pub simulated_s: f64,
+    /// Wall-clock time of the loop alone.
+    pub wall_s: f64,
+    /// `simulated_s / wall_s`.
+    pub real_time_factor: f64,
+    /// Digest of the valve words, see [`command_hash`].
+    pub command_hash: String,
+    /// Messages on the wire, both directions.
+    pub frames_sent: u64,
+    /// Sent and not received, injected drops included.
+    pub frames_lost: u64,
+    /// Of these, lost by the bus itself.
+    pub bus_frames_lost: u64,
+    /// Frames of third parties, ignored.
+    pub foreign_frames: u64,
+    /// Frames that failed their end-to-end check.
+    pub e2e_errors: u64,
+    /// Share of time a wire of 500 kbit/s would be busy.
+    pub bus_load_500k: f64,
+    /// The same at 1 Mbit/s.
+    pub bus_load_1m: f64,
+    /// Times a full transmit queue was waited for.
+    pub bus_back_offs: u64,
+    /// BS 6841.
+    pub weighted_rms_driver_m_s2: f64,
+    /// BS 6841.
+    pub weighted_rms_rear_left_m_s2: f64,
+    /// BS 6841.
+    pub vdv_driver_m_s1_75: f64,
+    /// BS 6841.
+    pub vdv_rear_left_m_s1_75: f64,
+    /// BS 6841.
+    pub msdv_driver_m_s1_5: f64,
+    /// BS 6841.
+    pub msdv_rear_left_m_s1_5: f64,
+    /// Largest roll.
+    pub max_roll_deg: f64,
+    /// Edges of the twelve valve signals: corner by corner, valves 1 to 3.
+    pub valve_switches: [u64; 12],
+    /// Modes the controller entered.
+    pub modes: Vec<ModeEntry>,
+    /// Every metric that is a number of ticks after a fault; `null` is "never".
+    pub ticks_to_detect: Option<f64>,
+    /// See [`Metric::TicksToSafe`].
+    pub ticks_to_safe: Option<f64>,
+    /// See [`Metric::TicksToClosed`].
+    pub ticks_to_closed: Option<f64>,
+    /// See [`Metric::TicksToRecover`].
+    pub ticks_to_recover: Option<f64>,
+    /// Tick in which a silent controller was given up.
+    pub controller_lost_at_tick: Option<u32>,
+    /// Somebody stopped the run.
+    pub interrupted: bool,
+    /// In real time: how deadlines were met.
+    pub lateness: Vec<NodeLateness>,
+    /// The scenario's checks.
+    pub checks: Vec<CheckOutcome>,
+}
+
+/// A mode and when it was entered.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModeEntry {
+    /// First tick.
+    pub tick: u32,
+    /// Which.
+    pub mode: &'static str,
+    /// First cause, "none" where all is well.
+    pub fault: &'static str,
+}
+
+/// How one node met its deadlines.
+#[derive(Clone, Debug, Serialize)]
+pub struct NodeLateness {
+    /// "plant" or "controller".
+    pub node: &'static str,
+    /// Figures.
+    #[serde(flatten)]
+    pub lateness: Lateness,
+}
+
+impl Summary {
+    /// Puts a run in order.
+    pub fn of(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics) -> Self {
+        let number = |metric| match metrics.figure(metric) {
+            Figure::Number(number) => Some(number),
+            _ => None,
+        };
+        let [driver, rear_left] = metrics.seats;
+        let simulated_s = f64::from(metrics.ticks) * TICK_S;
+        let BusCounters { back_offs, .. } = outcome.remains.counters;
+        Self {
+            schema: 1,
+            scenario: scenario.name.clone(),
+            road: scenario.road.clone(),
+            speed_km_h: scenario.speed_m_s * 3.6,
+            strategy: scenario.strategy_name(),
+            bus: scenario.bus.to_string(),
+            clock: scenario.clock.name(),
+            seed: scenario.seed,
+            ticks: metrics.ticks,
+            simulated_s,
+            wall_s: outcome.wall_s,
+            real_time_factor: simulated_s / outcome.wall_s.max(1e-9),
+            command_hash: command_hash(outcome.remains.recording.words()),
+            frames_sent: outcome.remains.frames_sent,
+            frames_lost: metrics.frames_lost,
+            bus_frames_lost: metrics.bus_frames_lost,
+            foreign_frames: outcome.remains.foreign_frames,
+            e2e_errors: metrics.e2e_errors,
+            bus_load_500k: metrics.wires[0].utilisation,
+            bus_load_1m: metrics.wires[1].utilisation,
+            bus_back_offs: back_offs,
+            weighted_rms_driver_m_s2: driver.weighted_rms_m_s2,
+            weighted_rms_rear_left_m_s2: rear_left.weighted_rms_m_s2,
+            vdv_driver_m_s1_75: driver.vdv_m_s1_75,
+            vdv_rear_left_m_s1_75: rear_left.vdv_m_s1_75,
+            msdv_driver_m_s1_5: driver.msdv_m_s1_5,
+            msdv_rear_left_m_s1_5: rear_left.msdv_m_s1_5,
+            max_roll_deg: number(Metric::MaxRoll).unwrap_or(0.0),
+            valve_switches: metrics.valve_switches,
+            modes: mode_entries(metrics),
+            ticks_to_detect: number(Metric::TicksToDetect),
+            ticks_to_safe: number(Metric::TicksToSafe),
+            ticks_to_closed: number(Metric::TicksToClosed),
+            ticks_to_recover: number(Metric::TicksToRecover),
+            controller_lost_at_tick: outcome.controller_lost_at,
+            interrupted: outcome.interrupted,
+            lateness: outcome
+                .lateness
+                .iter()
+                .map(|(role, lateness)| NodeLateness {
+                    node: role.name(),
+                    lateness: lateness.clone(),
+                })
+                .collect(),
+            checks: check_outcomes(scenario, metrics),
+        }
+    }
+
+    /// Whether every check is met.
+    pub fn passed(&self) -> bool {
+        self.checks.iter().all(|check| check.passed)
+    }
+}
+
+fn check_outcomes(scenario: &Scenario, metrics: &Metrics) -> Vec<CheckOutcome> {
+    let outcome = |check: &crate::scenario::Check| {
+        let figure = metrics.figure(check.metric);
+        CheckOutcome {
+            name: check.name(),
+            passed: check.is_met(&figure),
+            figure: figure.to_string(),
+        }
+    };
+    scenario.checks.iter().map(outcome).collect()
+}
+
+fn mode_entries(metrics: &Metrics) -> Vec<ModeEntry> {
+    let mut entries: Vec<ModeEntry> = Vec::new();
+    for (tick, account) in metrics.account.iter().enumerate() {
+        let Some((mode, fault)) = account else { continue };
+        let (mode, fault) = (mode_name(*mode), fault_name(*fault));
+        if entries
+            .last()
+            .is_none_or(|last| (last.mode, last.fault) != (mode, fault))
+        {
+            entries.push(ModeEntry {
+                tick: tick as u32,
+                mode,
+                fault,
+            });
+        }
+    }
+    entries
+}
+
+/// Writes all data files of a run (the page is [`crate::page`]'s).
+///
+/// # Errors
+/// Those of the file system.
+pub fn write(
+    out: &mut OutputDirectory,
+    scenario: &Scenario,
+    outcome: &Outcome,
+    metrics: &Metrics,
+    summary: &Summary,
+) -> Result<(), OutputError> {
+    out.json("summary.json", summary)?;
+    out.write("junit.xml", junit(summary))?;
+    out.write("candump.log", candump(scenario, outcome, metrics))?;
+    let columns = columns(outcome, metrics);
+    let borrowed: Vec<(&str, &[f64])> = columns
+        .iter()
+        .map(|(name, values)| (name.as_str(), values.as_slice()))
+        .collect();
+    out.csv("timeseries.csv", &borrowed)
+}
+
+/// JUnit: one suite, one case a check.
+fn junit(summary: &Summary) -> Vec<u8> {
+    let mut suite = TestSuite::new(format!("oleo hil {}", summary.scenario));
+    for check in &summary.checks {
+        let status = if check.passed {
+            TestCaseStatus::success()
+        } else {
+            let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+            status.set_message(format!("{}: is {}", check.name, check.figure));
+            status
+        };
+        let mut case = TestCase::new(check.name.clone(), status);
+        case.set_classname(format!("oleo.hil.{}", summary.scenario));
+        suite.add_test_case(case);
+    }
+    let mut report = Report::new("oleo hil");
+    report.add_test_suite(suite);
+    let mut bytes = Vec::new();
+    // Writing to memory does not fail; an empty file would be noticed by whoever reads it.
+    let _ = report.serialize(&mut bytes);
+    bytes
+}
+
+/// The traced frames with the time at which a wire of 500 kbit/s (in lockstep) or this machine (in real time) carried them.
+fn candump(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics) -> Vec<u8> {
+    let interface = match &scenario.bus {
+        crate::bus::BusAddress::SocketCan(interface) => interface.as_str(),
+        _ => "vcan0",
+    };
+    let trace = &outcome.remains.trace;
+    let real_time = scenario.clock == crate::scenario::Clock::RealTime;
+    let mut timed: Vec<(u64, usize)> = match real_time {
+        true => trace
+            .iter()
+            .enumerate()
+            .map(|(i, entry)| (u64::from(entry.wall_us), i))
+            .collect(),
+        false => metrics.wires[0].end_us.iter().copied().zip(0..).collect(),
+    };
+    timed.sort_unstable();
+    let mut log = Vec::with_capacity(48 * trace.len());
+    for (time_us, index) in timed {
+        // Writing to memory does not fail.
+        let _ = write_line(&mut log, time_us, interface, &trace[index].frame);
+    }
+    log
+}
+
+/// Time histories at ticks, by column.
+fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<f64>)> {
+    let samples = &outcome.remains.recording.samples;
+    let steps = outcome.remains.recording.seat_acceleration_m_s2.len() / samples.len().max(1);
+    let mut columns: Vec<(String, Vec<f64>)> = Vec::with_capacity(64);
+    let mut column = |name: &str, value: &dyn Fn(usize) -> f64| {
+        columns.push((name.to_owned(), (0..samples.len()).map(value).collect()));
+    };
+    column("time_s", &|i| i as f64 * TICK_S);
+    column("station_m", &|i| samples[i].station_m);
+    for (corner, name) in CORNER_NAMES.iter().enumerate() {
+        let name = name.replace('-', "_");
+        column(&format!("road_{name}_m"), &|i| samples[i].wheel[corner].road_height_m);
+    }
+    column("heave_m", &|i| samples[i].body.heave_m);
+    column("roll_rad", &|i| samples[i].body.roll_rad);
+    column("pitch_rad", &|i| samples[i].body.pitch_rad);
+    column("heave_acceleration_m_s2", &|i| samples[i].body.heave_acceleration_m_s2);
+    column("roll_acceleration_rad_s2", &|i| {
+        samples[i].body.roll_acceleration_rad_s2
+    });
+    column("pitch_acceleration_rad_s2", &|i| {
+        samples[i].body.pitch_acceleration_rad_s2
+    });
+    let felt = |i: usize, seat: usize| {
+        // At the beginning of a tick: the last step of the one before.
+        let index = (i * steps).checked_sub(1);
+        index.map_or(0.0, |at| outcome.remains.recording.seat_acceleration_m_s2[at][seat])
+    };
+    column("driver_acceleration_m_s2", &|i| felt(i, 0));
+    column("rear_left_acceleration_m_s2", &|i| felt(i, 1));
+    for (corner, name) in CORNER_NAMES.iter().enumerate() {
+        let name = name.replace('-', "_");
+        column(&format!("displacement_{name}_m"), &|i| {
+            samples[i].displacement_m[corner]
+        });
+        column(&format!("force_{name}_N"), &|i| samples[i].strut[corner].force_n);
+        for place in 0..4 {
+            let title = format!("p{}_{name}_Pa", place + 1);
+            column(&title, &|i| samples[i].strut[corner].pressure_pa[place]);
+        }
+        column(&format!("wheel_load_{name}_N"), &|i| samples[i].wheel[corner].force_n);
+    }
+    column("valve_word", &|i| f64::from(samples[i].command.word()));
+    column("energised_word", &|i| f64::from(samples[i].energised.word()));
+    column("mode", &|i| {
+        metrics.account[i].map_or(f64::NAN, |(mode, _)| f64::from(mode.raw()))
+    });
+    column("fault", &|i| {
+        metrics.account[i].map_or(f64::NAN, |(_, fault)| f64::from(fault.raw()))
+    });
+    columns
+}

@@ -1,0 +1,388 @@
+//! `report.html` of a run: the outcome first, then road, body, struts, controller and bus, on one time axis.
+
+use oleo_report::{Axis, Bars, Cell, Column, Curves, Page, Style, Table, Verdict, significant};
+
+use crate::metrics::Metrics;
+use crate::output::Summary;
+use crate::record::{mode_name, status_messages};
+use crate::run::Outcome;
+use crate::scenario::fault::{CORNER_NAMES, Fault, FaultKind};
+use crate::scenario::{Scenario, TICK_S};
+use crate::sync::Role;
+
+/// All figures of a page zoom together.
+const LINK: &str = "time";
+
+/// The page of a run; `command` is what makes it again.
+pub fn page(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summary: &Summary, command: &str) -> Page {
+    let mut page = Page::new(&format!("Hardware-in-the-loop: {}", scenario.name), command);
+    page.fact("Scenario", &scenario.description);
+    page.fact(
+        "Road",
+        &format!("{} at {} km/h", scenario.road, significant(scenario.speed_m_s * 3.6, 3)),
+    );
+    page.fact("Strategy", summary.strategy);
+    page.fact("Bus, clock", &format!("{}, {}", summary.bus, summary.clock));
+    page.fact("Seed", &scenario.seed.to_string());
+    let failed = summary.checks.iter().filter(|check| !check.passed).count();
+    let (verdict, sentence) = match (failed, summary.checks.len()) {
+        (0, 0) => (Verdict::Attention, "The scenario has no checks.".to_owned()),
+        (0, all) => (Verdict::Pass, format!("All {all} checks met.")),
+        (failed, all) => (Verdict::Fail, format!("{failed} of {all} checks not met.")),
+    };
+    page.verdict(verdict, &sentence);
+    page.outcome(outcome_table(summary));
+    if !summary.checks.is_empty() {
+        page.table(check_table(summary));
+    }
+    let time = Time::of(scenario, outcome);
+    road(&mut page, outcome, &time);
+    body(&mut page, outcome, &time);
+    struts(&mut page, outcome, &time);
+    controller(&mut page, outcome, metrics, summary, &time);
+    bus(&mut page, outcome, metrics, summary);
+    page
+}
+
+/// How the run came out, for the terminal and the page.
+pub fn outcome_table(summary: &Summary) -> Table {
+    let mut table = Table::new([Column::text("Quantity"), Column::number("Value"), Column::text("Unit")]);
+    let mut row = |quantity: &str, value: String, unit: &str| {
+        table.row([quantity.to_owned(), value, unit.to_owned()]);
+    };
+    row("simulated", significant(summary.simulated_s, 4), "s");
+    row("wall clock", significant(summary.wall_s, 3), "s");
+    row("real time factor", significant(summary.real_time_factor, 3), "");
+    row("command hash", summary.command_hash.clone(), "");
+    row(
+        "weighted RMS, driver (BS 6841)",
+        significant(summary.weighted_rms_driver_m_s2, 3),
+        "m/s2",
+    );
+    row(
+        "weighted RMS, left rear",
+        significant(summary.weighted_rms_rear_left_m_s2, 3),
+        "m/s2",
+    );
+    row(
+        "vibration dose, driver",
+        significant(summary.vdv_driver_m_s1_75, 3),
+        "m/s1.75",
+    );
+    row("largest roll", significant(summary.max_roll_deg, 3), "degrees");
+    row(
+        "valve switches",
+        summary.valve_switches.iter().sum::<u64>().to_string(),
+        "",
+    );
+    row("frames sent", summary.frames_sent.to_string(), "");
+    row("frames lost", summary.frames_lost.to_string(), "");
+    row("end-to-end errors", summary.e2e_errors.to_string(), "");
+    row(
+        "bus load at 500 kbit/s",
+        significant(100.0 * summary.bus_load_500k, 3),
+        "%",
+    );
+    let answers = [
+        ("fault detected after", summary.ticks_to_detect),
+        ("mode safe after", summary.ticks_to_safe),
+        ("valves closed after", summary.ticks_to_closed),
+        ("normal again after its end", summary.ticks_to_recover),
+    ];
+    for (quantity, ticks) in answers {
+        if let Some(ticks) = ticks {
+            row(quantity, ticks.to_string(), "ticks");
+        }
+    }
+    if let Some(tick) = summary.controller_lost_at_tick {
+        row("controller given up in tick", tick.to_string(), "");
+    }
+    for node in &summary.lateness {
+        let late = &node.lateness;
+        row(
+            &format!("{} late, median / p99 / worst", node.node),
+            format!("{} / {} / {}", late.p50_us, late.p99_us, late.max_us),
+            "us",
+        );
+        row(&format!("{} overruns", node.node), late.overruns.to_string(), "ticks");
+    }
+    table
+}
+
+/// The checks, for the terminal and the page.
+pub fn check_table(summary: &Summary) -> Table {
+    let mut table = Table::new([Column::text("Check"), Column::number("Figure"), Column::text("Met")]);
+    for check in &summary.checks {
+        table.row::<Cell>([
+            check.name.as_str().into(),
+            check.figure.as_str().into(),
+            Cell::check(check.passed),
+        ]);
+    }
+    table
+}
+
+/// The common axis, and the faults on it.
+struct Time<'a> {
+    s: Vec<f64>,
+    faults: &'a [Fault],
+}
+
+impl<'a> Time<'a> {
+    fn of(scenario: &'a Scenario, outcome: &Outcome) -> Self {
+        let s = (0..outcome.remains.recording.samples.len())
+            .map(|tick| tick as f64 * TICK_S)
+            .collect();
+        Self {
+            s,
+            faults: &scenario.faults,
+        }
+    }
+
+    fn curves(&self, title: &str) -> Curves {
+        let mut curves = Curves::new(title, Axis::new("Time", "s"));
+        curves.link(LINK);
+        curves
+    }
+
+    /// Marks the faults in the panel added last.
+    fn mark(&self, curves: &mut Curves) {
+        let end_s = self.s.last().copied().unwrap_or(0.0);
+        for fault in self.faults {
+            let (from_s, until_s) = (
+                f64::from(fault.from_tick) * TICK_S,
+                f64::from(fault.until_tick) * TICK_S,
+            );
+            curves.region(from_s, until_s.min(end_s), fault_label(fault));
+        }
+    }
+}
+
+fn fault_label(fault: &Fault) -> &'static str {
+    match fault.kind {
+        FaultKind::Message { .. } => "messages disturbed",
+        FaultKind::NodeKilled(Role::Plant) => "plant silent",
+        FaultKind::NodeKilled(Role::Controller) => "controller silent",
+        FaultKind::Sensor { .. } => "sensor fault",
+        FaultKind::SolenoidStuck { .. } => "solenoid stuck",
+    }
+}
+
+fn road(page: &mut Page, outcome: &Outcome, time: &Time) {
+    let samples = &outcome.remains.recording.samples;
+    let mut curves = time.curves("Road under the front wheels");
+    curves.panel(Axis::new("Height", "mm"));
+    for (corner, side) in [(0, "left"), (1, "right")] {
+        let height: Vec<f64> = samples
+            .iter()
+            .map(|sample| 1e3 * sample.wheel[corner].road_height_m)
+            .collect();
+        curves.line(side, &time.s, &height);
+    }
+    page.section("Road").figure(curves);
+}
+
+fn body(page: &mut Page, outcome: &Outcome, time: &Time) {
+    let recording = &outcome.remains.recording;
+    let samples = &recording.samples;
+    let mut curves = time.curves("Sprung mass");
+    let mut panel = |axis: Axis, name: &str, value: &dyn Fn(usize) -> f64| {
+        let values: Vec<f64> = (0..samples.len()).map(value).collect();
+        curves.panel(axis).line(name, &time.s, &values);
+        time.mark(&mut curves);
+    };
+    panel(Axis::new("Heave", "mm"), "heave", &|i| 1e3 * samples[i].body.heave_m);
+    panel(Axis::new("Roll", "degrees"), "roll", &|i| {
+        samples[i].body.roll_rad.to_degrees()
+    });
+    panel(Axis::new("Pitch", "degrees"), "pitch", &|i| {
+        samples[i].body.pitch_rad.to_degrees()
+    });
+    page.section("Body motion")
+        .text("Heave up, roll left side up and pitch nose down are positive.")
+        .figure(curves);
+
+    let step_s: Vec<f64> = (1..=recording.seat_acceleration_m_s2.len())
+        .map(|i| i as f64 * recording.step_s)
+        .collect();
+    let mut felt = time.curves("Vertical acceleration at the seats");
+    for (seat, name) in ["driver", "left rear passenger"].into_iter().enumerate() {
+        let values: Vec<f64> = recording.seat_acceleration_m_s2.iter().map(|a| a[seat]).collect();
+        felt.panel(Axis::new(name, "m/s2")).line(name, &step_s, &values);
+        time.mark(&mut felt);
+    }
+    page.figure(felt);
+}
+
+fn struts(page: &mut Page, outcome: &Outcome, time: &Time) {
+    let samples = &outcome.remains.recording.samples;
+    page.section("Struts").text(
+        "Compression is positive; pressures are gauge. Valves 1 and 2 bypass the dampers (open: low damping), valve 3 connects the \
+         0.4 l accumulator (open: soft spring).",
+    );
+    for (corner, name) in CORNER_NAMES.iter().enumerate() {
+        let column = |value: &dyn Fn(usize) -> f64| (0..samples.len()).map(value).collect::<Vec<f64>>();
+        let mut curves = time.curves(&format!("Strut {}", name.replace('-', " ")));
+        curves.height(620);
+        curves.panel(Axis::new("Displacement", "mm"));
+        curves.line(
+            "displacement",
+            &time.s,
+            &column(&|i| 1e3 * samples[i].displacement_m[corner]),
+        );
+        time.mark(&mut curves);
+        curves.panel(Axis::new("Pressure", "MPa"));
+        for place in 0..4 {
+            let pressure = column(&|i| 1e-6 * samples[i].strut[corner].pressure_pa[place]);
+            curves.line(&format!("p{}", place + 1), &time.s, &pressure);
+        }
+        curves.panel(Axis::new("Force", "kN"));
+        curves.line("force", &time.s, &column(&|i| 1e-3 * samples[i].strut[corner].force_n));
+        // Three signals one above the other: closed at the label, open above it.
+        curves.panel(
+            Axis::new("Open", "")
+                .ticks([(0.0, "valve 1"), (1.5, "valve 2"), (3.0, "valve 3")])
+                .range(-0.3, 4.3),
+        );
+        for valve in 0..3 {
+            let open = column(&|i| 1.5 * valve as f64 + f64::from(u8::from(samples[i].energised.valve(corner, valve))));
+            curves.series(Style::Step, &format!("valve {}", valve + 1), &time.s, &open);
+        }
+        page.figure(curves);
+    }
+}
+
+fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &Summary, time: &Time) {
+    let mode: Vec<f64> = metrics
+        .account
+        .iter()
+        .map(|account| account.map_or(f64::NAN, |(mode, _)| f64::from(mode.raw())))
+        .collect();
+    let mut curves = time.curves("Mode machine and strategy");
+    let names = (0..5).filter_map(|raw| Some((f64::from(raw), mode_name(oleo_controller::Mode::from_raw(raw)?))));
+    curves.panel(Axis::new("Mode", "").ticks(names).range(-0.4, 4.4));
+    curves.series(Style::Step, "mode", &time.s, &mode);
+    time.mark(&mut curves);
+    let status = status_messages(&outcome.remains.trace);
+    let status_s: Vec<f64> = status.iter().map(|(tick, _)| f64::from(*tick) * TICK_S).collect();
+    let of = |value: &dyn Fn(&oleo_controller::can::StatusMessage) -> f64| -> Vec<f64> {
+        status.iter().map(|(_, message)| value(message)).collect()
+    };
+    curves.panel(Axis::new("Running RMS", "m/s2"));
+    curves.line("lateral surrogate", &status_s, &of(&|m| m.lateral_rms_m_s2.into()));
+    curves.line("vertical", &status_s, &of(&|m| m.vertical_rms_m_s2.into()));
+    curves.panel(
+        Axis::new("Strategy", "")
+            .ticks([(0.0, "ride"), (1.0, "handling")])
+            .range(-0.2, 1.2),
+    );
+    curves.series(
+        Style::Step,
+        "setting",
+        &status_s,
+        &of(&|m| f64::from(u8::from(m.handling))),
+    );
+    page.section("Controller")
+        .text("As the controller's own frames say, before injected faults.")
+        .figure(curves);
+
+    let mut table = Table::new([
+        Column::number("Tick"),
+        Column::number("Time, s"),
+        Column::text("Mode entered"),
+        Column::text("First cause"),
+    ]);
+    for entry in &summary.modes {
+        let time_s = significant(f64::from(entry.tick) * TICK_S, 5);
+        table.row([
+            entry.tick.to_string(),
+            time_s,
+            entry.mode.to_owned(),
+            entry.fault.to_owned(),
+        ]);
+    }
+    page.table(table);
+    let valves = ["1", "2", "3"];
+    let names = CORNER_NAMES
+        .iter()
+        .flat_map(|corner| valves.iter().map(move |valve| format!("{corner} {valve}")));
+    let names: Vec<String> = names.collect();
+    let edges: Vec<f64> = summary.valve_switches.iter().map(|edges| *edges as f64).collect();
+    let mut bars = Bars::new(
+        "Valve switches",
+        names.iter().map(String::as_str),
+        Axis::new("Edges", ""),
+    );
+    bars.series("edges", &edges);
+    page.figure(bars);
+}
+
+fn bus(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &Summary) {
+    let counters = &outcome.remains.counters;
+    let injected = &outcome.remains.injected;
+    let mut table = Table::new([Column::text("Frames"), Column::number("Count")]);
+    for (name, count) in [
+        ("messages on the wire, both directions", summary.frames_sent),
+        ("lost by the bus itself", summary.bus_frames_lost),
+        ("of third parties, ignored", summary.foreign_frames),
+        ("failed their end-to-end check, both ends", summary.e2e_errors),
+        ("injected: dropped", injected.dropped),
+        ("injected: corrupted", injected.corrupted),
+        ("injected: delayed", injected.delayed),
+        ("injected: duplicated", injected.duplicated),
+        ("plant's end: thrown away by the kernel", counters.receive_lost),
+        ("plant's end: not sent, queue full", counters.send_lost),
+        ("plant's end: waits for a full queue", counters.back_offs),
+        ("plant's end: unreadable", counters.unreadable),
+    ] {
+        table.row([name.to_owned(), count.to_string()]);
+    }
+    page.section("Bus").table(table);
+    for wire in &metrics.wires {
+        let rate = wire.bit_rate / 1000;
+        page.text(&format!(
+            "A wire of {rate} kbit/s would be busy {} % of the time, {} % in the busiest tick (stuff bits counted as they occurred). \
+             Latency from ready to sent, in microseconds; the bound is the response-time analysis of Davis et al. (2007) with worst-case stuffing:",
+            significant(100.0 * wire.utilisation, 3),
+            significant(100.0 * wire.peak_utilisation, 3),
+        ));
+        let mut latency = Table::new([
+            Column::text("Message"),
+            Column::text("Identifier"),
+            Column::number("Frames"),
+            Column::number("Mean, us"),
+            Column::number("Longest, us"),
+            Column::number("Bound, us"),
+        ]);
+        for message in &wire.messages {
+            latency.row([
+                message.contract.name.to_owned(),
+                format!("{:#05X}", message.contract.id),
+                message.frames.to_string(),
+                significant(message.mean_us, 3),
+                significant(message.max_us, 3),
+                significant(message.bound_us, 4),
+            ]);
+        }
+        page.table(latency);
+    }
+    for node in &summary.lateness {
+        let classes: Vec<String> = node
+            .lateness
+            .histogram
+            .iter()
+            .map(|(limit, _)| {
+                if *limit == u32::MAX {
+                    "more".into()
+                } else {
+                    format!("< {limit}")
+                }
+            })
+            .collect();
+        let counts: Vec<f64> = node.lateness.histogram.iter().map(|(_, count)| *count as f64).collect();
+        let title = format!("Wake-ups of the {} by lateness, us", node.node);
+        let mut bars = Bars::new(&title, classes.iter().map(String::as_str), Axis::new("Ticks", ""));
+        bars.series("ticks", &counts);
+        page.figure(bars);
+    }
+}

@@ -8,7 +8,7 @@ use embedded_can::{ErrorKind, Id, StandardId};
 use stm32f4::stm32f405::{CAN1, GPIOB, RCC, can1};
 
 /// Time quanta a bit: 1 (sync) + 11 + 2, sample point at 85.7 %.
-const QUANTA: u32 = 1 + SEGMENT_1 + SEGMENT_2;
+pub const QUANTA: u32 = 1 + SEGMENT_1 + SEGMENT_2;
 const SEGMENT_1: u32 = 11;
 const SEGMENT_2: u32 = 2;
 const JUMP: u32 = 1;
@@ -42,7 +42,8 @@ impl Can {
         rcc.apb1rstr().modify(|_, w| w.can1rst().reset());
         rcc.apb1rstr().modify(|_, w| w.can1rst().clear_bit());
 
-        registers.mcr().write(|w| w.inrq().set_bit());
+        // After reset it sleeps; initialisation is only entered awake.
+        registers.mcr().modify(|_, w| w.sleep().clear_bit().inrq().set_bit());
         while registers.msr().read().inak().bit_is_clear() {}
         // Automatic recovery from bus-off; frames leave in the order of the requests, not of the mailboxes.
         registers.mcr().modify(|_, w| w.abom().set_bit().txfp().set_bit());

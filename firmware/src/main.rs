@@ -30,6 +30,10 @@ const BIT_RATE: u32 = 500_000;
 const TICK_RELOAD: u32 = clock::CORE_HZ / 1000 * TICK_MS - 1;
 
 const _: () = assert!(TICK_RELOAD < 1 << 24, "SysTick has 24 bits");
+const _: () = assert!(
+    clock::APB1_HZ.is_multiple_of(BIT_RATE * can::QUANTA),
+    "the bit rate must divide the peripheral's clock: no node tolerates a bus that is off by a per cent"
+);
 
 #[entry]
 fn main() -> ! {

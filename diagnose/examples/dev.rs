@@ -16,7 +16,7 @@ fn main() {
         let quiet = std::env::var("QUIET").is_ok();
         let s = oleo_diagnose::select::select(&p, &|m, f| {
             if !quiet {
-                println!("   {m} {f:.2} {:.1?}", t0.elapsed())
+                println!("   {m} {f:.2} {:.1?} sims {}", t0.elapsed(), p.simulated() / c.specimen.recordings())
             }
         })
         .unwrap();

@@ -4,16 +4,21 @@
 //! parameters would be re-laid-out for it at every step, and the per-block sums that held-out figures and intervals are
 //! made of would have to be formed again. The step itself is Marquardt's (J. SIAM 11(2), 1963), with bounds by freezing.
 
+use std::sync::Arc;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::DiagnoseError;
-use crate::problem::{Normal, Point, Problem};
+use crate::problem::{Normal, Point, Problem, Sensitivity};
+
+/// Steps with one Jacobian.
+const CHORD_STEPS: usize = 4;
 
 /// How hard to try.
 #[derive(Debug, Clone, Copy)]
 pub struct Effort {
-    /// Most Gauss-Newton steps.
-    pub steps: usize,
+    /// Most Jacobians.
+    pub linearisations: usize,
     /// Stop when a step gains less than this part of the cost.
     pub tolerance: f64,
 }
@@ -21,12 +26,12 @@ pub struct Effort {
 impl Effort {
     /// To convergence.
     pub const FULL: Self = Self {
-        steps: 14,
-        tolerance: 2e-5,
+        linearisations: 8,
+        tolerance: 3e-5,
     };
     /// Enough to rank candidates.
     pub const QUICK: Self = Self {
-        steps: 4,
+        linearisations: 2,
         tolerance: 1e-3,
     };
 }
@@ -42,7 +47,14 @@ pub struct Fit {
     pub prior: DVector<f64>,
     /// Total cost with the prior.
     pub cost: f64,
+    /// Range of every coordinate.
+    pub ranges: Vec<(f64, f64)>,
+    /// Residual and derivatives, where they were kept (they are large).
+    pub sensitivity: Option<Arc<Vec<Sensitivity>>>,
 }
+
+/// Largest change of a coordinate that leaving out blocks is believed to make: beyond, the linear picture is no guide.
+const MAX_LEFT_OUT_STEP: f64 = 1.5;
 
 /// Fits all parameters of the structure from a starting point.
 ///
@@ -59,49 +71,65 @@ pub fn fit(problem: &Problem<'_>, start: Point, effort: Effort) -> Result<Fit, D
     for (z, range) in point.z.iter_mut().zip(&ranges) {
         *z = z.clamp(range.0, range.1);
     }
-    let mut normals = problem.linearise(&point)?;
+    let columns: Vec<usize> = (0..point.z.len()).collect();
+    let mut sensitivity = problem.sensitivities(&point, &columns, None)?;
+    let mut normals = problem.assemble(&sensitivity);
     let mut cost = total(&normals) + problem.prior_cost(&point);
     let mut damping = 1e-4;
-    for _ in 0..effort.steps {
-        let (h, g) = sum(&normals, &prior, &point.z);
-        let mut accepted = None;
-        for _ in 0..7 {
-            let Some(step) = bounded_step(&h, &g, damping, &point.z, &ranges) else {
-                damping *= 10.0;
-                continue;
-            };
-            let mut trial = point.clone();
-            for ((z, d), range) in trial.z.iter_mut().zip(step.iter()).zip(&ranges) {
-                *z = (*z + d).clamp(range.0, range.1);
-            }
-            if trial == point {
-                break;
-            }
-            match problem.cost(&trial) {
-                Ok(trial_cost) if trial_cost < cost => {
-                    accepted = Some((trial, trial_cost));
+    for round in 0..effort.linearisations {
+        if round > 0 {
+            sensitivity = problem.sensitivities(&point, &columns, None)?;
+            normals = problem.assemble(&sensitivity);
+        }
+        let before = cost;
+        // Several steps with one Jacobian: a step costs one simulation, a Jacobian one a parameter.
+        for step in 0..CHORD_STEPS {
+            let (h, g) = sum(&normals, &prior, &point.z);
+            let gained = cost;
+            let tries = if step == 0 { 6 } else { 2 };
+            for _ in 0..tries {
+                let Some(step) = bounded_step(&h, &g, damping, &point.z, &ranges) else {
+                    damping *= 10.0;
+                    continue;
+                };
+                let mut trial = point.clone();
+                for ((z, d), range) in trial.z.iter_mut().zip(step.iter()).zip(&ranges) {
+                    *z = (*z + d).clamp(range.0, range.1);
+                }
+                if trial == point {
+                    break;
+                }
+                let residuals = match problem.predict(&trial) {
+                    Ok(predicted) => problem.residuals(&predicted),
+                    Err(DiagnoseError::Simulation { .. }) => {
+                        damping *= 10.0;
+                        continue;
+                    }
+                    Err(stop) => return Err(stop),
+                };
+                let trial_cost = squares(&residuals) + problem.prior_cost(&trial);
+                if trial_cost < cost {
+                    (point, cost) = (trial, trial_cost);
+                    sensitivity.iter_mut().zip(residuals).for_each(|(s, r)| s.residual = r);
+                    normals = problem.with_residuals(&normals, &sensitivity);
                     damping = (damping * 0.1_f64).max(1e-9);
                     break;
                 }
-                Ok(_) | Err(DiagnoseError::Simulation { .. }) => damping *= 10.0,
-                Err(stop) => return Err(stop),
+                damping *= 10.0;
+            }
+            if gained - cost < effort.tolerance * cost {
+                break;
             }
         }
-        let Some((trial, trial_cost)) = accepted else { break };
-        let gain = cost - trial_cost;
-        point = trial;
-        cost = trial_cost;
-        normals = problem.linearise(&point)?;
-        if gain < effort.tolerance * cost {
+        if before - cost < 3.0 * effort.tolerance * cost {
             break;
         }
     }
-    Ok(Fit {
-        point,
-        normals,
-        prior,
-        cost,
-    })
+    Ok(Fit { point, normals, prior, cost, ranges, sensitivity: Some(Arc::new(sensitivity)) })
+}
+
+fn squares(residuals: &[crate::specimen::Series]) -> f64 {
+    residuals.iter().flatten().map(|c| c.iter().map(|r| r * r).sum::<f64>()).sum()
 }
 
 /// Sum of the blocks' costs.
@@ -190,21 +218,16 @@ impl Fit {
     /// Coordinates at their bound stay there.
     #[must_use]
     pub fn step_without(&self, left_out: impl Fn(usize) -> bool) -> Option<DVector<f64>> {
-        let kept: Vec<Normal> = self
-            .normals
-            .iter()
-            .enumerate()
-            .filter(|(k, _)| !left_out(*k))
-            .map(|(_, n)| n.clone())
-            .collect();
-        let (mut h, mut g) = sum(&kept, &self.prior, &self.point.z);
+        let kept: Vec<Normal> =
+            self.normals.iter().enumerate().filter(|(k, _)| !left_out(*k)).map(|(_, n)| n.clone()).collect();
+        let (h, mut g) = sum(&kept, &self.prior, &self.point.z);
         // Only the difference that leaving out makes: the gradient left at the full fit is rounding and bounds.
         let (_, full) = sum(&self.normals, &self.prior, &self.point.z);
         g -= full;
-        for k in 0..self.prior.len() {
-            h[(k, k)] += 1e-6 * h[(k, k)] + 1e-6;
-        }
-        Some(h.cholesky()?.solve(&g))
+        let near: Vec<(f64, f64)> = (self.ranges.iter().zip(&self.point.z))
+            .map(|(r, z)| (r.0.max(z - MAX_LEFT_OUT_STEP), r.1.min(z + MAX_LEFT_OUT_STEP)))
+            .collect();
+        bounded_step(&h, &g, 1e-6, &self.point.z, &near)
     }
 
     /// Standard deviation of every coordinate, from blocks: residuals of a free run are coloured, so the usual formula

@@ -29,6 +29,8 @@ pub struct Parameter {
     pub prior: bool,
     /// Changes only what an instrument shows, so the physics need not be simulated again.
     pub instrument_only: bool,
+    /// Reported as this key, and inverted: a compliance is fitted (zero is "not there"), a stiffness is what people know.
+    pub inverse_of: Option<&'static str>,
 }
 
 /// Calibration may use a little more than the stated tolerance before it is no longer called calibration.
@@ -46,6 +48,7 @@ impl Parameter {
             upper: TOLERANCE_BOUND * tolerance,
             prior: true,
             instrument_only: false,
+            inverse_of: None,
         }
     }
 
@@ -60,6 +63,7 @@ impl Parameter {
             upper: range.1,
             prior: false,
             instrument_only: false,
+            inverse_of: None,
         }
     }
 
@@ -70,6 +74,18 @@ impl Parameter {
             scale: Scale::Log(0.5),
             ..Self::linear(key, start, 1.0, range)
         }
+    }
+
+    /// Free amount of something that is absent at zero. `visible` is an amount that would show.
+    #[must_use]
+    pub fn amount(key: impl Into<String>, visible: f64, most: f64) -> Self {
+        Self::linear(key, 0.0, visible, (0.0, most))
+    }
+
+    /// The same, reported as its inverse.
+    #[must_use]
+    pub fn shown_as_inverse(self, key: &'static str) -> Self {
+        Self { inverse_of: Some(key), ..self }
     }
 
     /// The same, touching only the instrument.

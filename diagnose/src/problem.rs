@@ -4,7 +4,7 @@
 //! and what it predicts is compared with what was measured, in units of each channel's noise. Normal equations are
 //! kept per block, so that leaving blocks out (for held-out figures and for intervals) costs no simulation.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -62,6 +62,7 @@ pub struct Problem<'a> {
     /// Number of folds.
     pub folds: usize,
     stop: &'a AtomicBool,
+    simulated: AtomicUsize,
 }
 
 impl<'a> Problem<'a> {
@@ -86,8 +87,14 @@ impl<'a> Problem<'a> {
             specimen,
             blocks,
             folds: BLOCKS_PER_RECORDING,
-            stop,
+            stop, simulated: AtomicUsize::new(0),
         }
+    }
+
+    /// Recordings simulated so far.
+    #[must_use]
+    pub fn simulated(&self) -> usize {
+        self.simulated.load(Ordering::Relaxed)
     }
 
     /// Fails once the caller asked to stop.
@@ -174,23 +181,39 @@ impl<'a> Problem<'a> {
         Hypothesis { calibration, effects }
     }
 
-    /// What the instruments would have shown, every recording.
+    /// The true quantities at a point, every recording.
     ///
     /// # Errors
     /// A hypothesis that cannot be simulated, or the wish to stop.
-    pub fn predict(&self, point: &Point) -> Result<Vec<Series>, DiagnoseError> {
+    pub fn truths(&self, point: &Point) -> Result<Vec<Series>, DiagnoseError> {
         let hypothesis = self.hypothesis(point);
-        (0..self.specimen.recordings())
-            .into_par_iter()
-            .map(|r| {
-                let truth = self.simulate(&hypothesis, r)?;
-                Ok(self.specimen.observe(&hypothesis, r, &truth))
-            })
-            .collect()
+        (0..self.specimen.recordings()).into_par_iter().map(|r| self.simulate(&hypothesis, r)).collect()
+    }
+
+    /// What the instruments show of given truths at a point.
+    #[must_use]
+    pub fn observed(&self, point: &Point, truths: &[Series]) -> Vec<Series> {
+        let hypothesis = self.hypothesis(point);
+        truths.par_iter().enumerate().map(|(r, t)| self.specimen.observe(&hypothesis, r, t)).collect()
+    }
+
+    /// What the instruments would have shown, every recording.
+    ///
+    /// # Errors
+    /// As [`Self::truths`].
+    pub fn predict(&self, point: &Point) -> Result<Vec<Series>, DiagnoseError> {
+        Ok(self.observed(point, &self.truths(point)?))
+    }
+
+    /// Residuals of given observations, every recording.
+    #[must_use]
+    pub fn residuals(&self, observed: &[Series]) -> Vec<Series> {
+        observed.iter().enumerate().map(|(r, p)| self.residual(r, p)).collect()
     }
 
     fn simulate(&self, hypothesis: &Hypothesis, recording: usize) -> Result<Series, DiagnoseError> {
         self.check()?;
+        self.simulated.fetch_add(1, Ordering::Relaxed);
         self.specimen
             .simulate(hypothesis, recording)
             .map_err(|what| DiagnoseError::Simulation {
@@ -232,7 +255,7 @@ impl<'a> Problem<'a> {
     /// As [`Self::predict`].
     pub fn block_costs(&self, point: &Point) -> Result<Vec<f64>, DiagnoseError> {
         let predicted = self.predict(point)?;
-        let residuals: Vec<Series> = predicted.iter().enumerate().map(|(r, p)| self.residual(r, p)).collect();
+        let residuals = self.residuals(&predicted);
         Ok(self
             .blocks
             .iter()
@@ -265,31 +288,26 @@ impl<'a> Problem<'a> {
             .sum()
     }
 
-    /// Normal equations of every block at a point.
+    /// Residual and the derivatives of the prediction with respect to the chosen coordinates, every recording. The true
+    /// quantities at the point may be given where they are known already.
     ///
     /// # Errors
-    /// As [`Self::predict`].
-    pub fn linearise(&self, point: &Point) -> Result<Vec<Normal>, DiagnoseError> {
-        let columns: Vec<usize> = (0..point.z.len()).collect();
-        let sensitivity = self.sensitivities(point, &columns)?;
-        Ok(self.assemble(&sensitivity))
-    }
-
-    /// Residual and the derivatives of the prediction with respect to the chosen coordinates, every recording.
-    ///
-    /// # Errors
-    /// As [`Self::predict`].
-    pub fn sensitivities(&self, point: &Point, columns: &[usize]) -> Result<Vec<Sensitivity>, DiagnoseError> {
-        let hypothesis = self.hypothesis(point);
+    /// As [`Self::truths`].
+    pub fn sensitivities(
+        &self,
+        point: &Point,
+        columns: &[usize],
+        truths: Option<&[Series]>,
+    ) -> Result<Vec<Sensitivity>, DiagnoseError> {
         let recordings = self.specimen.recordings();
-        let base: Vec<(Series, Series)> = (0..recordings)
-            .into_par_iter()
-            .map(|r| {
-                let truth = self.simulate(&hypothesis, r)?;
-                let shown = self.specimen.observe(&hypothesis, r, &truth);
-                Ok((truth, shown))
-            })
-            .collect::<Result<_, DiagnoseError>>()?;
+        let simulated;
+        let truths = if let Some(known) = truths {
+            known
+        } else {
+            simulated = self.truths(point)?;
+            &simulated
+        };
+        let base: Vec<(&Series, Series)> = truths.iter().zip(self.observed(point, truths)).collect();
         let parameters = self.parameters(&point.effects);
         let moved: Vec<(Hypothesis, f64, bool)> = columns
             .iter()
@@ -310,7 +328,7 @@ impl<'a> Problem<'a> {
             .map(|&(r, k)| {
                 let (there, step, instrument_only) = &moved[k];
                 let shown = if *instrument_only {
-                    self.specimen.observe(there, r, &base[r].0)
+                    self.specimen.observe(there, r, base[r].0)
                 } else {
                     let truth = self.simulate(there, r)?;
                     self.specimen.observe(there, r, &truth)
@@ -333,6 +351,26 @@ impl<'a> Problem<'a> {
                 columns: derivatives.by_ref().take(columns.len()).collect(),
             })
             .collect())
+    }
+
+    /// Normal equations with new residuals and the same derivatives.
+    #[must_use]
+    pub fn with_residuals(&self, normals: &[Normal], sensitivity: &[Sensitivity]) -> Vec<Normal> {
+        (self.blocks.par_iter().zip(normals))
+            .map(|(b, old)| {
+                let s = &sensitivity[b.recording];
+                let (mut g, mut cost) = (DVector::zeros(s.columns.len()), 0.0);
+                let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+                for (c, residual) in s.residual.iter().enumerate() {
+                    let r = &residual[b.start..b.end];
+                    cost += dot(r, r);
+                    for (i, column) in s.columns.iter().enumerate() {
+                        g[i] += dot(&column[c][b.start..b.end], r);
+                    }
+                }
+                Normal { h: old.h.clone(), g, cost, count: old.count }
+            })
+            .collect()
     }
 
     /// Sums residuals and derivatives into normal equations, block by block.

@@ -5,6 +5,8 @@
 //! pass for physics. When what remains is far above the noise, no model tried is complete, and small gains may be a wrong
 //! term bending towards an unknown one: then a term must explain much more to be named.
 
+use std::collections::BTreeMap;
+
 use crate::error::DiagnoseError;
 use crate::fit::{Effort, Fit, fit};
 use crate::problem::{Point, Problem};
@@ -13,17 +15,23 @@ use crate::screen::Screen;
 /// Most effects reported.
 const MAX_EFFECTS: usize = 6;
 /// Candidates fitted in full, after screening, in each round.
-const FINALISTS: usize = 4;
+const FINALISTS: usize = 3;
 /// A gain in cost below this is chance for one parameter (five standard deviations), whatever the sample.
 const MIN_GAIN: f64 = 30.0;
 /// Gain over its standard error from blocks.
 const MIN_GAIN_SIGMAS: f64 = 2.5;
+/// Change of a block's cost that is not chance.
+const BLOCK_GAIN: f64 = 6.0;
 /// Smallest part of the unexplained cost that a term must explain, where the final model reaches the noise.
 const MIN_SHARE: f64 = 0.08;
 /// The same where it does not.
 const MIN_SHARE_INCOMPLETE: f64 = 0.35;
 /// Noise ratio up to which a model counts as complete.
 pub const COMPLETE_NOISE_RATIO: f64 = 1.15;
+/// Noise ratio above which laws without a name are tried.
+const LAW_NOISE_RATIO: f64 = 1.06;
+/// Screening is linear in the model's own parameters: what it calls a little less than worth it is still fitted.
+const SCREEN_MARGIN: f64 = 0.6;
 /// A gain of a rival within this many standard errors of the chosen term's cannot be told from it.
 const AMBIGUOUS_SIGMAS: f64 = 2.0;
 
@@ -73,12 +81,39 @@ pub struct Selection {
 /// Progress: what is being done, and the part done, 0 to 1.
 pub type Report<'a> = &'a (dyn Fn(&str, f64) + Sync);
 
+type Screened = Vec<(usize, Option<Fit>)>;
+
 struct Judge<'p, 'a> {
     problem: &'p Problem<'a>,
     count: f64,
+    testable: Vec<usize>,
+    /// Fits already made, by structure.
+    known: BTreeMap<Vec<usize>, Fit>,
 }
 
-impl Judge<'_, '_> {
+impl<'p, 'a> Judge<'p, 'a> {
+    fn new(problem: &'p Problem<'a>) -> Self {
+        let all = problem.specimen.candidates();
+        let testable = (0..all.len()).filter(|&c| all[c].untestable.is_none()).collect();
+        Self { problem, count: problem.count() as f64, testable, known: BTreeMap::new() }
+    }
+
+    /// The full fit of a structure; each is made once.
+    fn fitted(&mut self, start: Point) -> Result<Fit, DiagnoseError> {
+        let mut key = start.effects.clone();
+        key.sort_unstable();
+        if let Some(fit) = self.known.get(&key) {
+            // A better start than the known fit's end means that fit was caught in a side valley.
+            let here = self.problem.cost(&start)?;
+            if here > fit.cost - 0.1 * MIN_GAIN {
+                return Ok(fit.clone());
+            }
+        }
+        let full = fit(self.problem, start, Effort::FULL)?;
+        self.known.insert(key, Fit { sensitivity: None, ..full.clone() });
+        Ok(full)
+    }
+
     fn held_out(&self, fit: &Fit) -> Vec<f64> {
         fit.held_out(self.problem)
     }
@@ -97,11 +132,133 @@ impl Judge<'_, '_> {
         (total, (n * variance).sqrt())
     }
 
+    /// Mean gain per block of the logarithm of the cost and its standard error: fair where a few blocks hold nearly all
+    /// of the misfit, and the raw gain is as scattered as they are.
+    fn logarithmic_gain(before: &[f64], after: &[f64]) -> (f64, f64) {
+        let n = before.len() as f64;
+        let gains: Vec<f64> = before.iter().zip(after).map(|(b, a)| libm::log(b.max(1e-9) / a.max(1e-9))).collect();
+        let mean = gains.iter().sum::<f64>() / n;
+        let variance = gains.iter().map(|g| (g - mean) * (g - mean)).sum::<f64>() / (n - 1.0).max(1.0);
+        (mean, (variance / n).sqrt())
+    }
+
+    /// Many blocks better and hardly one worse: the sign test for an effect that acts in some blocks only.
+    fn rarely_worse(before: &[f64], after: &[f64]) -> bool {
+        let (mut wins, mut losses) = (0, 0);
+        for (b, a) in before.iter().zip(after) {
+            wins += usize::from(b - a > BLOCK_GAIN);
+            losses += usize::from(a - b > BLOCK_GAIN);
+        }
+        wins >= 3 * losses + 4
+    }
+
     /// Whether a gain is worth a name, `share` being the least part of the unexplained cost.
-    fn worth(&self, before: &[f64], after: &[f64], share: f64) -> bool {
+    fn worth(&self, before: &[f64], after: &[f64], share: f64, margin: f64) -> bool {
         let (gain, error) = Self::gain(before, after);
         let unexplained = (before.iter().sum::<f64>() - self.count).max(0.0);
-        gain > MIN_GAIN && gain > MIN_GAIN_SIGMAS * error && gain > share * unexplained
+        let (logarithmic, logarithmic_error) = Self::logarithmic_gain(before, after);
+        let sigmas = margin * MIN_GAIN_SIGMAS;
+        let certain = gain > sigmas * error || logarithmic > sigmas * logarithmic_error || Self::rarely_worse(before, after);
+        gain > margin * MIN_GAIN && certain && gain > margin * share * unexplained
+    }
+
+    /// Candidates not in the model and not excluded by a group member that is; laws without a name only when asked for.
+    fn open(&self, point: &Point, laws: bool) -> Vec<usize> {
+        let all = self.problem.specimen.candidates();
+        let excluded = |c: usize| {
+            (all[c].id == "unlisted" && !laws)
+                || point.effects.iter().any(|&e| e == c || (!all[c].group.is_empty() && all[e].group == all[c].group))
+        };
+        self.testable.iter().copied().filter(|&c| !excluded(c)).collect()
+    }
+
+    fn screen(&self, fit: &Fit, candidates: Vec<usize>) -> Result<Screened, DiagnoseError> {
+        let fits = Screen::new(self.problem, fit)?.all(&candidates)?;
+        Ok(candidates.into_iter().zip(fits).collect())
+    }
+
+    /// Screened fits, best first by held-out cost.
+    fn ranked(&self, screened: &Screened) -> Vec<(f64, Fit)> {
+        let mut order: Vec<(f64, Fit)> = screened
+            .iter()
+            .filter_map(|(_, f)| f.as_ref().map(|f| (self.held_out(f).iter().sum::<f64>(), f.clone())))
+            .collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        order
+    }
+
+    /// The best of the screened candidates after a full fit, if it is worth a name.
+    fn strongest(&mut self, screened: &Screened, best: &Fit) -> Result<Option<Fit>, DiagnoseError> {
+        let before = self.held_out(best);
+        let total: f64 = before.iter().sum();
+        let mut winner: Option<(f64, Fit)> = None;
+        for (screened_cost, start) in self.ranked(screened).into_iter().take(FINALISTS) {
+            if !self.worth(&before, &self.held_out(&start), MIN_SHARE, SCREEN_MARGIN) {
+                continue;
+            }
+            if winner.as_ref().is_some_and(|(b, _)| total - screened_cost < 0.5 * (total - b)) {
+                continue;
+            }
+            let full = self.fitted(start.point)?;
+            let costs = self.held_out(&full);
+            let cost = costs.iter().sum::<f64>();
+            if self.worth(&before, &costs, MIN_SHARE, 1.0) && winner.as_ref().is_none_or(|(b, _)| cost < *b) {
+                winner = Some((cost, full));
+            }
+        }
+        Ok(winner.map(|(_, f)| f))
+    }
+
+    /// Drops effects that the others have made superfluous.
+    fn eliminate(&mut self, mut best: Fit, share: f64) -> Result<Fit, DiagnoseError> {
+        loop {
+            let costs = self.held_out(&best);
+            let mut weakest: Option<(f64, Fit)> = None;
+            for position in 0..best.point.effects.len() {
+                let less = self.fitted(self.problem.without(&best.point, position))?;
+                let without = self.held_out(&less);
+                if self.worth(&without, &costs, share, 1.0) {
+                    continue;
+                }
+                let (gain, _) = Self::gain(&without, &costs);
+                if weakest.as_ref().is_none_or(|(g, _)| gain < *g) {
+                    weakest = Some((gain, less));
+                }
+            }
+            match weakest {
+                Some((_, less)) => best = less,
+                None => return Ok(best),
+            }
+        }
+    }
+
+    /// For each effect of a model what it is worth, and its strongest rival, fitted in its place.
+    fn explain(&mut self, best: &Fit, laws: bool) -> Result<(Vec<Chosen>, Option<Fit>), DiagnoseError> {
+        let costs = self.held_out(best);
+        let total: f64 = costs.iter().sum();
+        let mut chosen = Vec::new();
+        let mut better: Option<(f64, Fit)> = None;
+        for (position, &candidate) in best.point.effects.iter().enumerate() {
+            let less = self.fitted(self.problem.without(&best.point, position))?;
+            let without = self.held_out(&less);
+            let (gain, gain_error) = Self::gain(&without, &costs);
+            let rivals: Vec<usize> = self.open(&less.point, laws).into_iter().filter(|&c| c != candidate).collect();
+            let screened = self.screen(&less, rivals)?;
+            let mut rival = None;
+            if let Some((cost, start)) = self.ranked(&screened).into_iter().next() {
+                let id = *start.point.effects.last().unwrap_or(&candidate);
+                let full = if cost - total < 0.5 * gain { self.fitted(start.point)? } else { start };
+                let held_out = self.held_out(&full);
+                let (lead, error) = Self::gain(&held_out, &costs);
+                if lead < -MIN_GAIN && better.as_ref().is_none_or(|(l, _)| lead < *l) {
+                    better = Some((lead, full));
+                }
+                rival = Some((id, lead, error));
+            }
+            chosen.push(Chosen { candidate, gain, gain_error, without: self.ratio(&without), rival });
+        }
+        chosen.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        Ok((chosen, better.map(|(_, f)| f)))
     }
 }
 
@@ -110,229 +267,67 @@ impl Judge<'_, '_> {
 /// # Errors
 /// A nominal model that cannot be simulated, or the wish to stop.
 pub fn select(problem: &Problem<'_>, report: Report<'_>) -> Result<Selection, DiagnoseError> {
-    let judge = Judge {
-        problem,
-        count: problem.count() as f64,
-    };
+    let mut judge = Judge::new(problem);
     report("calibrating within tolerance", 0.02);
-    let calibrated = fit(problem, problem.nominal(), Effort::FULL)?;
+    let calibrated = judge.fitted(problem.nominal())?;
     let calibrated_costs = judge.held_out(&calibrated);
-    let candidates = problem.specimen.candidates();
-    let testable: Vec<usize> = (0..candidates.len())
-        .filter(|&c| candidates[c].untestable.is_none())
-        .collect();
-
-    report("screening candidates", 0.1);
-    let first = Screen::new(problem, &calibrated)?.all(&testable)?;
-    let mut trials: Vec<Trial> = testable
-        .iter()
-        .zip(&first)
-        .map(|(&candidate, fit)| Trial {
-            candidate,
-            alone: fit.as_ref().map_or(f64::INFINITY, |f| judge.ratio(&judge.held_out(f))),
-            added: None,
-        })
-        .collect();
 
     let mut best = calibrated.clone();
-    let mut screened: Vec<(usize, Option<Fit>)> = testable.iter().copied().zip(first).collect();
-    for round in 0..MAX_EFFECTS {
-        report("fitting the strongest candidates", 0.2 + 0.1 * round as f64);
-        let before = judge.held_out(&best);
-        let Some(next) = strongest(problem, &judge, &screened, &before)? else {
+    let mut laws = false;
+    let mut trials: Vec<Trial> = Vec::new();
+    let mut screened: Screened;
+    loop {
+        let done = 0.1 + 0.12 * best.point.effects.len() as f64;
+        report("screening every candidate", done);
+        screened = judge.screen(&best, judge.open(&best.point, laws))?;
+        if best.point.effects.is_empty() {
+            record_alone(&judge, &screened, &mut trials);
+        }
+        report("fitting the strongest candidates", done + 0.06);
+        let full = best.point.effects.len() >= MAX_EFFECTS;
+        if let Some(next) = if full { None } else { judge.strongest(&screened, &best)? } {
+            best = next;
+        } else if !laws && !full && judge.ratio(&judge.held_out(&best)) > LAW_NOISE_RATIO {
+            laws = true;
+        } else {
             break;
-        };
-        best = next;
-        best = exchange(problem, &judge, best)?;
-        best = eliminate(problem, &judge, best, MIN_SHARE)?;
-        report("screening again beside the model so far", 0.25 + 0.1 * round as f64);
-        screened = screen_rest(problem, &best, &testable)?;
+        }
     }
-    let ratio = judge.ratio(&judge.held_out(&best));
-    if ratio > COMPLETE_NOISE_RATIO {
-        best = eliminate(problem, &judge, best, MIN_SHARE_INCOMPLETE)?;
-        screened = screen_rest(problem, &best, &testable)?;
+    report("dropping what the others explain", 0.8);
+    let before = best.point.effects.len();
+    best = judge.eliminate(best, MIN_SHARE)?;
+    if judge.ratio(&judge.held_out(&best)) > COMPLETE_NOISE_RATIO {
+        best = judge.eliminate(best, MIN_SHARE_INCOMPLETE)?;
     }
 
-    report("testing rivals", 0.85);
-    let best_costs = judge.held_out(&best);
+    report("testing rivals in the place of each effect", 0.88);
+    let (mut chosen, mut better) = judge.explain(&best, laws)?;
+    let mut exchanged = false;
+    for _ in 0..2 {
+        let Some(next) = better else { break };
+        best = judge.eliminate(next, MIN_SHARE)?;
+        exchanged = true;
+        (chosen, better) = judge.explain(&best, laws)?;
+    }
+    if exchanged || best.point.effects.len() != before {
+        screened = judge.screen(&best, judge.open(&best.point, laws))?;
+    }
     for (candidate, fit) in &screened {
         if let (Some(trial), Some(fit)) = (trials.iter_mut().find(|t| t.candidate == *candidate), fit) {
             trial.added = Some(judge.ratio(&judge.held_out(fit)));
         }
     }
-    let chosen = explain(problem, &judge, &best, &best_costs, &testable)?;
-    let noise_ratio = (judge.ratio(&calibrated_costs), judge.ratio(&best_costs));
-    Ok(Selection {
-        calibrated,
-        best,
-        chosen,
-        trials,
-        noise_ratio,
-        incomplete: noise_ratio.1 > COMPLETE_NOISE_RATIO,
-    })
+    let noise_ratio = (judge.ratio(&calibrated_costs), judge.ratio(&judge.held_out(&best)));
+    Ok(Selection { calibrated, best, chosen, trials, noise_ratio, incomplete: noise_ratio.1 > COMPLETE_NOISE_RATIO })
 }
 
-/// Candidates not in the model and not excluded by a group member that is.
-fn open_candidates(problem: &Problem<'_>, point: &Point, testable: &[usize]) -> Vec<usize> {
-    let all = problem.specimen.candidates();
-    let excluded = |c: usize| {
-        point
-            .effects
-            .iter()
-            .any(|&e| e == c || (!all[c].group.is_empty() && all[e].group == all[c].group))
-    };
-    testable.iter().copied().filter(|&c| !excluded(c)).collect()
-}
-
-fn screen_rest(
-    problem: &Problem<'_>,
-    fit: &Fit,
-    testable: &[usize],
-) -> Result<Vec<(usize, Option<Fit>)>, DiagnoseError> {
-    let open = open_candidates(problem, &fit.point, testable);
-    let fits = Screen::new(problem, fit)?.all(&open)?;
-    Ok(open.into_iter().zip(fits).collect())
-}
-
-/// Screened fits, best first by held-out cost.
-fn ranked(judge: &Judge<'_, '_>, screened: &[(usize, Option<Fit>)]) -> Vec<(f64, Fit)> {
-    let mut order: Vec<(f64, Fit)> = screened
-        .iter()
-        .filter_map(|(_, f)| f.as_ref().map(|f| (judge.held_out(f).iter().sum::<f64>(), f.clone())))
-        .collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0));
-    order
-}
-
-fn strongest(
-    problem: &Problem<'_>,
-    judge: &Judge<'_, '_>,
-    screened: &[(usize, Option<Fit>)],
-    before: &[f64],
-) -> Result<Option<Fit>, DiagnoseError> {
-    let total: f64 = before.iter().sum();
-    let mut best: Option<(f64, Fit)> = None;
-    for (screened_cost, start) in ranked(judge, screened).into_iter().take(FINALISTS) {
-        // A full fit gains on the screened one, but not by orders: what gained next to nothing is not refitted.
-        if total - screened_cost < 0.3 * MIN_GAIN {
-            continue;
-        }
-        if best
-            .as_ref()
-            .is_some_and(|(b, _)| total - screened_cost < 0.25 * (total - b))
-        {
-            continue;
-        }
-        let full = fit(problem, start.point, Effort::FULL)?;
-        let costs = judge.held_out(&full);
-        if !judge.worth(before, &costs, MIN_SHARE) {
-            continue;
-        }
-        let cost = costs.iter().sum::<f64>();
-        if best.as_ref().is_none_or(|(b, _)| cost < *b) {
-            best = Some((cost, full));
+fn record_alone(judge: &Judge<'_, '_>, screened: &Screened, trials: &mut Vec<Trial>) {
+    for (candidate, fit) in screened {
+        if trials.iter().all(|t| t.candidate != *candidate) {
+            let alone = fit.as_ref().map_or(f64::INFINITY, |f| judge.ratio(&judge.held_out(f)));
+            trials.push(Trial { candidate: *candidate, alone, added: None });
         }
     }
-    Ok(best.map(|(_, f)| f))
-}
-
-/// Tries to replace every effect but the newest by its best rival.
-fn exchange(problem: &Problem<'_>, judge: &Judge<'_, '_>, mut best: Fit) -> Result<Fit, DiagnoseError> {
-    if best.point.effects.len() < 2 {
-        return Ok(best);
-    }
-    let testable: Vec<usize> = {
-        let all = problem.specimen.candidates();
-        (0..all.len()).filter(|&c| all[c].untestable.is_none()).collect()
-    };
-    for position in 0..best.point.effects.len() - 1 {
-        let own = best.point.effects[position];
-        let less = fit(problem, problem.without(&best.point, position), Effort::QUICK)?;
-        let rivals: Vec<usize> = open_candidates(problem, &less.point, &testable)
-            .into_iter()
-            .filter(|&c| c != own)
-            .collect();
-        let fits = Screen::new(problem, &less)?.all(&rivals)?;
-        let screened: Vec<(usize, Option<Fit>)> = rivals.into_iter().zip(fits).collect();
-        let now: f64 = judge.held_out(&best).iter().sum();
-        let Some((cost, start)) = ranked(judge, &screened).into_iter().next() else {
-            continue;
-        };
-        if cost < now + 0.2 * (less.cost - now).max(0.0) {
-            let full = fit(problem, start.point, Effort::FULL)?;
-            if judge.held_out(&full).iter().sum::<f64>() < now - MIN_GAIN {
-                best = full;
-            }
-        }
-    }
-    Ok(best)
-}
-
-/// Drops effects that the others have made superfluous.
-fn eliminate(problem: &Problem<'_>, judge: &Judge<'_, '_>, mut best: Fit, share: f64) -> Result<Fit, DiagnoseError> {
-    loop {
-        let costs = judge.held_out(&best);
-        let mut weakest: Option<(f64, Fit)> = None;
-        for position in 0..best.point.effects.len() {
-            let less = fit(problem, problem.without(&best.point, position), Effort::FULL)?;
-            let without = judge.held_out(&less);
-            if judge.worth(&without, &costs, share) {
-                continue;
-            }
-            let (gain, _) = Judge::gain(&without, &costs);
-            if weakest.as_ref().is_none_or(|(g, _)| gain < *g) {
-                weakest = Some((gain, less));
-            }
-        }
-        match weakest {
-            Some((_, less)) => best = less,
-            None => return Ok(best),
-        }
-    }
-}
-
-/// For each chosen effect: what it is worth, and its strongest rival.
-fn explain(
-    problem: &Problem<'_>,
-    judge: &Judge<'_, '_>,
-    best: &Fit,
-    costs: &[f64],
-    testable: &[usize],
-) -> Result<Vec<Chosen>, DiagnoseError> {
-    let mut chosen = Vec::new();
-    for (position, &candidate) in best.point.effects.iter().enumerate() {
-        let less = fit(problem, problem.without(&best.point, position), Effort::FULL)?;
-        let without = judge.held_out(&less);
-        let (gain, gain_error) = Judge::gain(&without, costs);
-        let rivals: Vec<usize> = open_candidates(problem, &less.point, testable)
-            .into_iter()
-            .filter(|&c| c != candidate)
-            .collect();
-        let fits = Screen::new(problem, &less)?.all(&rivals)?;
-        let screened: Vec<(usize, Option<Fit>)> = rivals.into_iter().zip(fits).collect();
-        let mut rival = None;
-        if let Some((cost, start)) = ranked(judge, &screened).into_iter().next() {
-            let id = *start.point.effects.last().unwrap_or(&candidate);
-            let close = cost - costs.iter().sum::<f64>() < 0.5 * gain;
-            let full = if close {
-                fit(problem, start.point.clone(), Effort::FULL)?
-            } else {
-                start
-            };
-            let (lead, error) = Judge::gain(&judge.held_out(&full), costs);
-            rival = Some((id, lead, error));
-        }
-        chosen.push(Chosen {
-            candidate,
-            gain,
-            gain_error,
-            without: judge.ratio(&without),
-            rival,
-        });
-    }
-    chosen.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    Ok(chosen)
 }
 
 impl Chosen {

@@ -26,7 +26,7 @@ pub fn faults(column: &str, size: f64, duration_s: f64, interval_s: f64) -> Vec<
     vec![
         make(
             "sensor_lag",
-            Parameter::log("time_constant_s", 2.0 * short, (0.02 * short, 1e3 * short)),
+            Parameter::amount("time_constant_s", 0.5 * short, 1e3 * short),
             vec![],
         ),
         make(

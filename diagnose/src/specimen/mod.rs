@@ -39,6 +39,12 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// True if the starting values leave the model as it is.
+    #[must_use]
+    pub fn absent_at_start(&self) -> bool {
+        self.parameters.iter().any(|p| p.start == 0.0)
+    }
+
     /// Id and place in one word, unique.
     #[must_use]
     pub fn name(&self) -> String {

@@ -17,7 +17,7 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
     let column = || candidate.place.trim_start_matches("sensor:").to_owned();
     let second = candidate.place.ends_with('2');
     match candidate.id {
-        "oil_compressibility" => effects.oil_compressibility = Some(OilCompressibility { bulk_modulus_pa: v[0] }),
+        "oil_compressibility" => effects.oil_compressibility = Some(OilCompressibility { bulk_modulus_pa: 1.0 / v[0].max(1e-13) }),
         "entrained_air" => {
             effects.entrained_air = Some(EntrainedAir {
                 volume_fraction: v[0],
@@ -122,7 +122,7 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
             term.stiffness_n_m = v[2];
             term.progression_n_m3 = v[3];
         }
-        "mount_compliance" => effects.mount_compliance = Some(MountCompliance { stiffness_n_m: v[0] }),
+        "mount_compliance" => effects.mount_compliance = Some(MountCompliance { stiffness_n_m: 1.0 / v[0].max(1e-15) }),
         "damping_fade" => {
             let (f1, f2, tau) = match candidate.place.as_str() {
                 "path-1" => (v[0], 0.0, v[1]),

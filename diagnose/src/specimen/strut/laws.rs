@@ -107,11 +107,11 @@ pub fn candidates(_excitation: &Excitation, untestable: &Option<String>) -> Vec<
         .iter()
         .map(|kind| {
             let least = if kind.monotone { 0.0 } else { -1e4 * kind.scale };
-            let start = if kind.monotone { kind.scale } else { 0.0 };
+            
             let parameters = (1..kind.knots.len())
                 .map(|k| {
                     let key = format!("rise_{:.3e}_to_{:.3e}", kind.knots[k - 1], kind.knots[k]);
-                    Parameter::linear(key, start, kind.scale, (least, 1e4 * kind.scale))
+                    Parameter::linear(key, 0.0, kind.scale, (least, 1e4 * kind.scale))
                 })
                 .collect();
             Candidate {

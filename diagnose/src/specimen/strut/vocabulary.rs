@@ -32,7 +32,7 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         add(
             "oil_compressibility",
             "main-chamber",
-            vec![Parameter::log("bulk_modulus_Pa", 1.4e9, (5e7, 1e11))],
+            vec![Parameter::amount("compressibility_1_Pa", 1e-10, 2e-8).shown_as_inverse("bulk_modulus_Pa")],
             vec![],
             None,
         );
@@ -42,7 +42,7 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         add(
             "entrained_air",
             "main-chamber",
-            vec![Parameter::log("volume_fraction", 5e-3, (1e-6, 0.3)), exponent],
+            vec![Parameter::amount("volume_fraction", 1e-3, 0.3), exponent],
             vec![],
             None,
         );
@@ -73,7 +73,7 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
     }
     if e.seal_friction.is_none() {
         let parameters = vec![
-            Parameter::log("coulomb_force_N", 60.0, (0.5, 1e4)),
+            Parameter::amount("coulomb_force_N", 20.0, 1e4),
             Parameter::linear("breakaway_over_coulomb", 1.3, 0.2, (1.0, 4.0)),
             Parameter::log("stribeck_speed_m_s", 0.02, (1e-3, 0.5)),
         ];
@@ -83,26 +83,26 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         add(
             "side_load_friction",
             "main-seal",
-            vec![Parameter::log("coefficient", 0.01, (1e-5, 0.5))],
+            vec![Parameter::amount("coefficient", 0.003, 0.5)],
             vec![],
             None,
         );
     }
     if e.accumulator_piston_friction.is_none() {
         for i in 1..=2 {
-            let pressure = Parameter::log(format!("pressure_{i}_Pa"), 3e4, (100.0, 3e6));
+            let pressure = Parameter::amount(format!("pressure_{i}_Pa"), 1e4, 3e6);
             add(
                 "accumulator_piston_friction",
                 &format!("accumulator-{i}"),
                 vec![pressure],
-                vec![vec![2e5]],
+                vec![],
                 None,
             );
         }
     }
     if e.damper_leakage.is_none() {
         for i in 1..=2 {
-            let leak = Parameter::log(format!("flow_coefficient_{i}"), 5e-8, (1e-10, 1e-5));
+            let leak = Parameter::amount(format!("flow_coefficient_{i}"), 1e-8, 1e-5);
             add(
                 "damper_leakage",
                 &format!("path-{i}"),
@@ -114,7 +114,7 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
     }
     if e.line_resistance.is_none() {
         for i in 1..=2 {
-            let resistance = Parameter::log(format!("resistance_{i}_Pa_s_m3"), 1e8, (1e5, 1e11));
+            let resistance = Parameter::amount(format!("resistance_{i}_Pa_s_m3"), 3e7, 1e11);
             add(
                 "line_resistance",
                 &format!("path-{i}"),
@@ -125,7 +125,7 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         }
     }
     if e.line_inertance.is_none() {
-        let inertance = Parameter::log("inertance_2_kg_m4", 3e6, (1e4, 1e9));
+        let inertance = Parameter::amount("inertance_2_kg_m4", 1e6, 1e9);
         add("line_inertance", "path-2", vec![inertance], vec![], slow(excitation, 2));
     }
     let switched = excitation.edges.iter().any(|&n| n > 0);
@@ -149,7 +149,7 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         add(
             "valve3_leakage",
             "valve-3",
-            vec![Parameter::log("flow_coefficient", 1e-9, (1e-13, 1e-6))],
+            vec![Parameter::amount("flow_coefficient", 1e-10, 1e-6)],
             vec![],
             cannot,
         );
@@ -160,10 +160,10 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         let parameters = vec![
             Parameter::linear("bump_clearance_m", 0.85 * high, 0.05 * high, (0.2 * high, 1.2 * high)),
             Parameter::linear("rebound_clearance_m", 0.85 * low, 0.05 * low, (0.2 * low, 1.2 * low)),
-            Parameter::log("stiffness_N_m", 1e5, (1e2, 1e8)),
-            Parameter::linear("progression_N_m3", 0.0, 1e8, (0.0, 1e13)),
+            Parameter::amount("stiffness_N_m", 1e4, 1e8),
+            Parameter::amount("progression_N_m3", 1e8, 1e13),
         ];
-        let at = |a: f64, b: f64| vec![a * high, b * low, 1e5, 0.0];
+        let at = |a: f64, b: f64| vec![a * high, b * low, 0.0, 0.0];
         add(
             "bump_stop",
             "end-stop",
@@ -176,14 +176,14 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         add(
             "mount_compliance",
             "mount",
-            vec![Parameter::log("stiffness_N_m", 1e7, (1e5, 1e10))],
+            vec![Parameter::amount("compliance_m_N", 1e-8, 1e-4).shown_as_inverse("stiffness_N_m")],
             vec![],
             None,
         );
     }
     if e.damping_fade.is_none() {
         let cooling = || Parameter::log("cooling_time_s", 60.0, (1.0, 1e5));
-        let fade = |i: usize| Parameter::log(format!("fade_{i}_per_J"), 5e-5, (1e-8, 1e-2));
+        let fade = |i: usize| Parameter::amount(format!("fade_{i}_per_J"), 1e-5, 1e-2);
         add(
             "damping_fade",
             "path-1",

@@ -2,7 +2,13 @@
 
 use std::fmt;
 
-use comfy_table::{CellAlignment, ContentArrangement, presets::UTF8_HORIZONTAL_ONLY};
+use comfy_table::{CellAlignment, ContentArrangement, LineStyle, TableStyle};
+
+/// Lines above and below the rows and under the titles; none between rows, which read well without.
+const STYLE: TableStyle = TableStyle::new()
+    .top_border(LineStyle::none().fill('\u{2500}').junction('\u{2500}'))
+    .header_separator(LineStyle::none().fill('\u{2500}').junction('\u{2500}'))
+    .bottom_border(LineStyle::none().fill('\u{2500}').junction('\u{2500}'));
 
 /// A column and how its cells line up.
 #[derive(Clone, Debug)]
@@ -150,7 +156,7 @@ impl fmt::Display for Table {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut table = comfy_table::Table::new();
         table
-            .load_style(UTF8_HORIZONTAL_ONLY)
+            .load_style(STYLE)
             .set_content_arrangement(ContentArrangement::Dynamic);
         table.set_header(self.columns.iter().map(|column| column.title.clone()));
         for row in &self.rows {

@@ -62,25 +62,15 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         _ => strut(&text, &model_file, source, &file)?,
     };
 
-    let mut columns: Vec<(&str, &[f64])> = Vec::new();
-    let is_signal = |name: &str| name.starts_with("valve");
-    columns.extend(
-        inputs
-            .iter()
-            .filter(|input| !is_signal(&input.0))
-            .map(|input| (input.0.as_str(), input.1.as_slice())),
-    );
+    // In the order of a recording: time and displacement, what is predicted, the other inputs.
+    let (before, after) = inputs.split_at(2.min(inputs.len()));
+    let mut columns: Vec<(&str, &[f64])> = before.iter().map(borrowed).collect();
     columns.extend(
         channels
             .iter()
             .map(|channel| (channel.name.as_str(), channel.predicted.as_slice())),
     );
-    columns.extend(
-        inputs
-            .iter()
-            .filter(|input| is_signal(&input.0))
-            .map(|input| (input.0.as_str(), input.1.as_slice())),
-    );
+    columns.extend(after.iter().map(borrowed));
     out.csv(&name, &columns)?;
     out.commit()?;
 
@@ -184,6 +174,10 @@ fn cylinder(text: &str, model_file: &str, source: File, file: &str) -> Result<Pr
         noise: model.noise.get("force_N").copied(),
     };
     Ok((inputs, vec![channel]))
+}
+
+fn borrowed(column: &(String, Vec<f64>)) -> (&str, &[f64]) {
+    (&column.0, &column.1)
 }
 
 /// A column that was asked for as needed.

@@ -59,8 +59,9 @@ pub fn compress_oil(model: &StrutModel, highest_pa: f64) -> Result<OilCompressio
         })
         .bulk_modulus_pa;
     let (area, oil) = (solid.piston_area_m2(), solid.cylinder.oil_volume_m3);
+    // All valves closed: the packs keep what gas there is out of the oil's reckoning.
     let stroke_m = oil / area * (1.0 - libm::exp(-(highest_pa - FILLING_PA) / bulk_modulus_pa));
-    let programme = Programme::sawtooth(&[0.0, stroke_m, 0.0], 2.0 * stroke_m / 1.2e-3, 0.01, [true; 3]);
+    let programme = Programme::sawtooth(&[0.0, stroke_m, 0.0], 2.0 * stroke_m / 1.2e-3, 0.01, [false; 3]);
     let record = play(&solid, &programme)?;
 
     let strain = |x: f64| libm::log(oil / (oil - area * x));

@@ -14,7 +14,7 @@ use crate::failure::Failure;
 
 /// Damping characteristics by sines of 25 mm in three states, with tight and with leaking damper packs.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  oleo rig damping --leak 1.5e-6 --out damping")]
+#[command(after_help = "Example:\n  oleo rig damping --leak 1.2e-6 --out damping")]
 pub struct Args {
     #[command(flatten)]
     specimen: Specimen,
@@ -22,7 +22,7 @@ pub struct Args {
     #[arg(long, value_name = "M/S", default_value_t = 1.0)]
     speed: f64,
     /// Flow coefficient beside each damper pack in the leaking strut, m3/s/sqrt(Pa)
-    #[arg(long, value_name = "COEFFICIENT", default_value_t = 1.5e-6)]
+    #[arg(long, value_name = "COEFFICIENT", default_value_t = 1.2e-6)]
     leak: f64,
 }
 

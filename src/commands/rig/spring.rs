@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use oleo_plant_sim::rig::{SpringCharacteristic, SpringTest, side_loaded, test_spring};
+use oleo_plant_sim::rig::{Isothermal, SpringCharacteristic, SpringTest, side_loaded, test_spring};
 use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::strut_first::Spring;
 use oleo_report::{Axis, Column, Curves, Progress, Style, Table};
@@ -91,19 +91,16 @@ fn outcome(soft: &SpringCharacteristic, stiff: &SpringCharacteristic, bent: &Spr
         format!("{:.2}", 1e-3 * ends(s).0)
     });
     pair("force at full extension", "kN", &|s| format!("{:.2}", 1e-3 * ends(s).1));
-    pair("largest deviation from isothermal", "%", &|s| {
-        percent(s.deviation(&s.isothermal).0)
-    });
-    pair("  with the oil's bulk modulus", "%", &|s| {
-        percent(s.deviation(&s.corrected).0)
-    });
-    pair("  and real nitrogen", "%", &|s| percent(s.deviation(&s.real).0));
-    pair("RMS deviation from isothermal", "%", &|s| {
-        percent(s.deviation(&s.isothermal).1)
-    });
-    pair("  with the oil's bulk modulus", "%", &|s| {
-        percent(s.deviation(&s.corrected).1)
-    });
+    for (name, prediction) in predictions() {
+        pair(&format!("largest deviation from {name}"), "%", &|s| {
+            percent(s.deviation(prediction(s)).0)
+        });
+    }
+    for (name, prediction) in predictions() {
+        pair(&format!("RMS deviation from {name}"), "%", &|s| {
+            percent(s.deviation(prediction(s)).1)
+        });
+    }
     pair("hysteresis of the force from pressure", "N", &|s| {
         format!("{:.0}", s.hysteresis_n())
     });
@@ -111,13 +108,24 @@ fn outcome(soft: &SpringCharacteristic, stiff: &SpringCharacteristic, bent: &Spr
         format!("{:.0}", s.load_cell_hysteresis_n())
     });
     let side_load = [
-        "  with the offset mounting".to_owned(),
+        "hysteresis of the load cell, offset mounting".to_owned(),
         format!("{:.0}", bent.load_cell_hysteresis_n()),
         "-".to_owned(),
         "N".to_owned(),
     ];
     table.row(side_load);
     table
+}
+
+/// A prediction by name, taken from a characteristic.
+type Prediction = (&'static str, fn(&SpringCharacteristic) -> &Isothermal);
+
+fn predictions() -> [Prediction; 3] {
+    [
+        ("isothermal", |s| &s.isothermal),
+        ("isothermal with bulk modulus", |s| &s.corrected),
+        ("isothermal with bulk modulus and real gas", |s| &s.real),
+    ]
 }
 
 fn percent(ratio: f64) -> String {

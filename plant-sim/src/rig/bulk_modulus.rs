@@ -125,7 +125,9 @@ mod tests {
 
     #[test]
     fn the_simulated_oil_is_the_closed_form() {
-        let test = compress_oil(&StrutModel::defender110(8000.0), 20e6).expect("possible");
+        let mut model = StrutModel::defender110(8000.0);
+        model.effects.entrained_air = None;
+        let test = compress_oil(&model, 20e6).expect("possible");
         assert!(test.deviation < 5e-3, "{}", test.deviation);
         assert!((test.found_pa / 1.5e9 - 1.0).abs() < 5e-3, "{} Pa", test.found_pa);
         // 1.5 GPa, 0.9 l, 19.5 MPa: 5.92 mm.

@@ -123,12 +123,10 @@ impl Metrics {
                 Figure::Word(mode_name(last.map_or(Mode::StartUp, |(mode, _)| *mode)))
             }
             Metric::FirstFault => {
-                let first = self
-                    .account
-                    .iter()
-                    .flatten()
-                    .map(|(_, fault)| *fault)
-                    .find(|fault| *fault != FaultCode::None);
+                // Before the first complete set of sensors the bus is rightly called silent.
+                let begin = self.account.iter().position(|a| a.is_some_and(|(mode, _)| mode == Mode::Normal));
+                let mut faults = self.account.iter().skip(begin.unwrap_or(0)).flatten().map(|(_, fault)| *fault);
+                let first = faults.find(|fault| *fault != FaultCode::None);
                 Figure::Word(fault_name(first.unwrap_or_default()))
             }
         }

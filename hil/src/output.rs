@@ -145,7 +145,8 @@ impl Summary {
             schema: 1,
             scenario: scenario.name.clone(),
             road: scenario.road.clone(),
-            speed_km_h: scenario.speed_m_s * 3.6,
+            // Without the last digit's noise of the way to m/s and back.
+            speed_km_h: (scenario.speed_m_s * 3.6 * 1e6).round() * 1e-6,
             strategy: scenario.strategy_name(),
             bus: scenario.bus.to_string(),
             clock: scenario.clock.name(),

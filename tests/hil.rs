@@ -1,0 +1,268 @@
+//! `oleo hil` end to end: the same commands every time, an answer to every fault, one line for every bad input.
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+
+use oleo_hil::candump::parse_line;
+use oleo_hil::scenario::BUILT_IN;
+use support::{complaint, no_panic, run, summary};
+
+fn hil(arguments: &[&str], out: &Path) -> serde_json::Value {
+    let mut all = vec!["hil", "--out", out.to_str().unwrap()];
+    all.extend(arguments);
+    let output = run(&all);
+    no_panic(&output);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(
+        output.status.code(),
+        Some(0),
+        "{arguments:?}\n{text}{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    summary(out)
+}
+
+/// The default scenario commands the same on every run, on one and two threads; `tests/golden/belgian.hash` is what it commanded
+/// when last looked at. Where a change of controller or plant is meant to change it: run with OLEO_BLESS=1.
+#[test]
+fn the_same_commands_every_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let hash = |arguments: &[&str], name: &str| hil(arguments, &folder.path().join(name))["command_hash"].clone();
+    let first = hash(&[], "first");
+    assert_eq!(first, hash(&[], "second"));
+    assert_eq!(first, hash(&["--threads", "2"], "threads"));
+    assert_ne!(first, hash(&["--seed", "2"], "seed"));
+    for file in ["candump.log", "timeseries.csv", "junit.xml"] {
+        let read = |name: &str| fs::read(folder.path().join(name).join(file)).unwrap();
+        assert!(read("first") == read("second"), "{file}: the same bytes");
+    }
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/belgian.hash");
+    let first = first.as_str().unwrap();
+    if std::env::var_os("OLEO_BLESS").is_some() {
+        fs::write(&golden, format!("{first}\n")).unwrap();
+    }
+    assert_eq!(
+        fs::read_to_string(&golden).unwrap().trim(),
+        first,
+        "see the comment of this test"
+    );
+}
+
+#[test]
+fn the_default_run_leaves_what_it_promises() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let summary = hil(&["--duration", "5"], &out);
+    for key in [
+        "ticks",
+        "simulated_s",
+        "wall_s",
+        "real_time_factor",
+        "command_hash",
+        "frames_sent",
+        "frames_lost",
+        "e2e_errors",
+        "bus_load_500k",
+        "weighted_rms_driver_m_s2",
+        "weighted_rms_rear_left_m_s2",
+        "max_roll_deg",
+        "valve_switches",
+        "checks",
+    ] {
+        assert!(!summary[key].is_null(), "{key}");
+    }
+    assert_eq!(summary["valve_switches"].as_array().unwrap().len(), 12);
+    assert!(
+        summary["checks"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .all(|check| check["name"].is_string())
+    );
+    assert_eq!(
+        (summary["frames_lost"].as_u64(), summary["e2e_errors"].as_u64()),
+        (Some(0), Some(0))
+    );
+    let load = summary["bus_load_500k"].as_f64().unwrap();
+    assert!(
+        (0.25..0.38).contains(&load),
+        "{load}: seven frames of 111 to 135 bits in 2500"
+    );
+
+    let log = fs::read_to_string(out.join("candump.log")).unwrap();
+    let lines: Vec<_> = log.lines().map(|line| parse_line(line).expect(line)).collect();
+    assert_eq!(lines.len() as u64, summary["frames_sent"].as_u64().unwrap());
+    assert!(lines.windows(2).all(|pair| pair[0].time_us <= pair[1].time_us));
+
+    let csv = fs::read_to_string(out.join("timeseries.csv")).unwrap();
+    let columns = csv.lines().next().unwrap().split(',').count();
+    assert_eq!(csv.lines().count(), 1001);
+    assert!(csv.lines().all(|line| line.split(',').count() == columns));
+
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    for heading in ["Road", "Body motion", "Struts", "Controller", "Bus"] {
+        assert!(page.contains(&format!("<h2>{heading}</h2>")), "{heading}");
+    }
+    assert!(!page.contains("src=\"http"), "opens offline");
+    let mut names: Vec<_> = fs::read_dir(&out)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    names.sort();
+    assert_eq!(
+        names,
+        [
+            "candump.log",
+            "junit.xml",
+            "report.html",
+            "summary.json",
+            "timeseries.csv"
+        ]
+    );
+}
+
+#[test]
+fn every_built_in_scenario_meets_its_checks() {
+    let folder = tempfile::tempdir().unwrap();
+    let failures: Vec<String> = BUILT_IN
+        .iter()
+        .filter(|(name, _)| *name != "belgian")
+        .filter_map(|(name, _)| {
+            let out = folder.path().join(name);
+            let output = run(&["hil", "--scenario", name, "--out", out.to_str().unwrap()]);
+            no_panic(&output);
+            (output.status.code() != Some(0)).then(|| format!("{name}\n{}", String::from_utf8_lossy(&output.stdout)))
+        })
+        .collect();
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+#[test]
+fn a_failed_check_is_exit_status_1_and_in_every_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("own.toml");
+    let text = "name = \"own\"\nroad = \"flat\"\nspeed_km_h = 30\nduration_s = 1\n\
+                [[check]]\nmetric = \"frames_lost\"\nat_least = 1\n[[check]]\nmetric = \"ticks\"\nequals = 200\n";
+    fs::write(&file, text).unwrap();
+    let out = folder.path().join("out");
+    let output = run(&[
+        "hil",
+        "--scenario",
+        file.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(output.status.code(), Some(1));
+    let summary = summary(&out);
+    assert_eq!(summary["checks"][0]["passed"], false);
+    assert_eq!(summary["checks"][1]["passed"], true);
+    let junit = fs::read_to_string(out.join("junit.xml")).unwrap();
+    assert!(
+        junit.contains("tests=\"2\"") && junit.contains("failures=\"1\""),
+        "{junit}"
+    );
+}
+
+#[test]
+fn bad_input_is_one_line_and_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    fs::write(
+        path("bad.toml"),
+        "name = \"x\"\nroad = \"flat\"\nspeed_km_h = 60\nduration_s = -2\n",
+    )
+    .unwrap();
+    fs::write(path("bytes.toml"), [0xFF, 0xFE, 0x00]).unwrap();
+    fs::write(path("empty.toml"), "").unwrap();
+    fs::write(path("strut.toml"), "[specimen]\nname = 3\n").unwrap();
+    fs::write(path("road.crg"), "no road").unwrap();
+    fs::write(path("a-file"), "").unwrap();
+    let out = path("out");
+    let table: &[(&[&str], &str)] = &[
+        (&["--scenario", "belgium"], "belgian, apg"),
+        (&["--scenario", &path("bad.toml")], "bad.toml:4: duration_s is -2"),
+        (&["--scenario", &path("bytes.toml")], "bytes.toml"),
+        (&["--scenario", &path("empty.toml")], "missing field"),
+        (&["--scenario", &path("nowhere.toml")], "nowhere.toml"),
+        (&["--strut", &path("strut.toml")], "strut.toml"),
+        (&["--strut", &path("nowhere.toml")], "nowhere.toml"),
+        (&["--vehicle", &path("strut.toml")], "strut.toml"),
+        (&["--road", &path("road.crg")], "road.crg"),
+        (&["--road", "cobbles"], "cobbles"),
+        (&["--speed", "-1"], "--speed -1"),
+        (&["--speed", "nan"], "--speed NaN"),
+        (&["--duration", "1e9"], "--duration 1000000000"),
+        (&["--strategy", "sporty"], "always-soft"),
+        (&["--clock", "sundial"], "lockstep, realtime"),
+        (&["--bus", "can0"], "socketcan:vcan0"),
+        (&["--bus", "socketcan:nosuchcan0"], "ip link"),
+        (&["--bus", "slcan:/nonexistent"], "/nonexistent"),
+        (&["--bus", "slcan:tcp:127.0.0.1:1"], "--node"),
+        (&["--node", "plant"], "--bus socketcan"),
+        (&["--node", "driver"], "plant"),
+        (&["--threads", "3"], "--threads"),
+        (&["--rod", "flat"], "--road"),
+    ];
+    for (arguments, expected) in table {
+        let mut all = vec!["hil", "--out", &out];
+        all.extend(*arguments);
+        let text = complaint(&run(&all));
+        assert!(text.contains(expected), "{arguments:?}: {text}");
+        assert!(!Path::new(&out).exists(), "{arguments:?} left something");
+    }
+    for folder_that_cannot_be in [path("a-file"), path("no/such/parent"), "/proc/oleo".into()] {
+        complaint(&run(&["hil", "--duration", "0.1", "--out", &folder_that_cannot_be]));
+    }
+}
+
+#[test]
+fn real_time_reports_its_deadlines() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let output = run(&[
+        "hil",
+        "--clock",
+        "realtime",
+        "--duration",
+        "1",
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    no_panic(&output);
+    let summary = summary(&out);
+    let nodes = summary["lateness"].as_array().unwrap();
+    assert_eq!(nodes.len(), 2);
+    assert!(
+        nodes
+            .iter()
+            .all(|node| node["max_us"].as_u64().unwrap() >= node["p50_us"].as_u64().unwrap())
+    );
+    assert!(summary["wall_s"].as_f64().unwrap() >= 0.99);
+}
+
+/// The measured surface is not in this repository.
+#[test]
+fn the_measured_belgian_block() {
+    let surface = "../shared/roads/belgian_block.crg";
+    if !Path::new(env!("CARGO_MANIFEST_DIR")).join(surface).exists() {
+        println!("SKIPPED: {surface} is not here");
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let summary = hil(&["--road", surface], &folder.path().join("run"));
+    let felt = summary["weighted_rms_driver_m_s2"].as_f64().unwrap();
+    assert!((0.5..6.0).contains(&felt), "{felt} m/s2");
+}
+
+#[test]
+fn help_has_examples_and_units() {
+    let output = run(&["hil", "--help"]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(
+        output.status.success() && text.contains("Examples:") && text.contains("km/h"),
+        "{text}"
+    );
+    assert!(run(&["hil", "--list"]).status.success());
+}

@@ -130,6 +130,7 @@ fn compare(dampers: bool, edge3: f64) {
     model.effects.seal_friction = None;
     model.effects.bump_stop = None;
     model.effects.real_gas = None;
+    model.effects.entrained_air = None;
     model.valve_timing.response_polynomial_s = vec![RESPONSE_S];
     let exact = reference(&model, edge3, f64::from(u8::from(dampers)));
     let mut strut = Strut::at_rest(&model, [dampers, dampers, edge3 < 0.0]).unwrap();

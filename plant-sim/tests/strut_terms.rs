@@ -118,6 +118,20 @@ fn entrained_air_softens_low_pressure_most() {
 }
 
 #[test]
+fn a_strut_pulled_apart_reaches_vacuum_and_no_further() {
+    let mut strut = Strut::at_rest(&StrutModel::defender110(4000.0), [false; 3]).unwrap();
+    let lowest = (1..=100)
+        .map(|i| strut.advance(-1.4e-3 * f64::from(i), 1e-3, [false; 3]).pressure_pa[0])
+        .fold(f64::INFINITY, f64::min);
+    assert!(lowest > -ATMOSPHERE_PA && lowest < -0.5 * ATMOSPHERE_PA, "{lowest}");
+    let back = (1..=400)
+        .map(|i| strut.advance(-0.14 + 3.5e-4 * f64::from(i), 1e-2, [false; 3]))
+        .last()
+        .unwrap();
+    assert!((back.force_n - 4000.0).abs() < 400.0, "{}", back.force_n);
+}
+
+#[test]
 fn charge_error_is_a_volume() {
     let mut model = bare();
     model.effects.gas_charge_error = Some(GasChargeError {
@@ -304,6 +318,7 @@ fn a_closed_cycle_costs_energy_and_returns_the_oil() {
     let mut model = StrutModel::defender110(8000.0);
     model.effects.bump_stop = None;
     model.effects.seal_friction = None;
+    model.effects.entrained_air = None;
     let mut strut = Strut::at_rest(&model, SOFT).unwrap();
     let before = strut.gas();
     let (mut work, mut last) = (0.0, strut.output().force_n);

@@ -51,7 +51,8 @@ impl Driver {
         let driver = &self.handling.driver;
         let preview_m = driver.preview_time_s * motion.speed_m_s.max(SLOWEST_M_S);
         let (sin, cos) = libm::sincos(motion.yaw_rad);
-        let [x, y, _] = motion.position_m;
+        // The driver watches where the vehicle is, not how its body sways.
+        let [x, y] = motion.foot_m;
         let error_m = track.error_m(x + preview_m * cos, y + preview_m * sin);
         if error_m.abs() < INTEGRAL_BAND_M {
             self.integral_m += driver.integral_per_s * step_s * error_m;

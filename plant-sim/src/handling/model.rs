@@ -37,7 +37,10 @@ pub struct Controls {
 pub struct HandlingMotion {
     /// Centre of mass: ahead (station), left, up from its height at rest; m.
     pub position_m: [f64; 3],
-    /// Its velocity in the world, m/s.
+    /// The point of the body that lies on the road below its centre of mass at rest: where the vehicle is, however the body
+    /// rolls; ahead and left, m.
+    pub foot_m: [f64; 2],
+    /// Velocity of the centre of mass in the world, m/s.
     pub velocity_m_s: [f64; 3],
     /// Heading, left positive, rad.
     pub yaw_rad: f64,
@@ -68,6 +71,7 @@ pub struct HandlingModel<E> {
     step_s: f64,
     steps: u64,
     rest_height_m: f64,
+    body_height_m: f64,
 
     position: Vector3<f64>,
     velocity: Vector3<f64>,
@@ -167,6 +171,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
             step_s: parameters.solver.step_s,
             steps: 0,
             rest_height_m,
+            body_height_m: rest_height_m,
             // The front axle starts at station 0, as in the ride model.
             position: Vector3::new(-parameters.body_cg_behind_front_axle_m(), 0.0, 0.0),
             velocity: Vector3::new(speed_m_s, 0.0, 0.0),
@@ -381,9 +386,11 @@ impl<E: SuspensionElement> HandlingModel<E> {
         let mut acceleration = self.rotation * self.acceleration.linear;
         acceleration.z -= GRAVITY_M_S2;
         let v = self.velocity;
+        let foot = self.position - self.rotation * Vector3::new(0.0, 0.0, self.body_height_m);
         let (along, across) = (v.x * cos + v.y * sin, v.y * cos - v.x * sin);
         HandlingMotion {
             position_m: [self.position.x, self.position.y, self.position.z - self.rest_height_m],
+            foot_m: [foot.x, foot.y],
             velocity_m_s: [v.x, v.y, v.z],
             yaw_rad,
             pitch_rad,

@@ -30,6 +30,8 @@ pub struct Gas {
     /// Thermal time constant, s; none: isothermal.
     time_constant_s: Option<f64>,
     real: Option<Nitrogen>,
+    gas_constant: f64,
+    inverse_heat_capacity: f64,
     /// The volume below which a state makes no sense; the gas law is continued by its tangent there.
     least_volume_m3: f64,
 }
@@ -48,10 +50,13 @@ impl Gas {
             None => pressure_pa / (NITROGEN_R_J_KG_K * ambient_k),
             Some(gas) => gas.density(pressure_pa, ambient_k),
         };
+        let mass_kg = density * volume_m3;
         Self {
-            mass_kg: density * volume_m3,
+            mass_kg,
             ambient_k,
             time_constant_s,
+            gas_constant: real.as_ref().map_or(NITROGEN_R_J_KG_K, Nitrogen::gas_constant),
+            inverse_heat_capacity: 1.0 / (mass_kg * NITROGEN_CV_J_KG_K),
             real,
             least_volume_m3: 0.02 * volume_m3,
         }
@@ -85,74 +90,102 @@ impl Gas {
         }
     }
 
-    /// One implicit step: the state after `duration_s` with flow `flow` (m3/s, into the accumulator) from `base`, its
-    /// absolute pressure, and the derivative of that pressure by the flow.
-    ///
-    /// The energy equation is linear in the new temperature, so it is solved in closed form. `guess_k` is the
-    /// temperature at which the real gas's `(dp/dT)_V` is taken (it hardly depends on it).
-    #[inline]
-    #[must_use]
-    pub fn implicit(&self, base: GasState, duration_s: f64, flow: f64, guess_k: f64) -> (GasState, f64, f64) {
-        let free = base.volume_m3 - duration_s * flow;
-        let volume_m3 = free.max(self.least_volume_m3);
-        // Beyond the least volume the pressure goes on rising with the tangent of the ideal law, so that a hopeless
-        // state (everything squeezed out) still has a solution instead of a division by zero.
-        let excess = volume_m3 - free;
-        let inverse_volume = 1.0 / volume_m3;
-        match &self.real {
-            None => {
-                let (temperature_k, dt_dq) = match self.time_constant_s {
-                    None => (self.ambient_k, 0.0),
-                    Some(tau) => {
-                        let k = duration_s * (NITROGEN_R_J_KG_K / NITROGEN_CV_J_KG_K) * inverse_volume;
-                        let s = duration_s / tau;
-                        let inverse = 1.0 / (1.0 + s - k * flow).max(0.05);
-                        let t = (base.temperature_k + s * self.ambient_k) * inverse;
-                        (t, t * k * base.volume_m3 * inverse_volume * inverse)
-                    }
-                };
-                let mr = self.mass_kg * NITROGEN_R_J_KG_K * inverse_volume;
-                let p = mr * temperature_k;
-                let dp = mr * dt_dq + p * duration_s * inverse_volume;
-                (
-                    GasState {
-                        volume_m3,
-                        temperature_k,
-                    },
-                    p * (1.0 + excess * inverse_volume),
-                    dp,
-                )
-            }
-            Some(gas) => {
-                let density = self.mass_kg * inverse_volume;
-                let temperature_k = match self.time_constant_s {
-                    None => self.ambient_k,
-                    Some(tau) => {
-                        let beta = gas.state(density, guess_k).dp_dt_pa_k;
-                        let k = duration_s * beta / (self.mass_kg * NITROGEN_CV_J_KG_K);
-                        let s = duration_s / tau;
-                        (base.temperature_k + s * self.ambient_k) / (1.0 + s - k * flow).max(0.05)
-                    }
-                };
-                let at = gas.state(density, temperature_k);
-                let isothermal = at.dp_drho_pa_m3_kg * density * duration_s * inverse_volume;
-                let thermal = match self.time_constant_s {
-                    None => 0.0,
-                    Some(_) => {
-                        at.dp_dt_pa_k * at.dp_dt_pa_k * temperature_k * duration_s / (self.mass_kg * NITROGEN_CV_J_KG_K)
-                    }
-                };
-                (
-                    GasState {
-                        volume_m3,
-                        temperature_k,
-                    },
-                    at.pressure_pa * (1.0 + excess * inverse_volume),
-                    isothermal + thermal,
-                )
+    /// Make `real` fit for a step of `duration_s` from `base` with about `flow`: looked up anew when the gas has moved half a
+    /// per cent or a kelvin from where it was looked up last (what is left of the real gas's curvature there is below 1e-5
+    /// of the pressure).
+    #[inline(always)]
+    pub fn refresh(&self, real: &mut Departure, base: GasState, duration_s: f64, flow: f64) {
+        if self.real.is_some() {
+            let volume = (base.volume_m3 - duration_s * flow).max(self.least_volume_m3);
+            let density = self.mass_kg / volume;
+            if (density - real.density).abs() > 5e-3 * density || (base.temperature_k - real.temperature_k).abs() > 1.0
+            {
+                *real = self.departure(density, base.temperature_k);
             }
         }
     }
+
+    /// What the real gas adds to the ideal law around a density and a temperature.
+    #[must_use]
+    pub fn departure(&self, density: f64, temperature_k: f64) -> Departure {
+        let Some(gas) = &self.real else {
+            return Departure::default();
+        };
+        let (excess, by_density, by_temperature) = gas.excess(density, temperature_k);
+        Departure {
+            density,
+            temperature_k,
+            excess,
+            by_density,
+            by_temperature,
+        }
+    }
+
+    /// One implicit step of `duration_s` with flow `flow` (m3/s, into the accumulator) from `base`.
+    ///
+    /// The energy equation is linear in the new temperature, so it is solved in closed form.
+    #[inline(always)]
+    #[must_use]
+    pub fn implicit(&self, base: GasState, duration_s: f64, flow: f64, real: &Departure) -> GasStep {
+        let free = base.volume_m3 - duration_s * flow;
+        // Below the least volume the pressure goes on rising linearly, so that a hopeless state (everything squeezed
+        // out) still has a solution instead of a division by zero.
+        let volume_m3 = free.max(self.least_volume_m3);
+        let excess_volume = volume_m3 - free;
+        let inverse_volume = 1.0 / volume_m3;
+        let density = self.mass_kg * inverse_volume;
+        // (dp/dT) at constant volume, Pa/K.
+        let heating = density * (self.gas_constant + density * real.by_temperature);
+        let (temperature_k, warming) = match self.time_constant_s {
+            None => (self.ambient_k, 0.0),
+            Some(tau) => {
+                let k = duration_s * heating * self.inverse_heat_capacity;
+                let s = duration_s / tau;
+                let inverse = 1.0 / (1.0 + s - k * flow).max(0.05);
+                let t = (base.temperature_k + s * self.ambient_k) * inverse;
+                (t, t * k * base.volume_m3 * inverse_volume * inverse)
+            }
+        };
+        let f = real.excess
+            + real.by_density * (density - real.density)
+            + real.by_temperature * (temperature_k - real.temperature_k);
+        let rt = self.gas_constant * temperature_k;
+        let p = density * (rt + density * f);
+        let stiffening = rt + density * (2.0 * f + density * real.by_density);
+        GasStep {
+            state: GasState {
+                volume_m3,
+                temperature_k,
+            },
+            pressure_pa: p * (1.0 + excess_volume * inverse_volume),
+            pressure_by_flow: heating * warming + stiffening * density * duration_s * inverse_volume,
+            temperature_by_flow: warming,
+        }
+    }
+}
+
+/// Result of an implicit step.
+#[derive(Debug, Clone, Copy)]
+pub struct GasStep {
+    /// State at its end.
+    pub state: GasState,
+    /// Absolute pressure, Pa.
+    pub pressure_pa: f64,
+    /// Its derivative by the flow, Pa s/m3.
+    pub pressure_by_flow: f64,
+    /// Derivative of the temperature by the flow, K s/m3.
+    pub temperature_by_flow: f64,
+}
+
+/// `p = rho R T + rho^2 f`, `f` linear around a state: exact for the ideal gas (`f = 0`), and for the real one to the square
+/// of the change within a step, which the next step does not inherit.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Departure {
+    density: f64,
+    temperature_k: f64,
+    excess: f64,
+    by_density: f64,
+    by_temperature: f64,
 }
 
 #[cfg(test)]
@@ -168,7 +201,10 @@ mod tests {
         let h = total_s / steps as f64;
         let mut p = 0.0;
         for _ in 0..steps {
-            (s, p, _) = gas.implicit(s, h, (from - to) / total_s, s.temperature_k);
+            let flow = (from - to) / total_s;
+            let real = gas.departure(gas.mass_kg() / s.volume_m3, s.temperature_k);
+            let step = gas.implicit(s, h, flow, &real);
+            (s, p) = (step.state, step.pressure_pa);
         }
         p
     }
@@ -195,7 +231,7 @@ mod tests {
             temperature_k: 350.0,
         };
         for _ in 0..30_000 {
-            (s, _, _) = gas.implicit(s, 1e-4, 0.0, s.temperature_k);
+            s = gas.implicit(s, 1e-4, 0.0, &Departure::default()).state;
         }
         let left = (s.temperature_k - 293.15) / (350.0 - 293.15);
         assert!((left - libm::exp(-1.0)).abs() < 1e-4);
@@ -210,9 +246,9 @@ mod tests {
                     volume_m3: 0.8e-4,
                     temperature_k: if tau.is_some() { 300.0 } else { 293.15 },
                 };
-                let at = |q: f64| gas.implicit(base, 1e-3, q, 300.0);
-                let (_, _, slope) = at(1e-3);
-                let quotient = (at(1.001e-3).1 - at(0.999e-3).1) / 2e-6;
+                let at = |q: f64| gas.implicit(base, 1e-3, q, &gas.departure(gas.mass_kg() / base.volume_m3, 300.0));
+                let slope = at(1e-3).pressure_by_flow;
+                let quotient = (at(1.001e-3).pressure_pa - at(0.999e-3).pressure_pa) / 2e-6;
                 assert!((slope / quotient - 1.0).abs() < 0.02, "{slope} {quotient}");
             }
         }

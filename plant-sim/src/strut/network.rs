@@ -11,7 +11,7 @@ use super::friction::advance_friction;
 use super::gas::{Gas, GasState};
 use super::model::{ATMOSPHERE_PA, ModelError, StrutModel};
 use super::nitrogen::Nitrogen;
-use super::solve::{Guess, Parameters, Path, Stage, Store, law_at};
+use super::solve::{Guess, Parameters, Path, Stage, Store, bubbles, law_at};
 use super::stops::stop_force_n;
 use super::valve::ValveMotion;
 
@@ -102,6 +102,7 @@ impl Strut {
         let store = Store {
             p1: rest_pa,
             gas: [at_rest(0), at_rest(1)],
+            bubbles: parameters.air.as_ref().map_or(0.0, |air| bubbles(air, rest_pa).0),
             q2: 0.0,
             shear: [0.0; 2],
             heat: [0.0; 2],
@@ -137,7 +138,9 @@ impl Strut {
             store,
             guess: Guess {
                 drop: [0.0; 2],
+                flow: [0.0; 2],
                 segment: [0; 2],
+                real: Default::default(),
             },
             pressure: [rest_pa; 4],
             flow: [0.0; 2],

@@ -17,7 +17,7 @@ const CRITICAL_K: f64 = 126.192;
 const CRITICAL_KG_M3: f64 = 313.3;
 
 /// `(i, j, l, N)` of the terms `N delta^i tau^j exp(-delta^l)` (no exponential for `l = 0`).
-const TERMS: [(i32, f64, i32, f64); 32] = [
+const TERMS: [(usize, f64, usize, f64); 32] = [
     (1, 0.25, 0, 0.924803575275),
     (1, 0.875, 0, -0.492448489428),
     (2, 0.5, 0, 0.661883336938),
@@ -52,31 +52,44 @@ const TERMS: [(i32, f64, i32, f64); 32] = [
     (9, 16.0, 4, 0.000264832491957),
 ];
 
-fn reference_pressure_pa(density: f64, temperature: f64) -> f64 {
-    let (delta, tau) = (density / CRITICAL_KG_M3, CRITICAL_K / temperature);
-    let power = |x: f64, n: i32| (0..n).fold(1.0, |a, _| a * x);
-    let slope: f64 = TERMS
-        .iter()
-        .map(|&(i, j, l, n)| {
-            let exponential = if l == 0 { 1.0 } else { libm::exp(-power(delta, l)) };
-            let order = f64::from(i) - if l == 0 { 0.0 } else { f64::from(l) * power(delta, l) };
-            n * power(delta, i) * libm::pow(tau, j) * exponential * order
-        })
-        .sum();
-    density * R * temperature * (1.0 + slope)
+/// Pressure over density at one temperature, the powers of the temperature taken once.
+fn reference_isotherm(temperature: f64) -> impl Fn(f64) -> f64 {
+    let tau = CRITICAL_K / temperature;
+    let weighted = TERMS.map(|(_, j, _, n)| n * libm::pow(tau, j));
+    move |density| {
+        let delta = density / CRITICAL_KG_M3;
+        let mut powers = [1.0; 10];
+        for i in 1..10 {
+            powers[i] = powers[i - 1] * delta;
+        }
+        let decay = [0, 1, 2, 3, 4].map(|l| if l == 0 { 1.0 } else { libm::exp(-powers[l]) });
+        let slope: f64 = TERMS
+            .iter()
+            .zip(&weighted)
+            .map(|(&(i, _, l, _), n)| {
+                let order = i as f64 - if l == 0 { 0.0 } else { l as f64 * powers[l] };
+                n * powers[i] * decay[l] * order
+            })
+            .sum();
+        density * R * temperature * (1.0 + slope)
+    }
 }
 
-fn bwr_pressure_pa(density: f64, temperature: f64) -> f64 {
+fn bwr_isotherm(temperature: f64) -> impl Fn(f64) -> f64 {
     // kPa, m3/kmol, K, Ru 8.314 (project notes).
     let (a, a0, b, b0, c, c0, alpha, gamma) = (2.54, 106.73, 0.002_328, 0.040_74, 7.379e4, 8.164e5, 1.272e-4, 0.0053);
-    let (ru, t, x) = (8.314, temperature, density / 28.013_48);
-    let (x2, t2) = (x * x, temperature * temperature);
-    let x3 = x2 * x;
-    1e3 * (ru * t * x
-        + (b0 * ru * t - a0 - c0 / t2) * x2
-        + (b * ru * t - a) * x3
-        + a * alpha * x3 * x3
-        + c * x3 / t2 * (1.0 + gamma * x2) * libm::exp(-gamma * x2))
+    let (ru, t) = (8.314, temperature);
+    let t2 = t * t;
+    move |density| {
+        let x = density / 28.013_48;
+        let x2 = x * x;
+        let x3 = x2 * x;
+        1e3 * (ru * t * x
+            + (b0 * ru * t - a0 - c0 / t2) * x2
+            + (b * ru * t - a) * x3
+            + a * alpha * x3 * x3
+            + c * x3 / t2 * (1.0 + gamma * x2) * libm::exp(-gamma * x2))
+    }
 }
 
 const DENSITY_STEP: f64 = 8.0;
@@ -108,32 +121,44 @@ impl Nitrogen {
     /// The reference equation.
     #[must_use]
     pub fn reference() -> Self {
-        static GRID: LazyLock<Nitrogen> = LazyLock::new(|| Nitrogen::tabulate(R, reference_pressure_pa));
+        static GRID: LazyLock<Nitrogen> = LazyLock::new(|| Nitrogen::tabulate(R, reference_isotherm));
         GRID.clone()
     }
 
     /// Benedict-Webb-Rubin.
     #[must_use]
     pub fn bwr() -> Self {
-        static GRID: LazyLock<Nitrogen> = LazyLock::new(|| Nitrogen::tabulate(8314.0 / 28.013_48, bwr_pressure_pa));
+        static GRID: LazyLock<Nitrogen> = LazyLock::new(|| Nitrogen::tabulate(8314.0 / 28.013_48, bwr_isotherm));
         GRID.clone()
     }
 
-    fn tabulate(gas_constant: f64, pressure: fn(f64, f64) -> f64) -> Self {
-        let excess = (0..DENSITY_NODES * TEMPERATURE_NODES)
-            .map(|n| {
+    fn tabulate<F: Fn(f64) -> f64>(gas_constant: f64, isotherm: impl Fn(f64) -> F) -> Self {
+        let mut excess = vec![0.0; DENSITY_NODES * TEMPERATURE_NODES];
+        for j in 0..TEMPERATURE_NODES {
+            let t = TEMPERATURE_FROM + TEMPERATURE_STEP * j as f64;
+            let pressure = isotherm(t);
+            for i in 0..DENSITY_NODES {
                 // At density zero the quotient's limit, the second virial coefficient times R T, is taken nearby.
-                let density = (DENSITY_STEP * (n / TEMPERATURE_NODES) as f64).max(0.05);
-                let t = TEMPERATURE_FROM + TEMPERATURE_STEP * (n % TEMPERATURE_NODES) as f64;
-                (pressure(density, t) - density * gas_constant * t) / (density * density)
-            })
-            .collect();
-        Self { gas_constant, excess }
+                let density = (DENSITY_STEP * i as f64).max(0.05);
+                excess[i * TEMPERATURE_NODES + j] =
+                    (pressure(density) - density * gas_constant * t) / (density * density);
+            }
+        }
+        Self {
+            gas_constant,
+            excess: excess.into(),
+        }
     }
 
-    /// Pressure and derivatives at a density (kg/m3) and temperature (K).
+    /// Gas constant of the equation, J/kg/K.
     #[must_use]
-    pub fn state(&self, density: f64, temperature: f64) -> State {
+    pub fn gas_constant(&self) -> f64 {
+        self.gas_constant
+    }
+
+    /// `f = (p - rho R T) / rho^2`, Pa m6/kg2, and its derivatives by density (kg/m3) and temperature (K).
+    #[must_use]
+    pub fn excess(&self, density: f64, temperature: f64) -> (f64, f64, f64) {
         let (i, wd, wd1) = weights(density / DENSITY_STEP, DENSITY_NODES);
         let (j, wt, wt1) = weights((temperature - TEMPERATURE_FROM) / TEMPERATURE_STEP, TEMPERATURE_NODES);
         let (mut f, mut f_density, mut f_temperature) = (0.0, 0.0, 0.0);
@@ -145,11 +170,18 @@ impl Nitrogen {
             f_density += wd1[a] * value;
             f_temperature += wd[a] * slope;
         }
+        (f, f_density / DENSITY_STEP, f_temperature / TEMPERATURE_STEP)
+    }
+
+    /// Pressure and derivatives at a density (kg/m3) and temperature (K).
+    #[must_use]
+    pub fn state(&self, density: f64, temperature: f64) -> State {
+        let (f, f_density, f_temperature) = self.excess(density, temperature);
         let (rt, rho2) = (self.gas_constant * temperature, density * density);
         State {
             pressure_pa: density * rt + rho2 * f,
-            dp_drho_pa_m3_kg: rt + 2.0 * density * f + rho2 * f_density / DENSITY_STEP,
-            dp_dt_pa_k: density * self.gas_constant + rho2 * f_temperature / TEMPERATURE_STEP,
+            dp_drho_pa_m3_kg: rt + 2.0 * density * f + rho2 * f_density,
+            dp_dt_pa_k: density * self.gas_constant + rho2 * f_temperature,
         }
     }
 
@@ -192,7 +224,7 @@ mod tests {
         let gas = Nitrogen::reference();
         let rho = gas.density(10e6, 300.0);
         assert!((rho - 111.8).abs() < 1.0, "{rho}");
-        let b = (reference_pressure_pa(0.5, 300.0) / (0.5 * R * 300.0) - 1.0) / (0.5 / 0.028_013_48) * 1e6;
+        let b = (reference_isotherm(300.0)(0.5) / (0.5 * R * 300.0) - 1.0) / (0.5 / 0.028_013_48) * 1e6;
         assert!((b + 4.5).abs() < 0.5, "{b} cm3/mol");
     }
 
@@ -201,7 +233,7 @@ mod tests {
         let gas = Nitrogen::reference();
         for k in 0..400 {
             let (rho, t) = (3.0 + 1.1 * f64::from(k), 240.0 + 0.53 * f64::from(k));
-            let exact = reference_pressure_pa(rho, t);
+            let exact = reference_isotherm(t)(rho);
             assert!((gas.state(rho, t).pressure_pa / exact - 1.0).abs() < 1e-5, "{rho} {t}");
         }
     }

@@ -14,7 +14,7 @@
 
 use super::damper::Pack;
 use super::effects::{EntrainedAir, UnlistedLaw};
-use super::gas::{Gas, GasState};
+use super::gas::{Departure, Gas, GasState};
 use super::model::ATMOSPHERE_PA;
 use super::orifice::{unit_drop, unit_flow};
 
@@ -59,6 +59,9 @@ pub(super) struct Parameters {
 pub(super) struct Store {
     pub p1: f64,
     pub gas: [GasState; 2],
+    /// Undissolved air over oil, by volume. A state of its own beside p1: stages must blend volumes, since pressure is
+    /// anything but linear in them near vacuum.
+    pub bubbles: f64,
     pub q2: f64,
     /// Seal shear of the accumulator pistons, -1 to 1.
     pub shear: [f64; 2],
@@ -78,6 +81,7 @@ impl Store {
         Self {
             p1: mix(self.p1, other.p1),
             gas: [gas(0), gas(1)],
+            bubbles: mix(self.bubbles, other.bubbles),
             q2: mix(self.q2, other.q2),
             shear: [mix(self.shear[0], other.shear[0]), mix(self.shear[1], other.shear[1])],
             heat: [mix(self.heat[0], other.heat[0]), mix(self.heat[1], other.heat[1])],
@@ -89,7 +93,9 @@ impl Store {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Guess {
     pub drop: [f64; 2],
+    pub flow: [f64; 2],
     pub segment: [usize; 2],
+    pub real: [Departure; 2],
 }
 
 /// Result of a stage.
@@ -111,21 +117,64 @@ struct Branch {
     line_slope: f64,
     gas: GasState,
     shear: f64,
+    shear_slope: f64,
+    /// Temperature by flow, K s/m3.
+    warming: f64,
+}
+
+impl Branch {
+    /// The branch after its pack's drop has changed by a little.
+    #[inline(always)]
+    fn moved(mut self, step: f64, h: f64) -> Self {
+        let flow = self.flow_slope * step;
+        self.flow += flow;
+        self.oil += self.oil_slope * flow;
+        self.shear += self.shear_slope * flow;
+        self.gas.temperature_k += self.warming * flow;
+        self.gas.volume_m3 -= h * flow;
+        self
+    }
+}
+
+/// Answer of the main chamber to a trial pressure: volume given way, m3, its derivative, m3/Pa, bubbles left and minus
+/// their derivative.
+struct GivenWay {
+    volume: f64,
+    slope: f64,
+    bubbles: f64,
+    thinning: f64,
+}
+
+/// A Newton step of at most this much is taken without another look, Pa: all quantities follow it linearly, volumes
+/// included, and what that neglects is below (50 Pa / transition pressure)^2, 1e-5 of a flow.
+const LAST_STEP_PA: f64 = 50.0;
+
+/// Where one path starts from in a stage.
+struct Setting {
+    h: f64,
+    gas: GasState,
+    shear: f64,
+    heat: f64,
+    real: Departure,
 }
 
 impl Path {
     #[inline(always)]
-    fn branch(
-        &self,
-        base: &Store,
-        i: usize,
-        h: f64,
-        opening: f64,
-        transition: f64,
-        drop: f64,
-        segment: &mut usize,
-    ) -> Branch {
-        let fade = 1.0 + self.fade_per_j * base.heat[i];
+    fn setting(&self, base: &Store, i: usize, h: f64, guess: &mut Guess) -> Setting {
+        let gas = base.gas[i];
+        self.gas.refresh(&mut guess.real[i], gas, h, guess.flow[i]);
+        Setting {
+            h,
+            gas,
+            shear: base.shear[i],
+            heat: base.heat[i],
+            real: guess.real[i],
+        }
+    }
+
+    #[inline(always)]
+    fn branch(&self, at: &Setting, opening: f64, transition: f64, drop: f64, segment: &mut usize) -> Branch {
+        let fade = 1.0 + self.fade_per_j * at.heat;
         let (mut flow, mut flow_slope) = self.pack.flow(drop * fade, segment);
         flow_slope *= fade;
         let coefficient = opening * self.valve_coefficient + self.leak_coefficient;
@@ -139,20 +188,22 @@ impl Path {
             flow += q;
             flow_slope += s;
         }
-        self.behind(base, i, h, flow, flow_slope)
+        self.behind(at, flow, flow_slope)
     }
 
     /// The part of the branch that follows from its flow.
     #[inline(always)]
-    fn behind(&self, base: &Store, i: usize, h: f64, flow: f64, flow_slope: f64) -> Branch {
-        let (gas, absolute, gas_slope) = self.gas.implicit(base.gas[i], h, flow, base.gas[i].temperature_k);
-        let (mut oil, mut oil_slope, mut shear) = (absolute - ATMOSPHERE_PA, gas_slope, base.shear[i]);
+    fn behind(&self, at: &Setting, flow: f64, flow_slope: f64) -> Branch {
+        let step = self.gas.implicit(at.gas, at.h, flow, &at.real);
+        let (mut oil, mut oil_slope) = (step.pressure_pa - ATMOSPHERE_PA, step.pressure_by_flow);
+        let (mut shear, mut shear_slope) = (at.shear, 0.0);
         if self.piston_friction_pa > 0.0 {
-            let k = h / PISTON_PRESLIDING_M3;
+            let k = at.h / PISTON_PRESLIDING_M3;
             let divisor = 1.0 + k * flow.abs();
-            shear = (base.shear[i] + k * flow) / divisor;
+            shear = (at.shear + k * flow) / divisor;
             oil += self.piston_friction_pa * shear;
-            oil_slope += self.piston_friction_pa * k * (1.0 - base.shear[i] * flow.signum()) / (divisor * divisor);
+            shear_slope = k * (1.0 - at.shear * flow.signum()) / (divisor * divisor);
+            oil_slope += self.piston_friction_pa * shear_slope;
         }
         let (mut line, mut line_slope) = (self.resistance * flow, self.resistance);
         if let Some(law) = &self.series_law {
@@ -167,27 +218,40 @@ impl Path {
             oil_slope,
             line,
             line_slope,
-            gas,
+            gas: step.state,
             shear,
+            shear_slope,
+            warming: step.temperature_by_flow,
         }
     }
 }
 
 impl Parameters {
-    /// Compliance of the main chamber and what hangs on it at a gauge pressure and strut displacement, m3/Pa.
+    /// What the main chamber and what hangs on it do from `base` to gauge pressure `p1`. Differences of volumes: exact
+    /// however far the pressure moves.
     #[inline(always)]
-    fn compliance(&self, p1: f64, displacement_m: f64) -> f64 {
-        let volume = self.oil_volume_m3 - self.area_m2 * displacement_m;
-        let mut c = volume * self.inverse_bulk_modulus + self.mount_compliance;
+    fn given_way(&self, base: &Store, p1: f64, displacement_m: f64) -> GivenWay {
+        let oil_m3 = self.oil_volume_m3 - self.area_m2 * displacement_m;
+        let linear = oil_m3 * self.inverse_bulk_modulus + self.mount_compliance;
+        let (mut volume, mut slope) = (linear * (p1 - base.p1), linear);
+        let (mut left, mut thin) = (0.0, 0.0);
         if let Some(air) = &self.air {
-            let absolute = (p1 + ATMOSPHERE_PA).max(1e4);
-            let n = air.polytropic_exponent;
-            c += volume * air.volume_fraction * libm::pow(ATMOSPHERE_PA / absolute, 1.0 / n) / (n * absolute);
+            let (now, thinning) = bubbles(air, p1);
+            volume += oil_m3 * (base.bubbles - now);
+            slope += oil_m3 * thinning;
+            (left, thin) = (now, thinning);
         }
         if let Some(law) = &self.volume_law {
-            c += law.flow(p1, &mut 0).1;
+            let (now, s) = law.flow(p1, &mut 0);
+            volume += now - law.flow(base.p1, &mut 0).0;
+            slope += s;
         }
-        c
+        GivenWay {
+            volume,
+            slope,
+            bubbles: left,
+            thinning: thin,
+        }
     }
 
     /// Solve one stage of length `h` that ends at strut displacement `displacement_m` with speed `speed_m_s`.
@@ -204,23 +268,22 @@ impl Parameters {
         let c3 = opening[2] * self.valve3_coefficient + self.valve3_leak;
         let connected = c3 > 0.0;
         let inertia = self.inertance / h;
-        let mut c = self.compliance(base.p1, displacement_m) / h;
         let [mut d1, mut d2] = guess.drop;
         if !connected {
             d2 = 0.0;
         }
+        let first = self.paths[0].setting(base, 0, h, guess);
+        let second = self.paths[1].setting(base, 1, h, guess);
         let mut round = 0;
         loop {
-            let one = self.paths[0].branch(base, 0, h, opening[0], self.transition_pa, d1, &mut guess.segment[0]);
+            let one = self.paths[0].branch(&first, opening[0], self.transition_pa, d1, &mut guess.segment[0]);
             let p1 = one.oil + one.line + d1;
             let p1_slope = 1.0 + (one.oil_slope + one.line_slope) * one.flow_slope;
-            if self.air.is_some() || self.volume_law.is_some() {
-                c = self.compliance(0.5 * (p1 + base.p1), displacement_m) / h;
-            }
-            let stored = c * (p1 - base.p1);
-            let (step1, step2, two, d3);
+            let given = self.given_way(base, p1, displacement_m);
+            let (stored, c) = (given.volume / h, given.slope / h);
+            let (step1, step2, two, d3, d3_slope);
             if connected {
-                let b = self.paths[1].branch(base, 1, h, opening[1], self.transition_pa, d2, &mut guess.segment[1]);
+                let b = self.paths[1].branch(&second, opening[1], self.transition_pa, d2, &mut guess.segment[1]);
                 let (unit, unit_slope) = unit_drop(b.flow / c3, self.transition_pa);
                 let continuity = supply - stored - one.flow - b.flow;
                 let mesh = p1 - d2 - b.line - inertia * (b.flow - base.q2) - unit - b.oil;
@@ -230,38 +293,38 @@ impl Parameters {
                 let determinant = c_d1 * m_d2 - c_d2 * p1_slope;
                 step1 = (c_d2 * mesh - m_d2 * continuity) / determinant;
                 step2 = (p1_slope * continuity - c_d1 * mesh) / determinant;
-                (two, d3) = (b, unit);
+                (two, d3, d3_slope) = (b, unit, unit_slope / c3);
             } else {
-                let b = self.paths[1].behind(base, 1, h, 0.0, 0.0);
+                let b = self.paths[1].behind(&second, 0.0, 0.0);
                 step1 = (supply - stored - one.flow) / (c * p1_slope + one.flow_slope);
                 step2 = 0.0;
-                d3 = 0.0;
-                two = b;
+                (two, d3, d3_slope) = (b, 0.0, 0.0);
             }
             round += 1;
-            // 0.1 Pa is a hundred-thousandth of the sensors' noise. Kinks of the tables can make full Newton steps cycle
-            // between two lines: after eight rounds the steps are halved, which monotone residuals cannot resist.
-            let done = step1.abs() < 0.1 && step2.abs() < 0.1;
-            if done || round == 40 {
+            // Kinks of the tables can make full Newton steps cycle between two lines: after eight rounds the steps are
+            // halved, which monotone residuals cannot resist.
+            if (step1.abs() < LAST_STEP_PA && step2.abs() < LAST_STEP_PA) || round == 40 {
+                let (p1, one) = (p1 + p1_slope * step1, one.moved(step1, h));
+                let (d3, two) = (d3 + d3_slope * two.flow_slope * step2, two.moved(step2, h));
                 guess.drop = [d1 + step1, d2 + step2];
-                let p3 = if connected { two.oil + d3 } else { p1 };
-                let dissipated = [d1 * one.flow, d2 * two.flow];
+                guess.flow = [one.flow, two.flow];
                 let mut heat = base.heat;
-                for i in 0..2 {
+                for (i, q) in guess.flow.iter().enumerate() {
                     if self.paths[i].fade_per_j > 0.0 {
-                        heat[i] += h * dissipated[i];
+                        heat[i] += h * guess.drop[i] * q;
                     }
                 }
                 return Stage {
                     store: Store {
                         p1,
+                        bubbles: given.bubbles - given.thinning * p1_slope * step1,
                         gas: [one.gas, two.gas],
                         q2: two.flow,
                         shear: [one.shear, two.shear],
                         heat,
                     },
-                    pressure: [p1, one.oil, p3, two.oil],
-                    flow: [one.flow, two.flow],
+                    pressure: [p1, one.oil, if connected { two.oil + d3 } else { p1 }, two.oil],
+                    flow: guess.flow,
                 };
             }
             let relax = if round < 8 { 1.0 } else { 0.5 };
@@ -269,6 +332,26 @@ impl Parameters {
             d2 += relax * step2;
         }
     }
+}
+
+/// Pressure below which bubbles are continued by their tangent, Pa absolute: a tenth of the least that oil shows.
+const LEAST_BUBBLE_PA: f64 = 2e3;
+
+/// Volume of the undissolved air over that of the oil at a gauge pressure, and minus its derivative, 1/Pa.
+///
+/// `a (p_atm/p)^(1/n)`. As the pressure nears vacuum the bubbles take over the whole flow: this is also what keeps a
+/// strut in violent rebound from pulling on its oil.
+#[inline]
+pub(super) fn bubbles(air: &EntrainedAir, gauge_pa: f64) -> (f64, f64) {
+    let absolute = gauge_pa + ATMOSPHERE_PA;
+    let held = absolute.max(LEAST_BUBBLE_PA);
+    let ratio = ATMOSPHERE_PA / held;
+    let n = air.polytropic_exponent;
+    // Isothermal bubbles, the usual choice, need no power function.
+    let power = if n == 1.0 { ratio } else { libm::pow(ratio, 1.0 / n) };
+    let volume = air.volume_fraction * power;
+    let thinning = volume / (n * held);
+    (volume + thinning * (held - absolute), thinning)
 }
 
 /// The table of a law without a name at a place, if the model has one.

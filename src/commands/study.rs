@@ -3,10 +3,11 @@
 mod optimise;
 mod sweep;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use oleo_plant_sim::study::{Bench, Conditions, Ledger};
+use oleo_report::OutputDirectory;
 
 use crate::failure::Failure;
 
@@ -50,7 +51,7 @@ pub(crate) struct Drive {
     threads: Option<usize>,
     /// Folder for CSV data, summary.json, report.html and the finished runs; without it only the table is printed
     #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    out: Option<PathBuf>,
 }
 
 impl Drive {
@@ -86,15 +87,19 @@ impl Drive {
         Ok(pool.install(work))
     }
 
-    /// The finished runs, in the output folder where there is one.
-    pub(crate) fn ledger(&self, bench: &Bench) -> Result<Ledger, Failure> {
+    /// The finished runs and the staged results. Finished runs are kept in the folder itself, as they end.
+    pub(crate) fn results(&self, bench: &Bench) -> Result<(Ledger, Option<OutputDirectory>), Failure> {
         let Some(out) = &self.out else {
-            return Ok(Ledger::in_memory(bench));
+            return Ok((Ledger::in_memory(bench), None));
         };
-        let path: &Path = out;
-        std::fs::create_dir_all(path)
-            .map_err(|error| Failure::new(format!("{}: cannot make the folder: {error}", path.display())))?;
-        Ok(Ledger::open(&path.join("runs.csv"), bench)?)
+        // Staged once to be told of a folder that cannot be, and again when it is there.
+        drop(OutputDirectory::stage(out)?);
+        std::fs::create_dir_all(out)
+            .map_err(|error| Failure::new(format!("{}: cannot make the folder: {error}", out.display())))?;
+        Ok((
+            Ledger::open(&out.join("runs.csv"), bench)?,
+            Some(OutputDirectory::stage(out)?),
+        ))
     }
 }
 

@@ -156,11 +156,24 @@ fn step_response(history: &[Sample], at_s: f64) -> Option<(f64, f64, f64)> {
     Some((steady, most / steady.abs() - 1.0, reached.time_s - at_s))
 }
 
-/// RMS of the difference over RMS of the first, for two histories.
+/// RMS of the difference over RMS of the first, at the same places of the road: the handling model's speed gives way on
+/// a rough road, the ride model's is constant.
 fn difference(a: &[Sample], b: &[Sample], of: fn(&Sample) -> f64) -> f64 {
     let (mut apart, mut size) = (0.0, 0.0);
-    for (a, b) in a.iter().zip(b) {
-        let (x, y) = (of(a), of(b));
+    let mut from = 0;
+    for sample in a {
+        let station = sample.station_m;
+        while from + 2 < b.len() && b[from + 1].station_m < station {
+            from += 1;
+        }
+        let (Some(low), Some(high)) = (b.get(from), b.get(from + 1)) else {
+            break;
+        };
+        if station > high.station_m || station < low.station_m {
+            continue;
+        }
+        let share = (station - low.station_m) / (high.station_m - low.station_m);
+        let (x, y) = (of(sample), of(low) + share * (of(high) - of(low)));
         apart += (x - y) * (x - y);
         size += x * x;
     }
@@ -256,7 +269,7 @@ pub fn publish(
     if let [(_, one), (_, other)] = runs {
         let mut rows = Table::new([
             Column::text("Signal"),
-            Column::number("RMS difference over RMS of the ride model"),
+            Column::number("RMS difference over RMS of the ride model, place by place"),
         ]);
         for (key, words, of) in COMPARED {
             let ratio = difference(&one.history, &other.history, of);

@@ -46,8 +46,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         ));
     }
     let bench = args.drive.bench()?;
-    let out = args.drive.out.as_ref().map(OutputDirectory::stage).transpose()?;
-    let ledger = args.drive.ledger(&bench)?;
+    let (ledger, out) = args.drive.results(&bench)?;
     let objective = Objective {
         weights,
         per_axle: args.per_axle,

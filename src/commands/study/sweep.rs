@@ -24,8 +24,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let bench = args.drive.bench()?;
-    let out = args.drive.out.as_ref().map(OutputDirectory::stage).transpose()?;
-    let ledger = args.drive.ledger(&bench)?;
+    let (ledger, out) = args.drive.results(&bench)?;
     let progress = Progress::new("sweep", 2 * (GAS_VOLUMES_M3.len() * DAMPER_FACTORS.len()) as u64);
     let surface = {
         // The first Ctrl-C lets the runs in hand end and keeps them.

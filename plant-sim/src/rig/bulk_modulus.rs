@@ -128,8 +128,8 @@ mod tests {
         let mut model = StrutModel::defender110(8000.0);
         model.effects.entrained_air = None;
         let test = compress_oil(&model, 20e6).expect("possible");
-        assert!(test.deviation < 5e-3, "{}", test.deviation);
-        assert!((test.found_pa / 1.5e9 - 1.0).abs() < 5e-3, "{} Pa", test.found_pa);
+        assert!(test.deviation < 2e-3, "{}", test.deviation);
+        assert!((test.found_pa / 1.5e9 - 1.0).abs() < 1e-3, "{} Pa", test.found_pa);
         // 1.5 GPa, 0.9 l, 19.5 MPa: 5.92 mm.
         let stroke = test.record.displacement_m.iter().copied().fold(0.0, f64::max);
         assert!((stroke - 5.92e-3).abs() < 2e-5, "{stroke} m");

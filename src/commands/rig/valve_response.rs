@@ -97,7 +97,7 @@ fn draw(sheet: &mut Sheet, responses: &[ValveResponse], total: &Parabola, openin
         let signal: Vec<f64> = r.time_s.iter().map(|&t| f64::from(u8::from(t >= 0.0))).collect();
         let mut figure = Curves::new(
             "Valve response time definitions (report, figure 24)",
-            Axis::new("Time from the switching signal", "ms"),
+            Axis::new("Time from the switching signal", "ms").range(-20.0, 150.0),
         );
         figure
             .panel(Axis::new("Pressure difference across valve 3", "MPa"))

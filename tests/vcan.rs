@@ -43,6 +43,22 @@ fn end(mut child: Child) -> std::process::Output {
     child.wait_with_output().unwrap()
 }
 
+/// Returns when the loop has run for some ticks.
+fn wait_for_commands(bus: &mut SocketCan) {
+    let started = Instant::now();
+    let mut commands = 0;
+    while commands < 200 {
+        assert!(started.elapsed() < Duration::from_secs(60), "the loop does not start");
+        if let Some(frame) = bus.receive(Duration::from_millis(100)).unwrap() {
+            commands += u32::from(frame.standard_id() == Some(oleo_controller::can::COMMAND.id));
+        }
+    }
+}
+
+fn listen(bus: &str) -> SocketCan {
+    SocketCan::open(bus.trim_start_matches("socketcan:")).unwrap()
+}
+
 #[test]
 fn one_process_commands_what_the_bus_in_memory_commands() {
     on_vcan(|bus| {
@@ -108,7 +124,7 @@ fn two_processes_in_either_order_with_a_stranger_on_the_bus() {
             std::thread::sleep(Duration::from_millis(200));
             let second = start(if plant_first { &controller } else { &plant });
             // Somebody else's diagnosis session, as fast as is polite.
-            let mut stranger = SocketCan::open(bus.trim_start_matches("socketcan:")).unwrap();
+            let mut stranger = listen(bus);
             for i in 0..200u32 {
                 stranger
                     .send(&Frame::whole(
@@ -139,6 +155,7 @@ fn a_killed_plant_leaves_a_controller_that_is_safe_and_ends() {
     on_vcan(|bus| {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("controller");
+        let mut bystander = listen(bus);
         let controller = start(&[
             "hil",
             "--node",
@@ -154,13 +171,13 @@ fn a_killed_plant_leaves_a_controller_that_is_safe_and_ends() {
             "--node",
             "plant",
             "--duration",
-            "600",
+            "60",
             "--bus",
             bus,
             "--out",
             run.to_str().unwrap(),
         ]);
-        std::thread::sleep(Duration::from_millis(1500));
+        wait_for_commands(&mut bystander);
         plant.kill().unwrap();
         plant.wait().unwrap();
         let output = end(controller);
@@ -180,6 +197,7 @@ fn a_killed_controller_leaves_a_plant_that_closes_its_valves_and_drives_on() {
     on_vcan(|bus| {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("plant");
+        let mut bystander = listen(bus);
         let plant = start(&[
             "hil",
             "--node",
@@ -192,7 +210,7 @@ fn a_killed_controller_leaves_a_plant_that_closes_its_valves_and_drives_on() {
             out.to_str().unwrap(),
         ]);
         let mut controller = start(&["hil", "--node", "controller", "--bus", bus]);
-        std::thread::sleep(Duration::from_millis(1500));
+        wait_for_commands(&mut bystander);
         controller.kill().unwrap();
         controller.wait().unwrap();
         let output = end(plant);

@@ -18,6 +18,8 @@ use crate::scenario::{Scenario, TICK_US};
 pub struct Metrics {
     /// Ticks run.
     pub ticks: u32,
+    /// Ticks of the scenario that were not run.
+    pub ticks_missing: u32,
     /// Driver's and left rear passenger's seat.
     pub seats: [RideMeasures; 2],
     /// Edges of each valve signal, in the order of the word's bits.
@@ -72,6 +74,7 @@ impl Metrics {
         }
         Self {
             ticks,
+            ticks_missing: scenario.ticks.saturating_sub(ticks),
             seats: meters.each_ref().map(RideMeter::measures),
             valve_switches: remains.recording.valve_switches(),
             frames_lost: remains.bus_frames_lost + remains.injected.dropped,
@@ -95,6 +98,7 @@ impl Metrics {
         let [driver, rear_left] = &self.seats;
         match metric {
             Metric::Ticks => count(self.ticks.into()),
+            Metric::TicksMissing => count(self.ticks_missing.into()),
             Metric::WeightedRmsDriver => Figure::Number(driver.weighted_rms_m_s2),
             Metric::WeightedRmsRearLeft => Figure::Number(rear_left.weighted_rms_m_s2),
             Metric::VdvDriver => Figure::Number(driver.vdv_m_s1_75),
@@ -124,8 +128,16 @@ impl Metrics {
             }
             Metric::FirstFault => {
                 // Before the first complete set of sensors the bus is rightly called silent.
-                let begin = self.account.iter().position(|a| a.is_some_and(|(mode, _)| mode == Mode::Normal));
-                let mut faults = self.account.iter().skip(begin.unwrap_or(0)).flatten().map(|(_, fault)| *fault);
+                let begin = self
+                    .account
+                    .iter()
+                    .position(|a| a.is_some_and(|(mode, _)| mode == Mode::Normal));
+                let mut faults = self
+                    .account
+                    .iter()
+                    .skip(begin.unwrap_or(0))
+                    .flatten()
+                    .map(|(_, fault)| *fault);
                 let first = faults.find(|fault| *fault != FaultCode::None);
                 Figure::Word(fault_name(first.unwrap_or_default()))
             }

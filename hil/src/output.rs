@@ -3,7 +3,6 @@
 //! Written through [`OutputDirectory`], so they appear together or not at all. Only wall-clock figures differ between two runs of one
 //! scenario; everything else has the same bytes.
 
-
 use oleo_report::{OutputDirectory, OutputError};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde::Serialize;

@@ -48,10 +48,10 @@ pub struct Args {
     #[arg(long, value_name = "FILE|NAME")]
     road: Option<String>,
     /// Forward speed, km/h
-    #[arg(long, value_name = "KM_H")]
+    #[arg(long, value_name = "KM_H", allow_negative_numbers = true)]
     speed: Option<f64>,
     /// Simulated time, s
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     duration: Option<f64>,
     /// always-soft, always-stiff or ride-handling
     #[arg(long, value_name = "NAME")]

@@ -31,6 +31,7 @@ macro_rules! metrics {
 }
 metrics! {
     Ticks, "ticks", "Ticks run.";
+    TicksMissing, "ticks_missing", "Ticks of the scenario that were not run.";
     WeightedRmsDriver, "weighted_rms_driver_m_s2", "BS 6841 weighted RMS at the driver's seat, m/s2.";
     WeightedRmsRearLeft, "weighted_rms_rear_left_m_s2", "BS 6841 weighted RMS at the left rear passenger's seat, m/s2.";
     VdvDriver, "vdv_driver_m_s1_75", "BS 6841 vibration dose value at the driver's seat, m/s^1.75.";

@@ -33,13 +33,13 @@ pub struct Args {
     #[arg(long, value_enum, default_value_t = Setting::Controlled)]
     setting: Setting,
     /// Speed, km/h [default: 60, bump 5; constant-radius: speed at the end]
-    #[arg(long, value_name = "KM_H")]
+    #[arg(long, value_name = "KM_H", allow_negative_numbers = true)]
     speed_km_h: Option<f64>,
     /// Road for `straight`: belgian, apg-left, apg-right, apg-both, iso-a .. iso-f, flat, or a .crg or .csv file
     #[arg(long, value_name = "ROAD", default_value = "flat")]
     road: String,
     /// Time to drive, s [default: 20; lane changes end behind the last cones]
-    #[arg(long, value_name = "S")]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
     duration_s: Option<f64>,
     /// Radius of constant-radius, m, positive to the left
     #[arg(long, value_name = "M", default_value_t = 40.0, allow_negative_numbers = true)]

@@ -38,10 +38,10 @@ pub(crate) struct Drive {
     #[arg(long, value_name = "HANDLING.toml")]
     handling: Option<PathBuf>,
     /// Speed on the Belgian block and in the lane change, km/h
-    #[arg(long, value_name = "KM_H", default_value_t = 60.0)]
+    #[arg(long, value_name = "KM_H", default_value_t = 60.0, allow_negative_numbers = true)]
     speed_km_h: f64,
     /// Time on the Belgian block, s
-    #[arg(long, value_name = "S", default_value_t = 20.0)]
+    #[arg(long, value_name = "S", default_value_t = 20.0, allow_negative_numbers = true)]
     duration_s: f64,
     /// Phases of the Belgian block
     #[arg(long, value_name = "N", default_value_t = 1)]

@@ -16,13 +16,13 @@ pub struct Args {
     #[command(flatten)]
     drive: Drive,
     /// Weight of the weighted RMS acceleration, mean of both seats
-    #[arg(long, value_name = "W", default_value_t = 1.0)]
+    #[arg(long, value_name = "W", default_value_t = 1.0, allow_negative_numbers = true)]
     ride: f64,
     /// Weight of the motion sickness dose, mean of both seats
-    #[arg(long, value_name = "W", default_value_t = 0.0)]
+    #[arg(long, value_name = "W", default_value_t = 0.0, allow_negative_numbers = true)]
     sickness: f64,
     /// Weight of the largest roll angle in the lane change
-    #[arg(long, value_name = "W", default_value_t = 0.0)]
+    #[arg(long, value_name = "W", default_value_t = 0.0, allow_negative_numbers = true)]
     roll: f64,
     /// Front and rear each for itself
     #[arg(long)]

@@ -131,6 +131,10 @@ fn compare(dampers: bool, edge3: f64) {
     model.effects.bump_stop = None;
     model.effects.real_gas = None;
     model.effects.entrained_air = None;
+    model.effects.oil_compressibility = Some(OilCompressibility {
+        bulk_modulus_pa: 1.5e9,
+        counted_at: OilCount::Chamber,
+    });
     model.valve_timing.response_polynomial_s = vec![RESPONSE_S];
     let exact = reference(&model, edge3, f64::from(u8::from(dampers)));
     let mut strut = Strut::at_rest(&model, [dampers, dampers, edge3 < 0.0]).unwrap();

@@ -4,7 +4,7 @@
 //! Closed form: `dp = beta A dx / (V_oil - A x)`, thus `p - p0 = beta ln(V_oil / (V_oil - A x))`, nearly a straight line of
 //! slope `beta A^2 / V_oil` in force.
 
-use crate::strut::{ModelError, OilCompressibility, StrutModel};
+use crate::strut::{ModelError, OilCompressibility, OilCount, StrutModel};
 
 use super::programme::{Programme, Record, play};
 use super::spring::REPORT_BULK_MODULUS_PA;
@@ -56,6 +56,7 @@ pub fn compress_oil(model: &StrutModel, highest_pa: f64) -> Result<OilCompressio
         .oil_compressibility
         .get_or_insert(OilCompressibility {
             bulk_modulus_pa: REPORT_BULK_MODULUS_PA,
+            counted_at: OilCount::default(),
         })
         .bulk_modulus_pa;
     let (area, oil) = (solid.piston_area_m2(), solid.cylinder.oil_volume_m3);

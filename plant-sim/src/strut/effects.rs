@@ -15,13 +15,33 @@ macro_rules! term {
     };
 }
 
-term! {
-    /// Finite stiffness of the oil: `dp = beta dV / V`. Report: 1.5e9 Pa; range 0.5e9 to 2.5e9.
-    OilCompressibility {
-        /// Bulk modulus, Pa.
-        bulk_modulus_pa: f64 = "bulk_modulus_Pa",
-    }
+/// At which density the main chamber's balance counts oil.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum OilCount {
+    /// That of the chamber at the moment: `dp1/dt = beta / (V - A x) (A v - Q1 - Q2)`, the equation of the recordings. A loop
+    /// in the force-displacement plane shifts `area / beta` of oil: harmless in a recording, centimetres in an hour.
+    #[default]
+    Chamber,
+    /// That at static pressure: `d/dt [(V - A x)(p1 - p_static)/beta] = A v - Q1 - Q2`. Conserves oil.
+    Static,
 }
+/// Finite stiffness of the oil: `dp = beta dV / V`. Report: 1.5e9 Pa; range 0.5e9 to 2.5e9.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OilCompressibility {
+    /// Bulk modulus, Pa.
+    #[serde(rename = "bulk_modulus_Pa")]
+    pub bulk_modulus_pa: f64,
+    /// Density at which oil is counted.
+    #[serde(default, skip_serializing_if = "is_chamber")]
+    pub counted_at: OilCount,
+}
+
+fn is_chamber(counted_at: &OilCount) -> bool {
+    *counted_at == OilCount::Chamber
+}
+
 term! {
     /// Undissolved air in the main chamber's oil (Gholizadeh, Burton & Schoenau, "Fluid bulk modulus: a literature survey",
     /// Int. J. Fluid Power 12(3), 2011): `1/beta_eff = 1/beta + a (p_atm/p)^(1/n) / (n p)`, p absolute.

@@ -6,12 +6,12 @@
 //! valve movements, so no stage integrates across one.
 
 use super::damper::Pack;
-use super::effects::{BumpStop, Effects, GasEquation, LawArgument, LawPlace, SealFriction, SideLoadFriction};
+use super::effects::{BumpStop, Effects, GasEquation, LawArgument, LawPlace, OilCount, SealFriction, SideLoadFriction};
 use super::friction::advance_friction;
 use super::gas::{Gas, GasState};
 use super::model::{ATMOSPHERE_PA, ModelError, StrutModel};
 use super::nitrogen::Nitrogen;
-use super::solve::{Guess, Parameters, Path, Stage, Store, bubbles, law_at};
+use super::solve::{Guess, Parameters, Path, Stage, Store, law_at};
 use super::stops::stop_force_n;
 use super::valve::ValveMotion;
 
@@ -102,7 +102,7 @@ impl Strut {
         let store = Store {
             p1: rest_pa,
             gas: [at_rest(0), at_rest(1)],
-            bubbles: parameters.air.as_ref().map_or(0.0, |air| bubbles(air, rest_pa).0),
+            held: parameters.held(rest_pa, displacement_m).0,
             q2: 0.0,
             shear: [0.0; 2],
             heat: [0.0; 2],
@@ -397,6 +397,11 @@ fn parameters(model: &StrutModel) -> Parameters {
         area_m2,
         oil_volume_m3: model.cylinder.oil_volume_m3,
         inverse_bulk_modulus: e.oil_compressibility.as_ref().map_or(0.0, |o| 1.0 / o.bulk_modulus_pa),
+        conserves_oil: e
+            .oil_compressibility
+            .as_ref()
+            .is_some_and(|o| o.counted_at == OilCount::Static),
+        static_pa: model.cylinder.static_pressure_pa,
         air: e.entrained_air.clone(),
         mount_compliance: area_m2 * area_m2 * flexibility,
         mount_flexibility: flexibility,

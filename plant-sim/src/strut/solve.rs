@@ -41,6 +41,9 @@ pub(super) struct Parameters {
     pub area_m2: f64,
     pub oil_volume_m3: f64,
     pub inverse_bulk_modulus: f64,
+    /// Oil is counted at its static density, so that none is gained or lost.
+    pub conserves_oil: bool,
+    pub static_pa: f64,
     pub air: Option<EntrainedAir>,
     /// `A^2 / k` of the mount, m3/Pa; 0 for a rigid one.
     pub mount_compliance: f64,
@@ -59,9 +62,9 @@ pub(super) struct Parameters {
 pub(super) struct Store {
     pub p1: f64,
     pub gas: [GasState; 2],
-    /// Undissolved air over oil, by volume. A state of its own beside p1: stages must blend volumes, since pressure is
-    /// anything but linear in them near vacuum.
-    pub bubbles: f64,
+    /// Volume that the main chamber has given way since static pressure and that it gives back, m3. A state of its own
+    /// beside p1: stages must blend volumes, since pressure is anything but linear in them near vacuum.
+    pub held: f64,
     pub q2: f64,
     /// Seal shear of the accumulator pistons, -1 to 1.
     pub shear: [f64; 2],
@@ -81,7 +84,7 @@ impl Store {
         Self {
             p1: mix(self.p1, other.p1),
             gas: [gas(0), gas(1)],
-            bubbles: mix(self.bubbles, other.bubbles),
+            held: mix(self.held, other.held),
             q2: mix(self.q2, other.q2),
             shear: [mix(self.shear[0], other.shear[0]), mix(self.shear[1], other.shear[1])],
             heat: [mix(self.heat[0], other.heat[0]), mix(self.heat[1], other.heat[1])],
@@ -136,13 +139,13 @@ impl Branch {
     }
 }
 
-/// Answer of the main chamber to a trial pressure: volume given way, m3, its derivative, m3/Pa, bubbles left and minus
-/// their derivative.
+/// Answer of the main chamber to a trial pressure: volume given way since the base, m3, volume held then, and both
+/// derivatives, m3/Pa.
 struct GivenWay {
     volume: f64,
     slope: f64,
-    bubbles: f64,
-    thinning: f64,
+    held: f64,
+    held_slope: f64,
 }
 
 /// A Newton step of at most this much is taken without another look, Pa: all quantities follow it linearly, volumes
@@ -227,30 +230,42 @@ impl Path {
 }
 
 impl Parameters {
-    /// What the main chamber and what hangs on it do from `base` to gauge pressure `p1`. Differences of volumes: exact
-    /// however far the pressure moves.
+    /// Volume that the chamber holds at a gauge pressure beyond what it holds at static pressure, and its derivative.
     #[inline(always)]
-    fn given_way(&self, base: &Store, p1: f64, displacement_m: f64) -> GivenWay {
-        let oil_m3 = self.oil_volume_m3 - self.area_m2 * displacement_m;
-        let linear = oil_m3 * self.inverse_bulk_modulus + self.mount_compliance;
-        let (mut volume, mut slope) = (linear * (p1 - base.p1), linear);
-        let (mut left, mut thin) = (0.0, 0.0);
+    pub fn held(&self, p1: f64, displacement_m: f64) -> (f64, f64) {
+        let mut slope = self.mount_compliance;
+        if self.conserves_oil {
+            slope += (self.oil_volume_m3 - self.area_m2 * displacement_m) * self.inverse_bulk_modulus;
+        }
+        let mut volume = slope * (p1 - self.static_pa);
         if let Some(air) = &self.air {
-            let (now, thinning) = bubbles(air, p1);
-            volume += oil_m3 * (base.bubbles - now);
-            slope += oil_m3 * thinning;
-            (left, thin) = (now, thinning);
+            let (left, thinning) = bubbles(air, p1);
+            volume -= self.oil_volume_m3 * left;
+            slope += self.oil_volume_m3 * thinning;
         }
         if let Some(law) = &self.volume_law {
-            let (now, s) = law.flow(p1, &mut 0);
-            volume += now - law.flow(base.p1, &mut 0).0;
+            let (v, s) = law.flow(p1, &mut 0);
+            volume += v;
             slope += s;
+        }
+        (volume, slope)
+    }
+
+    /// What the chamber does from `base` to gauge pressure `p1`. Differences of volumes: exact however far it moves.
+    #[inline(always)]
+    fn given_way(&self, base: &Store, p1: f64, displacement_m: f64) -> GivenWay {
+        let (held, held_slope) = self.held(p1, displacement_m);
+        let (mut volume, mut slope) = (held - base.held, held_slope);
+        if !self.conserves_oil {
+            let oil = (self.oil_volume_m3 - self.area_m2 * displacement_m) * self.inverse_bulk_modulus;
+            volume += oil * (p1 - base.p1);
+            slope += oil;
         }
         GivenWay {
             volume,
             slope,
-            bubbles: left,
-            thinning: thin,
+            held,
+            held_slope,
         }
     }
 
@@ -317,7 +332,7 @@ impl Parameters {
                 return Stage {
                     store: Store {
                         p1,
-                        bubbles: given.bubbles - given.thinning * p1_slope * step1,
+                        held: given.held + given.held_slope * p1_slope * step1,
                         gas: [one.gas, two.gas],
                         q2: two.flow,
                         shear: [one.shear, two.shear],
@@ -342,7 +357,7 @@ const LEAST_BUBBLE_PA: f64 = 2e3;
 /// `a (p_atm/p)^(1/n)`. As the pressure nears vacuum the bubbles take over the whole flow: this is also what keeps a
 /// strut in violent rebound from pulling on its oil.
 #[inline]
-pub(super) fn bubbles(air: &EntrainedAir, gauge_pa: f64) -> (f64, f64) {
+fn bubbles(air: &EntrainedAir, gauge_pa: f64) -> (f64, f64) {
     let absolute = gauge_pa + ATMOSPHERE_PA;
     let held = absolute.max(LEAST_BUBBLE_PA);
     let ratio = ATMOSPHERE_PA / held;

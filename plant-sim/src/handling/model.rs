@@ -130,7 +130,8 @@ impl<E: SuspensionElement> HandlingModel<E> {
         }
         for (corner, (element, needed_n)) in elements.iter().zip(parameters.static_strut_load_n()).enumerate() {
             let carried_n = element.force_n();
-            if !((carried_n - needed_n).abs() <= STATIC_LOAD_TOLERANCE * needed_n) {
+            let fits = (carried_n - needed_n).abs() <= STATIC_LOAD_TOLERANCE * needed_n;
+            if !fits {
                 return Err(RideError::StaticLoad {
                     corner,
                     carried_n,
@@ -190,7 +191,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
         };
         // At rest on the road's mean level under the wheels at the start, wherever the road's zero is.
         let height = |corner: usize| {
-            let side = if corner % 2 == 0 { 0.5 } else { -0.5 };
+            let side = if corner.is_multiple_of(2) { 0.5 } else { -0.5 };
             let station = if corner < 2 {
                 0.0
             } else {
@@ -330,7 +331,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
         drive_n_m: f64,
     ) -> WheelLoads {
         let index = corner / 2;
-        let side = if corner % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if corner.is_multiple_of(2) { 1.0 } else { -1.0 };
         let centre = place.mass_centre + place.left * (side * self.masses.axles[index].half_track_m);
         let rate = velocities.axles[index];
         let arm = centre - place.centre;

@@ -244,7 +244,7 @@ pub fn optimise(
         simplex.push(corner);
     }
     let solver = NelderMead::new(simplex).with_sd_tolerance(2e-3);
-    let end = solver.map_err(Into::into).and_then(|solver| {
+    let end = solver.and_then(|solver| {
         Executor::new(&search, solver)
             .configure(|state| state.max_iters(objective.iterations))
             .timer(false)

@@ -149,8 +149,10 @@ struct GivenWay {
 }
 
 /// A Newton step of at most this much is taken without another look, Pa: all quantities follow it linearly, volumes
-/// included, and what that neglects is below (50 Pa / transition pressure)^2, 1e-5 of a flow.
-const LAST_STEP_PA: f64 = 50.0;
+/// included, and what that neglects in the drop is about step^2 / transition pressure, 5 Pa.
+const LAST_STEP_PA: f64 = 300.0;
+/// And one longer than this is not trusted, Pa.
+const LONGEST_STEP_PA: f64 = 2e6;
 
 /// Where one path starts from in a stage.
 struct Setting {
@@ -342,9 +344,10 @@ impl Parameters {
                     flow: guess.flow,
                 };
             }
+            // Near vacuum the chamber is soft on one side and hard on the other; an unbounded step leaps the gap.
             let relax = if round < 8 { 1.0 } else { 0.5 };
-            d1 += relax * step1;
-            d2 += relax * step2;
+            d1 += relax * step1.clamp(-LONGEST_STEP_PA, LONGEST_STEP_PA);
+            d2 += relax * step2.clamp(-LONGEST_STEP_PA, LONGEST_STEP_PA);
         }
     }
 }

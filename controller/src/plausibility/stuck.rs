@@ -86,16 +86,22 @@ impl Default for Stuck {
 impl Stuck {
     /// One tick.
     pub fn step(&mut self, trusted: &Trusted, context: &Context, verdicts: &mut [Verdicts; CORNERS]) {
-        for (((window, x), pressures), open) in self
+        for ((((window, x), pressures), open), verdict) in self
             .corners
             .iter_mut()
             .zip(trusted.displacement_m)
             .zip(trusted.pressure_pa)
             .zip(context.spring_settled_open)
+            .zip(&*verdicts)
         {
-            window.displacement.add(x);
-            for (span, pressure) in window.pressure.iter_mut().zip(pressures) {
-                span.add(pressure);
+            // What stands in for a reading (at first, zero) does not move with it: a parked vehicle would be called broken.
+            if verdict.displacement == FaultCode::None {
+                window.displacement.add(x);
+            }
+            for ((span, pressure), &fault) in window.pressure.iter_mut().zip(pressures).zip(&verdict.pressure) {
+                if fault == FaultCode::None {
+                    span.add(pressure);
+                }
             }
             window.spring_open &= open;
         }
@@ -147,6 +153,36 @@ impl Stuck {
             window.displacement = Span::EMPTY;
             window.pressure = [Span::EMPTY; 4];
             window.spring_open = true;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parked_vehicle_that_is_switched_on_is_not_stuck() {
+        let mut stuck = Stuck::default();
+        let context = Context::default();
+        for tick in 0..3 * WINDOW_TICKS {
+            let believed = tick >= 16;
+            let mut trusted = Trusted::default();
+            let mut verdicts = [Verdicts::default(); CORNERS];
+            if believed {
+                trusted.pressure_pa = [[2.0e6; 4]; CORNERS];
+            } else {
+                verdicts = [Verdicts {
+                    displacement: FaultCode::SensorRange,
+                    pressure: [FaultCode::SensorRange; 4],
+                }; CORNERS];
+            }
+            stuck.step(&trusted, &context, &mut verdicts);
+            let healthy = verdicts
+                .iter()
+                .flat_map(Verdicts::all)
+                .all(|fault| fault == FaultCode::None);
+            assert_eq!(healthy, believed, "tick {tick}");
         }
     }
 }

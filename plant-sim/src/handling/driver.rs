@@ -15,7 +15,7 @@
 //!
 //! Speed ("forward speed", a constraint in table 1) is held by a proportional-integral force, limited.
 
-use super::model::{Controls, HandlingMotion};
+use super::motion::{Controls, HandlingMotion};
 use super::parameters::HandlingParameters;
 use super::track::Track;
 

@@ -4,7 +4,8 @@
 //! controller's tick. Roll-over, spinning and hit cones are outcomes. Only a model that leaves the real numbers is a failure.
 
 use super::driver::Driver;
-use super::model::{Controls, HandlingModel};
+use super::model::HandlingModel;
+use super::motion::Controls;
 use super::parameters::HandlingParameters;
 use super::track::Track;
 use crate::vehicle::VehicleParameters;

@@ -11,6 +11,7 @@
 //! World axes: x ahead along the track, y to the left, z up. Angles as in the ride model: roll left side up positive,
 //! pitch nose down positive; yaw and steer to the left positive.
 
+mod assembly;
 mod attitude;
 mod axle;
 mod driver;
@@ -19,6 +20,7 @@ mod ground;
 mod magic_formula;
 mod manoeuvre;
 mod model;
+mod motion;
 mod parameters;
 mod track;
 mod wheel;
@@ -27,7 +29,8 @@ pub use axle::AxleCoordinates;
 pub use driver::Driver;
 pub use magic_formula::{LoadedTyre, MagicFormula, TyreForces};
 pub use manoeuvre::{Ending, History, Manoeuvre, NotFinite, Run, Sample};
-pub use model::{Controls, HandlingModel, HandlingMotion, HandlingVehicle};
+pub use model::{HandlingModel, HandlingVehicle};
+pub use motion::{Controls, HandlingMotion};
 pub use parameters::{Drive, DriverParameters, Frame, Ground, HandlingAxle, HandlingParameters, Outline, Steering};
 pub use track::{Gate, Track};
 pub use wheel::WheelState;

@@ -9,10 +9,12 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::assembly::masses;
 use super::attitude::{Attitude, yaw_pitch_roll};
-use super::axle::{AxleCoordinates, AxleGeometry, AxlePlace};
+use super::axle::{AxleCoordinates, AxlePlace};
 use super::dynamics::{Accelerations, Loads, Masses, Velocities};
 use super::ground::Probe;
+use super::motion::{Controls, HandlingMotion};
 use super::parameters::HandlingParameters;
 use super::wheel::{ContactState, Tyre, WheelLoads, WheelMotion, WheelState};
 use crate::road::Road;
@@ -22,43 +24,6 @@ use crate::vehicle::{GRAVITY_M_S2, RideError, VehicleParameters};
 
 /// A suspension may carry this much more or less than the static load at its design height.
 const STATIC_LOAD_TOLERANCE: f64 = 0.05;
-
-/// What driver or test asks of the vehicle in a step.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Controls {
-    /// Steer angle of the front wheels wanted, rad, left positive; limited in angle and rate by the vehicle.
-    pub steer_rad: f64,
-    /// Drive (positive) or brake force wanted of all wheels, N.
-    pub drive_force_n: f64,
-}
-
-/// Motion of the body in the world.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct HandlingMotion {
-    /// Centre of mass: ahead (station), left, up from its height at rest; m.
-    pub position_m: [f64; 3],
-    /// The point of the body that lies on the road below its centre of mass at rest: where the vehicle is, however the body
-    /// rolls; ahead and left, m.
-    pub foot_m: [f64; 2],
-    /// Velocity of the centre of mass in the world, m/s.
-    pub velocity_m_s: [f64; 3],
-    /// Heading, left positive, rad.
-    pub yaw_rad: f64,
-    /// Nose down positive, rad.
-    pub pitch_rad: f64,
-    /// Left side up positive, rad, within +-pi.
-    pub roll_rad: f64,
-    /// Angular velocity about the body's x, y, z, rad/s.
-    pub rates_rad_s: [f64; 3],
-    /// Horizontal speed along the heading, m/s.
-    pub speed_m_s: f64,
-    /// Horizontal acceleration to the left of the heading, m/s2.
-    pub lateral_acceleration_m_s2: f64,
-    /// Vertical acceleration in the world, m/s2.
-    pub vertical_acceleration_m_s2: f64,
-    /// Angle between horizontal velocity and heading, left positive, rad.
-    pub side_slip_rad: f64,
-}
 
 /// The handling model on four suspension elements.
 pub struct HandlingModel<E> {
@@ -510,50 +475,6 @@ impl<E: SuspensionElement> HandlingModel<E> {
             self.rotation * linear,
             self.rotation * (angular - (first / mass).cross(&linear)),
         )
-    }
-}
-
-/// Inertias and geometry from both parameter files.
-fn masses(parameters: &VehicleParameters, handling: &HandlingParameters) -> Masses {
-    let body = &parameters.body;
-    let height_m = parameters.body_cg_height_m();
-    let ahead_m = parameters.body_cg_behind_front_axle_m();
-    let axles = [
-        (&parameters.front_axle, &handling.front_axle, ahead_m),
-        (
-            &parameters.rear_axle,
-            &handling.rear_axle,
-            ahead_m - parameters.layout.wheelbase_m,
-        ),
-    ]
-    .map(|(axle, more, ahead_m)| AxleGeometry {
-        mass_kg: axle.mass_kg,
-        roll_inertia_kg_m2: axle.inertia_kg_m2,
-        pitch_inertia_kg_m2: more.housing_pitch_inertia_kg_m2,
-        roll_centre_m: Vector3::new(ahead_m, 0.0, more.roll_centre_height_m - height_m),
-        drop_m: more.roll_centre_height_m - axle.tyre_radius_m,
-        half_track_m: 0.5 * axle.track_m,
-        half_strut_spacing_m: 0.5 * axle.strut_spacing_m,
-        anti_roll_n_m_rad: axle.anti_roll_stiffness_n_m_rad,
-    });
-    let stiffness = handling.frame.torsional_stiffness_n_m_rad;
-    let inertia = 0.25 * body.roll_inertia_kg_m2;
-    Masses {
-        body_kg: body.sprung_mass_kg,
-        body_inertia_kg_m2: Vector3::new(
-            body.roll_inertia_kg_m2,
-            body.pitch_inertia_kg_m2,
-            body.yaw_inertia_kg_m2,
-        ),
-        axles,
-        spin_inertia_kg_m2: [
-            handling.front_axle.wheel_spin_inertia_kg_m2,
-            handling.rear_axle.wheel_spin_inertia_kg_m2,
-        ],
-        torsion: [
-            stiffness,
-            2.0 * handling.frame.torsional_damping_ratio * (stiffness * inertia).sqrt(),
-        ],
     }
 }
 

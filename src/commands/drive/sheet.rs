@@ -180,7 +180,13 @@ fn difference(a: &[Sample], b: &[Sample], of: fn(&Sample) -> f64) -> f64 {
     (apart / size).sqrt()
 }
 
-const COMPARED: [(&str, &str, fn(&Sample) -> f64); 5] = [
+/// What a figure or column takes of a sample.
+type Signal = fn(&Sample) -> f64;
+
+/// Quantity, unit and the lines of one panel.
+type Panel<'a> = (&'a str, &'a str, &'a [(&'a str, Signal)]);
+
+const COMPARED: [(&str, &str, Signal); 5] = [
     ("heave", "body vertical displacement (figures 2, 6)", |s| s.heave_m),
     ("vertical_acceleration", "body vertical acceleration (figure 3)", |s| {
         s.vertical_acceleration_m_s2
@@ -192,7 +198,7 @@ const COMPARED: [(&str, &str, fn(&Sample) -> f64); 5] = [
     ("pitch", "body pitch angle", |s| s.pitch_rad),
 ];
 
-const COLUMNS: [(&str, fn(&Sample) -> f64); 32] = [
+const COLUMNS: [(&str, Signal); 32] = [
     ("time_s", |s| s.time_s),
     ("station_m", |s| s.station_m),
     ("lateral_m", |s| s.lateral_m),
@@ -322,7 +328,7 @@ fn page(course: &Course, setting: Setting, runs: &[(&str, Run)], table: &Table, 
         page.section("Ride model against handling model")
             .table(comparison.clone());
     }
-    let panels = |title: &str, panels: &[(&str, &str, &[(&str, fn(&Sample) -> f64)])]| {
+    let panels = |title: &str, panels: &[Panel]| {
         let mut figure = Curves::new(title, Axis::new("Time", "s"));
         figure.link("time");
         for (quantity, unit, series) in panels {

@@ -37,6 +37,7 @@ enum Command {
     Study(commands::study::Args),
     Hil(commands::hil::Args),
     Rig(commands::rig::Args),
+    Diagnose(commands::diagnose::Args),
     Predict(commands::predict::Args),
 }
 
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
             Command::Study(args) => commands::study::run(args),
             Command::Hil(args) => commands::hil::run(args),
             Command::Rig(args) => commands::rig::run(args),
+            Command::Diagnose(args) => commands::diagnose::run(args),
             Command::Predict(args) => commands::predict::run(args),
         },
         Err(error) => failure::usage(&error),

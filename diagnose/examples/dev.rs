@@ -58,7 +58,7 @@ fn main() {
                     c.gain,
                     c.gain_error,
                     c.rival.map(|r| (names(r.0), r.1 as i64, r.2 as i64)),
-                    if c.is_ambiguous() { " AMBIGUOUS" } else { "" }
+                    if c.ambiguous { " AMBIGUOUS" } else { "" }
                 ))
                 .collect::<Vec<_>>(),
             s.incomplete,

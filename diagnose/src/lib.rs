@@ -15,8 +15,13 @@
 //! ```
 
 pub mod campaign;
+pub mod diagnosis;
 pub mod error;
+mod experiment;
 pub mod fit;
+pub mod json;
+pub mod locate;
+pub mod page;
 pub mod parameter;
 pub mod problem;
 pub mod recording;
@@ -25,4 +30,5 @@ pub mod select;
 pub mod specimen;
 
 pub use campaign::Campaign;
+pub use diagnosis::Diagnosis;
 pub use error::DiagnoseError;

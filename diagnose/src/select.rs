@@ -18,6 +18,9 @@ const MAX_EFFECTS: usize = 6;
 const FINALISTS: usize = 3;
 /// A gain in cost below this is chance for one parameter (five standard deviations), whatever the sample.
 const MIN_GAIN: f64 = 30.0;
+/// A gain below this part of the number of residuals is too small to matter: smoothing a measured displacement leaves
+/// errors of that size, and they bend towards late or lagging sensors (complete models: at most 0.0035).
+const MIN_GAIN_PER_RESIDUAL: f64 = 0.008;
 /// Gain over its standard error from blocks.
 const MIN_GAIN_SIGMAS: f64 = 2.5;
 /// Change of a block's cost that is not chance.
@@ -32,8 +35,8 @@ pub const COMPLETE_NOISE_RATIO: f64 = 1.15;
 const LAW_NOISE_RATIO: f64 = 1.06;
 /// Screening is linear in the model's own parameters: what it calls a little less than worth it is still fitted.
 const SCREEN_MARGIN: f64 = 0.6;
-/// A gain of a rival within this many standard errors of the chosen term's cannot be told from it.
-const AMBIGUOUS_SIGMAS: f64 = 2.0;
+/// To be told from its strongest rival, an effect must lead by this part of what it takes to be believed at all.
+const AMBIGUITY_MARGIN: f64 = 0.25;
 
 /// What one candidate could do.
 #[derive(Debug, Clone)]
@@ -59,6 +62,8 @@ pub struct Chosen {
     pub without: f64,
     /// The strongest rival in its place, and by how much the chosen one is better (cost, standard error).
     pub rival: Option<(usize, f64, f64)>,
+    /// True if the strongest rival does as well, as far as the recordings can tell.
+    pub ambiguous: bool,
 }
 
 /// The outcome.
@@ -158,8 +163,13 @@ impl<'p, 'a> Judge<'p, 'a> {
         let unexplained = (before.iter().sum::<f64>() - self.count).max(0.0);
         let (logarithmic, logarithmic_error) = Self::logarithmic_gain(before, after);
         let sigmas = margin * MIN_GAIN_SIGMAS;
-        let certain = gain > sigmas * error || logarithmic > sigmas * logarithmic_error || Self::rarely_worse(before, after);
-        gain > margin * MIN_GAIN && certain && gain > margin * share * unexplained
+        // A screened fit (margin below 1) is linear in the model's own parameters: single blocks may look worse than they are.
+        let certain = margin < 1.0
+            || gain > sigmas * error
+            || logarithmic > sigmas * logarithmic_error
+            || Self::rarely_worse(before, after);
+        let least = MIN_GAIN.max(MIN_GAIN_PER_RESIDUAL * self.count);
+        gain > margin * least && certain && gain > margin * share * unexplained
     }
 
     /// Candidates not in the model and not excluded by a group member that is; laws without a name only when asked for.
@@ -192,6 +202,10 @@ impl<'p, 'a> Judge<'p, 'a> {
         let before = self.held_out(best);
         let total: f64 = before.iter().sum();
         let mut winner: Option<(f64, Fit)> = None;
+        if std::env::var("DBG").is_ok() {
+            eprintln!("  before {total:.0} structure {:?}", best.point.effects);
+            for (c, f) in self.ranked(screened).iter().take(7) { eprintln!("     {c:.0} in-sample {:.0} {}", f.cost, self.problem.specimen.candidates()[*f.point.effects.last().unwrap()].name()); }
+        }
         for (screened_cost, start) in self.ranked(screened).into_iter().take(FINALISTS) {
             if !self.worth(&before, &self.held_out(&start), MIN_SHARE, SCREEN_MARGIN) {
                 continue;
@@ -245,6 +259,7 @@ impl<'p, 'a> Judge<'p, 'a> {
             let rivals: Vec<usize> = self.open(&less.point, laws).into_iter().filter(|&c| c != candidate).collect();
             let screened = self.screen(&less, rivals)?;
             let mut rival = None;
+            let mut ambiguous = false;
             if let Some((cost, start)) = self.ranked(&screened).into_iter().next() {
                 let id = *start.point.effects.last().unwrap_or(&candidate);
                 let full = if cost - total < 0.5 * gain { self.fitted(start.point)? } else { start };
@@ -254,8 +269,10 @@ impl<'p, 'a> Judge<'p, 'a> {
                     better = Some((lead, full));
                 }
                 rival = Some((id, lead, error));
+                // A rival that explains nearly nothing itself is no ambiguity, however scattered the blocks.
+                ambiguous = !self.worth(&held_out, &costs, 0.0, AMBIGUITY_MARGIN) && lead < 0.2 * gain;
             }
-            chosen.push(Chosen { candidate, gain, gain_error, without: self.ratio(&without), rival });
+            chosen.push(Chosen { candidate, gain, gain_error, without: self.ratio(&without), rival, ambiguous });
         }
         chosen.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok((chosen, better.map(|(_, f)| f)))
@@ -327,15 +344,5 @@ fn record_alone(judge: &Judge<'_, '_>, screened: &Screened, trials: &mut Vec<Tri
             let alone = fit.as_ref().map_or(f64::INFINITY, |f| judge.ratio(&judge.held_out(f)));
             trials.push(Trial { candidate: *candidate, alone, added: None });
         }
-    }
-}
-
-impl Chosen {
-    /// True if the strongest rival does as well.
-    #[must_use]
-    pub fn is_ambiguous(&self) -> bool {
-        self.rival.is_some_and(|(_, lead, error)| {
-            lead < (AMBIGUOUS_SIGMAS * error).max(0.5 * MIN_GAIN) && lead < 0.2 * self.gain
-        })
     }
 }

@@ -98,6 +98,28 @@ pub trait Specimen: Sync {
     /// # Errors
     /// A law that the model file cannot hold.
     fn model_toml(&self, hypothesis: &Hypothesis) -> Result<String, String>;
+    /// A law without a name with its values, for the report.
+    fn law(&self, candidate: usize, values: &[f64]) -> Option<serde_json::Value> {
+        let c = &self.candidates()[candidate];
+        let keys: Vec<&str> = c.parameters.iter().map(|p| p.key.as_str()).collect();
+        Some(serde_json::json!({ "place": c.place, "form": c.label, "keys": keys, "values": values }))
+    }
+    /// Piston area of a strut, m2; `None` for other kinds.
+    fn piston_area_m2(&self) -> Option<f64> {
+        None
+    }
+    /// True if nothing has moved faster than a speed, m/s, for a while before a sample.
+    fn quiet(&self, _recording: usize, _sample: usize, _speed_m_s: f64) -> bool {
+        false
+    }
+    /// True if a valve has been signalled open for a while.
+    fn valve_open(&self, _recording: usize, _sample: usize, _valve: usize) -> bool {
+        false
+    }
+    /// True if a valve has been signalled shut for a while.
+    fn valve_shut(&self, _recording: usize, _sample: usize, _valve: usize) -> bool {
+        false
+    }
     /// Quantities over which residuals are shown and explained, per recording: name with unit and series.
     fn states(&self, recording: usize) -> Vec<(&'static str, Vec<f64>)>;
 }

@@ -2,7 +2,7 @@
 
 use oleo_plant_sim::strut::{
     AccumulatorPistonFriction, BumpStop, DamperLeakage, DampingFade, Effects, EntrainedAir, GasChargeError,
-    GasEquation, GasHeatTransfer, LineInertance, LineResistance, MountCompliance, OilCompressibility, RealGas,
+    GasEquation, GasHeatTransfer, LineInertance, LineResistance, MountCompliance, OilCompressibility, OilCount, RealGas,
     SealFriction, SideLoadFriction, TransitionShape, Valve3Leakage, ValveDelay, ValveTransition,
 };
 
@@ -17,7 +17,7 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
     let column = || candidate.place.trim_start_matches("sensor:").to_owned();
     let second = candidate.place.ends_with('2');
     match candidate.id {
-        "oil_compressibility" => effects.oil_compressibility = Some(OilCompressibility { bulk_modulus_pa: 1.0 / v[0].max(1e-13) }),
+        "oil_compressibility" => effects.oil_compressibility = Some(OilCompressibility { bulk_modulus_pa: 1.0 / v[0].max(1e-13), counted_at: OilCount::default() }),
         "entrained_air" => {
             effects.entrained_air = Some(EntrainedAir {
                 volume_fraction: v[0],

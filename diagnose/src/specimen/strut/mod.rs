@@ -176,6 +176,36 @@ impl TwoStageStrut {
     }
 }
 
+/// A valve or a pressure has settled after this time, s: three times the slowest valve of the report.
+const SETTLED_S: f64 = 0.3;
+
+impl TwoStageStrut {
+    fn settled(&self, recording: usize) -> usize {
+        (SETTLED_S / self.recordings[recording].interval_s().max(1e-6)).ceil() as usize
+    }
+
+    fn held(&self, recording: usize, sample: usize, valve: usize, open: bool) -> bool {
+        let from = sample.saturating_sub(self.settled(recording));
+        self.inputs[recording].signals[from..=sample].iter().all(|s| s[valve] == open)
+    }
+
+    /// Time since the last switching edge, s; the time itself before the first.
+    fn since_edge(&self, recording: usize) -> Option<Vec<f64>> {
+        let (time, signals) = (&self.recordings[recording].time_s, &self.inputs[recording].signals);
+        signals.windows(2).any(|w| w[0] != w[1]).then(|| {
+            let mut edge = f64::NEG_INFINITY;
+            (0..time.len())
+                .map(|k| {
+                    if k > 0 && signals[k] != signals[k - 1] {
+                        edge = time[k];
+                    }
+                    (time[k] - edge).min(9.0)
+                })
+                .collect()
+        })
+    }
+}
+
 fn calibration(model: &StrutModel) -> (Vec<Calibration>, Vec<Parameter>) {
     let tolerance = |key: &str| model.tolerance.get(key).copied().filter(|t| *t > 0.0);
     let mut out = Vec::new();
@@ -310,20 +340,47 @@ impl Specimen for TwoStageStrut {
         Ok(self.applied(hypothesis).to_toml())
     }
 
+    fn law(&self, candidate: usize, values: &[f64]) -> Option<serde_json::Value> {
+        let law = laws::law(&self.candidates[candidate].label, values)?;
+        serde_json::to_value(law).ok()
+    }
+
+    fn piston_area_m2(&self) -> Option<f64> {
+        Some(self.model.piston_area_m2())
+    }
+
+    fn quiet(&self, recording: usize, sample: usize, speed_m_s: f64) -> bool {
+        let segments = &self.inputs[recording].motion.segments;
+        let back = self.settled(recording);
+        sample >= back && segments[sample - back..sample].iter().all(|s| s.to_m_s.abs() < speed_m_s)
+    }
+
+    fn valve_open(&self, recording: usize, sample: usize, valve: usize) -> bool {
+        self.held(recording, sample, valve, true)
+    }
+
+    fn valve_shut(&self, recording: usize, sample: usize, valve: usize) -> bool {
+        self.held(recording, sample, valve, false)
+    }
+
     fn states(&self, recording: usize) -> Vec<(&'static str, Vec<f64>)> {
         let r = &self.recordings[recording];
         let motion = &self.inputs[recording].motion;
         let mut speed: Vec<f64> = motion.segments.iter().map(|s| s.to_m_s).collect();
         speed.insert(0, 0.0);
         let across = |a: usize, b: usize| r.columns[a].iter().zip(&r.columns[b]).map(|(a, b)| a - b).collect();
-        vec![
+        let mut states = vec![
             ("displacement, m", r.columns[0].clone()),
             ("speed, m/s", speed),
             ("p1, Pa", r.columns[2].clone()),
             ("p1 - p2, Pa", across(2, 3)),
             ("p1 - p3, Pa", across(2, 4)),
             ("p3 - p4, Pa", across(4, 5)),
-        ]
+        ];
+        if let Some(since) = self.since_edge(recording) {
+            states.push(("time since a switching edge, s", since));
+        }
+        states
     }
 }
 

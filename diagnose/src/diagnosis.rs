@@ -1,0 +1,289 @@
+//! One campaign diagnosed: the selection, put into figures a person or a program can judge.
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use crate::campaign::Campaign;
+use crate::error::DiagnoseError;
+use crate::fit::Fit;
+use crate::locate::{Location, Relation, locate, relations};
+use crate::problem::{Point, Problem};
+use crate::select::{Chosen, Report, Selection, select};
+use crate::specimen::Series;
+
+/// Noise ratios of one channel.
+#[derive(Debug, Clone)]
+pub struct ChannelFigures {
+    /// Column.
+    pub name: String,
+    /// Model as given.
+    pub before: f64,
+    /// Improved model, all recordings in the fit.
+    pub after: f64,
+    /// Given model, recalibrated within tolerance without the block it is judged on.
+    pub held_out_before: f64,
+    /// Improved model, fitted without the block it is judged on.
+    pub held_out_after: f64,
+    /// Correlation of neighbouring residuals of the improved model: 0 is white.
+    pub lag_one: f64,
+}
+
+/// A fitted number with its interval.
+#[derive(Debug, Clone)]
+pub struct Estimate {
+    /// Key with unit.
+    pub key: String,
+    /// Value.
+    pub value: f64,
+    /// 95 % interval from blocks; not finite where the recordings do not determine it.
+    pub ci95: [f64; 2],
+}
+
+/// An effect as reported: one place, its numbers.
+#[derive(Debug, Clone)]
+pub struct Effect {
+    /// Id of the vocabulary.
+    pub id: String,
+    /// Place.
+    pub place: String,
+    /// Distinguishes laws without a name.
+    pub label: String,
+    /// Index of the chosen candidate, `None` for something seen but not modelled.
+    pub chosen: Option<Chosen>,
+    /// Confidence, 0.5 to 0.99.
+    pub confidence: f64,
+    /// Numbers.
+    pub parameters: Vec<Estimate>,
+    /// Law without a name, where one was fitted.
+    pub law: Option<serde_json::Value>,
+    /// Held-out noise ratio without and with it.
+    pub held_out: (f64, f64),
+}
+
+/// Everything found out about a campaign.
+pub struct Diagnosis {
+    /// The selection.
+    pub selection: Selection,
+    /// Effects as reported, strongest first.
+    pub effects: Vec<Effect>,
+    /// Pairs of ids that the recordings cannot tell apart.
+    pub ambiguous: Vec<[String; 2]>,
+    /// What to record to separate them.
+    pub next_experiment: Option<String>,
+    /// Where the misfit is.
+    pub locations: Vec<Location>,
+    /// Relations between measured neighbours, tested without simulation.
+    pub relations: Vec<Relation>,
+    /// Per channel.
+    pub channels: Vec<ChannelFigures>,
+    /// Calibration: key, deviation, interval, in units of the tolerance's standard deviation.
+    pub calibration: Vec<(Estimate, f64)>,
+    /// Strongly correlated pairs of estimates.
+    pub correlated: Vec<(String, String, f64)>,
+    /// Residuals of the calibrated and the improved model, in noise units.
+    pub residuals: (Vec<Series>, Vec<Series>),
+    /// Recordings simulated.
+    pub simulated: usize,
+    /// The improved model file.
+    pub model_toml: String,
+}
+
+impl Diagnosis {
+    /// Diagnoses a campaign.
+    ///
+    /// # Errors
+    /// A model that cannot be simulated, or the wish to stop.
+    pub fn of(campaign: &Campaign, problem: &Problem<'_>, report: Report<'_>) -> Result<Self, DiagnoseError> {
+        let selection = select(problem, report)?;
+        report("judging on held-out blocks", 0.95);
+        let given = problem.residuals(&problem.predict(&problem.nominal())?);
+        let calibrated = problem.residuals(&problem.predict(&selection.calibrated.point)?);
+        let improved = problem.residuals(&problem.predict(&selection.best.point)?);
+        let held_out_before = held_out_residuals(problem, &selection.calibrated)?;
+        let held_out_after = held_out_residuals(problem, &selection.best)?;
+        let channels = (problem.specimen.channels().iter().enumerate())
+            .map(|(c, channel)| ChannelFigures {
+                name: channel.name.clone(),
+                before: ratio(&given, c),
+                after: ratio(&improved, c),
+                held_out_before: ratio(&held_out_before, c),
+                held_out_after: ratio(&held_out_after, c),
+                lag_one: lag_one(&improved, c),
+            })
+            .collect();
+        let (estimates, correlated) = estimates(problem, &selection.best);
+        let mut effects = effects(problem, &selection, &estimates);
+        let seen = effects.iter().any(|e| e.id == "unlisted");
+        // A strut's model is said to be complete but for what is missing: what is left then has no name.
+        if selection.incomplete && !seen && problem.specimen.kind().contains("strut") {
+            effects.push(Effect {
+                id: "unlisted".into(),
+                place: "unknown".into(),
+                label: "remaining misfit".into(),
+                chosen: None,
+                confidence: 0.6,
+                parameters: vec![],
+                law: None,
+                held_out: (selection.noise_ratio.1, selection.noise_ratio.1),
+            });
+        }
+        let all = problem.specimen.candidates();
+        let mut ambiguous: Vec<[String; 2]> = Vec::new();
+        let mut next = Vec::new();
+        for chosen in selection.chosen.iter().filter(|c| c.ambiguous) {
+            if let Some((rival, ..)) = chosen.rival {
+                let pair = [all[chosen.candidate].id.to_owned(), all[rival].id.to_owned()];
+                next.push(crate::experiment::separate(&all[chosen.candidate], &all[rival]));
+                if pair[0] != pair[1] && !ambiguous.contains(&pair) {
+                    ambiguous.push(pair);
+                }
+            }
+        }
+        let locations = locate(problem, &selection, &calibrated, &improved)?;
+        let calibration_count = problem.specimen.calibration().len();
+        let calibration = (estimates.iter().take(calibration_count).cloned())
+            .zip(selection.best.point.z.iter().copied())
+            .collect();
+        let hypothesis = problem.hypothesis(&selection.best.point);
+        let model_toml = problem.specimen.model_toml(&hypothesis).map_err(DiagnoseError::Output)?;
+        let _ = campaign;
+        Ok(Self {
+            relations: relations(problem.specimen),
+            effects,
+            ambiguous,
+            next_experiment: (!next.is_empty()).then(|| next.join(" ")),
+            locations,
+            channels,
+            calibration,
+            correlated,
+            residuals: (calibrated, improved),
+            simulated: problem.simulated(),
+            model_toml,
+            selection,
+        })
+    }
+
+    /// `consistent`, `missing_physics` or `unexplained`.
+    #[must_use]
+    pub fn verdict(&self) -> &'static str {
+        match (self.effects.iter().any(|e| e.chosen.is_some()), self.selection.incomplete) {
+            (true, _) => "missing_physics",
+            (false, true) => "unexplained",
+            (false, false) => "consistent",
+        }
+    }
+}
+
+/// Residuals of every block from a simulation whose parameters that block's fold had no say in.
+fn held_out_residuals(problem: &Problem<'_>, fit: &Fit) -> Result<Vec<Series>, DiagnoseError> {
+    let folds: Vec<Vec<Series>> = (0..problem.folds)
+        .into_par_iter()
+        .map(|fold| {
+            let step = fit.step_without(|k| problem.blocks[k].fold == fold);
+            let step = step.unwrap_or_else(|| DVector::zeros(fit.point.z.len()));
+            let z = (fit.point.z.iter().zip(step.iter()).zip(&fit.ranges)).map(|((z, d), r)| (z + d).clamp(r.0, r.1));
+            let point = Point { effects: fit.point.effects.clone(), z: z.collect() };
+            Ok(problem.residuals(&problem.predict(&point)?))
+        })
+        .collect::<Result<_, DiagnoseError>>()?;
+    let mut out = folds[0].clone();
+    for b in &problem.blocks {
+        for (to, from) in out[b.recording].iter_mut().zip(&folds[b.fold][b.recording]) {
+            to[b.start..b.end].copy_from_slice(&from[b.start..b.end]);
+        }
+    }
+    Ok(out)
+}
+
+fn ratio(residuals: &[Series], channel: usize) -> f64 {
+    let n: usize = residuals.iter().map(|r| r[channel].len()).sum();
+    let sum: f64 = residuals.iter().map(|r| r[channel].iter().map(|v| v * v).sum::<f64>()).sum();
+    (sum / n as f64).sqrt()
+}
+
+fn lag_one(residuals: &[Series], channel: usize) -> f64 {
+    let (mut product, mut square) = (0.0, 0.0);
+    for r in residuals {
+        product += r[channel].windows(2).map(|w| w[0] * w[1]).sum::<f64>();
+        square += r[channel].iter().map(|v| v * v).sum::<f64>();
+    }
+    product / square.max(1e-300)
+}
+
+/// Values and intervals of all parameters, and which are strongly correlated.
+fn estimates(problem: &Problem<'_>, fit: &Fit) -> (Vec<Estimate>, Vec<(String, String, f64)>) {
+    let parameters = problem.parameters(&fit.point.effects);
+    let deviations = fit.deviations();
+    let estimates = (parameters.iter().zip(&fit.point.z).zip(deviations.iter()))
+        .map(|((p, &z), &sd)| {
+            let (low, high) = (p.value(z - 1.96 * sd), p.value(z + 1.96 * sd));
+            match p.inverse_of {
+                Some(key) => Estimate { key: key.into(), value: 1.0 / p.value(z), ci95: [1.0 / high, 1.0 / low] },
+                None => Estimate { key: p.key.clone(), value: p.value(z), ci95: [low, high] },
+            }
+        })
+        .collect();
+    let mut correlated = Vec::new();
+    if let Some(c) = fit.covariance() {
+        for i in 0..parameters.len() {
+            for j in 0..i {
+                let r = c[(i, j)] / (c[(i, i)] * c[(j, j)]).sqrt();
+                if r.abs() > 0.9 {
+                    correlated.push((parameters[j].key.clone(), parameters[i].key.clone(), r));
+                }
+            }
+        }
+    }
+    (estimates, correlated)
+}
+
+fn effects(problem: &Problem<'_>, selection: &Selection, estimates: &[Estimate]) -> Vec<Effect> {
+    let all = problem.specimen.candidates();
+    let hypothesis = problem.hypothesis(&selection.best.point);
+    let mut out = Vec::new();
+    for chosen in &selection.chosen {
+        let candidate = &all[chosen.candidate];
+        let position = selection.best.point.effects.iter().position(|&e| e == chosen.candidate).unwrap_or(0);
+        let before: usize = selection.best.point.effects[..position].iter().map(|&e| all[e].parameters.len()).sum();
+        let from = problem.specimen.calibration().len() + before;
+        let own = &estimates[from..from + candidate.parameters.len()];
+        let law = (candidate.id == "unlisted")
+            .then(|| problem.specimen.law(chosen.candidate, &hypothesis.effects[position].1))
+            .flatten();
+        let confidence = confidence(chosen, selection.incomplete);
+        for (place, which) in places(&candidate.place, own.len()) {
+            out.push(Effect {
+                id: candidate.id.into(),
+                place,
+                label: candidate.label.clone(),
+                chosen: Some(chosen.clone()),
+                confidence,
+                parameters: which.iter().map(|&k| own[k].clone()).collect(),
+                law: law.clone(),
+                held_out: (chosen.without, selection.noise_ratio.1),
+            });
+        }
+    }
+    out
+}
+
+/// A candidate that acts in several places is reported once a place, each with its own numbers.
+fn places(place: &str, count: usize) -> Vec<(String, Vec<usize>)> {
+    match (place, count) {
+        ("accumulators", 2) => vec![("accumulator-1".into(), vec![0]), ("accumulator-2".into(), vec![1])],
+        ("accumulators", n) => vec![("both accumulators".into(), (0..n).collect())],
+        ("path-1+path-2", 3) => vec![("path-1".into(), vec![0, 2]), ("path-2".into(), vec![1, 2])],
+        (_, n) => vec![(place.into(), (0..n).collect())],
+    }
+}
+
+/// How sure: by how many standard errors (over blocks) the effect beats its strongest rival in its place, and whether
+/// the model with it reaches the noise. The self-test holds these figures against the truth.
+fn confidence(chosen: &Chosen, incomplete: bool) -> f64 {
+    let sigmas = match chosen.rival {
+        Some((_, lead, error)) => lead / error.max(1.0),
+        None => chosen.gain / chosen.gain_error.max(1.0),
+    };
+    let certain = 0.5 * (1.0 + libm::erf(0.5 * sigmas.max(0.0) / std::f64::consts::SQRT_2));
+    (if incomplete { 0.5 + 0.8 * (certain - 0.5) } else { certain }).clamp(0.5, 0.99)
+}

@@ -1,0 +1,116 @@
+//! `report.json`: the schema of the recordings' README, plus what a careful reader wants besides (`not_tested`,
+//! `calibration`, `relations`, `notes`).
+
+use serde_json::{Map, Value, json};
+
+use crate::campaign::Campaign;
+use crate::diagnosis::{Diagnosis, Estimate};
+use crate::specimen::Specimen;
+
+/// The report as a value. `runtime_s` is the only number that differs from run to run.
+#[must_use]
+pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Value {
+    let specimen = &*campaign.specimen;
+    let locations: Vec<Value> = (diagnosis.locations.iter())
+        .map(|l| {
+            json!({
+                "place": l.place, "share_of_excess": rounded(l.share_of_excess),
+                "where": { "recording": specimen.recording_name(l.recording), "t_s": l.t_s, "condition": l.condition,
+                           "channel": l.channel },
+            })
+        })
+        .collect();
+    let effects: Vec<Value> = (diagnosis.effects.iter())
+        .map(|e| {
+            json!({
+                "id": e.id, "place": e.place, "confidence": rounded(e.confidence),
+                "parameters": parameters(&e.parameters), "law": e.law,
+                "held_out_noise_ratio": { "without": rounded(e.held_out.0), "with": rounded(e.held_out.1) },
+            })
+        })
+        .collect();
+    let mut channels = Map::new();
+    for c in &diagnosis.channels {
+        channels.insert(
+            c.name.clone(),
+            json!({
+                "noise_ratio_before": rounded(c.before), "noise_ratio_after": rounded(c.after),
+                "held_out_before": rounded(c.held_out_before), "held_out_after": rounded(c.held_out_after),
+                "residual_lag_one_correlation": rounded(c.lag_one),
+            }),
+        );
+    }
+    let calibration: Vec<Value> = (diagnosis.calibration.iter())
+        .map(|(e, z)| json!({ "key": e.key, "value": e.value, "ci95": interval(e), "tolerance_used": rounded(0.5 * z.abs()) }))
+        .collect();
+    let relations: Vec<Value> = (diagnosis.relations.iter())
+        .map(|r| json!({ "relation": r.name, "noise_ratio": r.noise_ratio.map(rounded), "samples": r.samples }))
+        .collect();
+    json!({
+        "schema": 1,
+        "verdict": diagnosis.verdict(),
+        "locations": locations,
+        "effects": effects,
+        "rejected": rejected(specimen, diagnosis),
+        "ambiguous": diagnosis.ambiguous,
+        "next_experiment": diagnosis.next_experiment,
+        "fit": channels,
+        "runtime_s": runtime_s,
+        "not_tested": not_tested(specimen),
+        "relations": relations,
+        "calibration": calibration,
+        "correlated": diagnosis.correlated.iter().map(|(a, b, r)| json!([a, b, rounded(*r)])).collect::<Vec<_>>(),
+        "notes": campaign.notes,
+    })
+}
+
+/// Candidates that were tested and are not in the model, the strongest first, with the figures that reject them.
+#[must_use]
+pub fn rejected(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> Vec<Value> {
+    let selection = &diagnosis.selection;
+    let all = specimen.candidates();
+    let mut trials: Vec<_> =
+        selection.trials.iter().filter(|t| !selection.best.point.effects.contains(&t.candidate)).collect();
+    trials.sort_by(|a, b| a.alone.total_cmp(&b.alone));
+    (trials.iter())
+        .map(|t| {
+            let c = &all[t.candidate];
+            let alone = format!(
+                "alone it brings the held-out noise ratio from {:.3} to {:.3}",
+                selection.noise_ratio.0, t.alone
+            );
+            let why = match t.added {
+                Some(added) => format!("{alone}; added to the chosen model from {:.3} to {added:.3}", selection.noise_ratio.1),
+                None => format!("{alone}; it excludes or is excluded by an effect of the chosen model"),
+            };
+            let place = if c.label.is_empty() { c.place.clone() } else { format!("{} ({})", c.place, c.label) };
+            json!({ "id": c.id, "place": place, "why": why })
+        })
+        .collect()
+}
+
+/// Candidates that the recordings cannot show.
+#[must_use]
+pub fn not_tested(specimen: &dyn Specimen) -> Vec<Value> {
+    (specimen.candidates().iter())
+        .filter_map(|c| c.untestable.as_ref().map(|why| json!({ "id": c.id, "place": c.place, "why": why })))
+        .collect()
+}
+
+fn parameters(estimates: &[Estimate]) -> Value {
+    let mut out = Map::new();
+    for e in estimates {
+        out.insert(e.key.clone(), json!({ "value": e.value, "ci95": interval(e) }));
+    }
+    Value::Object(out)
+}
+
+/// JSON has no infinity: an end that the recordings do not determine is null.
+fn interval(e: &Estimate) -> Value {
+    let end = |v: f64| if v.is_finite() { json!(v) } else { Value::Null };
+    json!([end(e.ci95[0]), end(e.ci95[1])])
+}
+
+fn rounded(v: f64) -> f64 {
+    if v.is_finite() { (v * 1e4).round() / 1e4 } else { 0.0 }
+}

@@ -90,15 +90,15 @@ impl Gas {
         }
     }
 
-    /// Make `real` fit for a step of `duration_s` from `base` with about `flow`: looked up anew when the gas has moved half a
-    /// per cent or a kelvin from where it was looked up last (what is left of the real gas's curvature there is below 1e-5
+    /// Make `real` fit for a step of `duration_s` from `base` with about `flow`: looked up anew when the gas has moved two
+    /// per cent or four kelvin from where it was looked up last (what is left of the real gas's curvature there is below 1e-5
     /// of the pressure).
     #[inline(always)]
     pub fn refresh(&self, real: &mut Departure, base: GasState, duration_s: f64, flow: f64) {
         if self.real.is_some() {
             let volume = (base.volume_m3 - duration_s * flow).max(self.least_volume_m3);
             let density = self.mass_kg / volume;
-            if (density - real.density).abs() > 5e-3 * density || (base.temperature_k - real.temperature_k).abs() > 1.0
+            if (density - real.density).abs() > 2e-2 * density || (base.temperature_k - real.temperature_k).abs() > 4.0
             {
                 *real = self.departure(density, base.temperature_k);
             }

@@ -42,6 +42,11 @@ pub fn wire_bits(frame: &Frame) -> u32 {
     stream.bits + stream.stuffed + UNSTUFFED_BITS
 }
 
+/// Length of every frame of a trace, bit times.
+pub fn trace_bits(trace: &[TraceEntry]) -> Vec<u32> {
+    trace.iter().map(|entry| wire_bits(&entry.frame)).collect()
+}
+
 /// Counts bits and stuff bits, and keeps the CRC of x^15+x^14+x^10+x^8+x^7+x^4+x^3+1.
 #[derive(Default)]
 struct BitStream {
@@ -106,7 +111,9 @@ pub struct WireModel {
 impl WireModel {
     /// Plays a trace onto a wire. The plant's frames of a tick are ready when it begins; the controller's when the last
     /// of those has arrived. `trace` must be in order of ticks.
-    pub fn of(trace: &[TraceEntry], bit_rate: u32, tick_us: u32, ticks: u32) -> Self {
+    ///
+    /// `bits` are the frames' lengths ([`trace_bits`]), the same at every rate.
+    pub fn of(trace: &[TraceEntry], bits: &[u32], bit_rate: u32, tick_us: u32, ticks: u32) -> Self {
         let bit_us = 1e6 / f64::from(bit_rate);
         let mut end_us = vec![0; trace.len()];
         let mut timing = MESSAGES.map(|contract| {
@@ -133,7 +140,7 @@ impl WireModel {
                 free_us = free_us.max(ready_us);
                 for index in queue {
                     let frame = &group[index].frame;
-                    let length_us = f64::from(wire_bits(frame)) * bit_us;
+                    let length_us = f64::from(bits[begin + index]) * bit_us;
                     free_us += length_us;
                     busy_in_tick_us += length_us;
                     end_us[begin + index] = free_us as u64;
@@ -255,7 +262,7 @@ mod tests {
     #[test]
     fn lower_identifiers_go_first_and_the_answer_after_the_question() {
         let trace: Vec<_> = (0..3).flat_map(tick_of_eight).collect();
-        let wire = WireModel::of(&trace, 500_000, 5000, 3);
+        let wire = WireModel::of(&trace, &trace_bits(&trace), 500_000, 5000, 3);
         assert_eq!(wire.end_us.len(), trace.len());
         assert!(wire.end_us[0] > wire.end_us[5], "0x115 was queued first and sent last");
         assert!(wire.end_us[6] > wire.end_us[0]);

@@ -7,7 +7,7 @@ use oleo_controller::can::bus_load;
 use oleo_controller::{FaultCode, Mode};
 use oleo_plant_sim::measures::{RideMeasures, RideMeter};
 
-use crate::bit_timing::WireModel;
+use crate::bit_timing::{WireModel, trace_bits};
 use crate::record::{Sample, controller_account, fault_name, mode_name};
 use crate::run::Outcome;
 use crate::scenario::check::{Figure, Metric};
@@ -65,6 +65,7 @@ impl Metrics {
         let samples = &remains.recording.samples;
         let ticks = samples.len() as u32;
         let account = controller_account(&remains.trace, samples.len());
+        let bits = trace_bits(&remains.trace);
         let mut meters = [
             RideMeter::new(remains.recording.step_s),
             RideMeter::new(remains.recording.step_s),
@@ -80,7 +81,7 @@ impl Metrics {
             frames_lost: remains.bus_frames_lost + remains.injected.dropped,
             bus_frames_lost: remains.bus_frames_lost,
             e2e_errors: remains.e2e_errors,
-            wires: bus_load::BIT_RATES.map(|rate| WireModel::of(&remains.trace, rate, TICK_US, ticks)),
+            wires: bus_load::BIT_RATES.map(|rate| WireModel::of(&remains.trace, &bits, rate, TICK_US, ticks)),
             extremes: Extremes::of(samples),
             answer: scenario
                 .fault_ticks()

@@ -5,6 +5,7 @@
 
 pub mod check;
 pub mod fault;
+mod fault_entry;
 pub mod file;
 
 use std::path::Path;

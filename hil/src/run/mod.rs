@@ -10,6 +10,9 @@
 //! The first three give the same commands, bit for bit. A partner that stays silent for the scenario's `partner_timeout_s` is gone: the plant
 //! drives on with de-energised valves (or ends, as the scenario says), the controller ticks on until it is safe, and ends.
 
+mod controller_loop;
+mod plant_loop;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -20,11 +23,11 @@ use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
 
 use crate::bus::{Bus, BusAddress, BusError, in_process_pair};
-use crate::clock::{Lateness, RealTime};
+use crate::clock::Lateness;
 use crate::controller_node::{ControllerNode, Heard};
-use crate::plant_node::{Answer, PlantNode, PlantRemains};
+use crate::plant_node::{PlantNode, PlantRemains};
 use crate::scenario::file::DEFENDER;
-use crate::scenario::{Clock, OnControllerLoss, Scenario, TICK_S};
+use crate::scenario::{Clock, Scenario, TICK_S};
 use crate::sync::{HandshakeError, Role, Terms, handshake};
 
 /// Why a run did not come about.
@@ -78,12 +81,8 @@ pub enum RunError {
 /// Called every few ticks with the number of ticks done; `false` ends the run early.
 pub type Watch<'a> = &'a mut dyn FnMut(u32) -> bool;
 
-/// Ticks between two calls of [`Watch`].
-const WATCH_TICKS: u32 = 50;
 /// How long a node looks for its partner.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// Ticks that a controller without a plant may take to reach a safe mode before it gives up counting.
-const RUN_DOWN_TICKS: u32 = 1000;
 /// Between the plant's deadline and the controller's in real time.
 const CONTROLLER_PHASE: Duration = Duration::from_micros(2500);
 const TICK: Duration = Duration::from_millis(oleo_controller::timing::TICK_MS as u64);
@@ -204,8 +203,9 @@ pub fn both(scenario: &Scenario, plant: Plant, threads: usize, watch: Watch) -> 
     let end = if real_time {
         let begin = started + TICK;
         std::thread::scope(|scope| {
-            let other = scope.spawn(|| controller_in_real_time(&mut controller, scenario, begin + CONTROLLER_PHASE));
-            let end = plant_in_real_time(&mut plant, scenario, begin, watch);
+            let other =
+                scope.spawn(|| controller_loop::in_real_time(&mut controller, scenario, begin + CONTROLLER_PHASE));
+            let end = plant_loop::in_real_time(&mut plant, scenario, begin, watch);
             if let Ok(Ok((late, _))) = other.join() {
                 lateness.push((Role::Controller, late));
             }
@@ -213,8 +213,8 @@ pub fn both(scenario: &Scenario, plant: Plant, threads: usize, watch: Watch) -> 
         })?
     } else if threads > 1 {
         std::thread::scope(|scope| {
-            scope.spawn(|| controller_in_lockstep(&mut controller, scenario));
-            plant_in_lockstep(&mut plant, scenario, &mut || Ok(()), watch)
+            scope.spawn(|| controller_loop::in_lockstep(&mut controller, scenario));
+            plant_loop::in_lockstep(&mut plant, scenario, &mut || Ok(()), watch)
         })?
     } else {
         let wait = guard(scenario);
@@ -226,7 +226,7 @@ pub fn both(scenario: &Scenario, plant: Plant, threads: usize, watch: Watch) -> 
             Heard::End => controller.send_tally(),
             Heard::Nothing => Ok(()),
         };
-        plant_in_lockstep(&mut plant, scenario, &mut turn, watch)?
+        plant_loop::in_lockstep(&mut plant, scenario, &mut turn, watch)?
     };
     Ok(end.outcome(plant, lateness, started))
 }
@@ -248,9 +248,9 @@ pub fn plant_alone(scenario: &Scenario, plant: Plant, watch: Watch) -> Result<Ou
     )?;
     let started = Instant::now();
     let end = if real_time {
-        plant_in_real_time(&mut plant, scenario, started + TICK, watch)?
+        plant_loop::in_real_time(&mut plant, scenario, started + TICK, watch)?
     } else {
-        plant_in_lockstep(&mut plant, scenario, &mut || Ok(()), watch)?
+        plant_loop::in_lockstep(&mut plant, scenario, &mut || Ok(()), watch)?
     };
     Ok(end.outcome(plant, Vec::new(), started))
 }
@@ -271,10 +271,11 @@ pub fn controller_alone(scenario: &Scenario) -> Result<ControllerOutcome, RunErr
     )?;
     let started = Instant::now();
     let (lateness, plant_lost) = if scenario.clock == Clock::RealTime {
-        let (lateness, lost) = controller_in_real_time(&mut controller, scenario, started + TICK + CONTROLLER_PHASE)?;
+        let (lateness, lost) =
+            controller_loop::in_real_time(&mut controller, scenario, started + TICK + CONTROLLER_PHASE)?;
         (Some(lateness), lost)
     } else {
-        (None, controller_in_lockstep(&mut controller, scenario)?)
+        (None, controller_loop::in_lockstep(&mut controller, scenario)?)
     };
     Ok(ControllerOutcome {
         words: controller.words().to_vec(),
@@ -287,7 +288,10 @@ pub fn controller_alone(scenario: &Scenario) -> Result<ControllerOutcome, RunErr
     })
 }
 
-fn both_ends(scenario: &Scenario) -> Result<(Box<dyn Bus>, Box<dyn Bus>), RunError> {
+/// The plant's and the controller's end of one bus.
+type Ends = (Box<dyn Bus>, Box<dyn Bus>);
+
+fn both_ends(scenario: &Scenario) -> Result<Ends, RunError> {
     let one_end = || RunError::OneEnd {
         bus: scenario.bus.to_string(),
     };
@@ -313,196 +317,6 @@ fn terms(scenario: &Scenario) -> Terms {
         strategy: position as u8,
         clock: scenario.clock as u8,
     }
-}
-
-/// How the plant's loop ended.
-struct PlantEnd {
-    stopped: Instant,
-    controller_lost_at: Option<u32>,
-    interrupted: bool,
-    lateness: Option<Lateness>,
-}
-
-impl PlantEnd {
-    fn outcome<B: Bus>(self, plant: PlantNode<B>, mut lateness: Vec<(Role, Lateness)>, started: Instant) -> Outcome {
-        lateness.extend(self.lateness.map(|late| (Role::Plant, late)));
-        Outcome {
-            remains: plant.into_remains(),
-            wall_s: (self.stopped - started).as_secs_f64(),
-            lateness,
-            controller_lost_at: self.controller_lost_at,
-            interrupted: self.interrupted,
-        }
-    }
-}
-
-/// `partner` is what the other node does in this thread, if it is here.
-fn plant_in_lockstep<B: Bus>(
-    plant: &mut PlantNode<B>,
-    scenario: &Scenario,
-    partner: &mut dyn FnMut() -> Result<(), BusError>,
-    watch: Watch,
-) -> Result<PlantEnd, RunError> {
-    let wait = guard(scenario);
-    let (mut controller_lost_at, mut interrupted) = (None, false);
-    while plant.tick() < scenario.ticks {
-        // A bus whose other end was closed has no controller on it either.
-        let exchange = |plant: &mut PlantNode<B>, partner: &mut dyn FnMut() -> Result<(), BusError>| {
-            plant.send_sensors()?;
-            plant.send_done()?;
-            partner()?;
-            plant.listen(wait)
-        };
-        if controller_lost_at.is_none() {
-            match exchange(plant, partner) {
-                Ok(Answer::Done) => {}
-                Ok(Answer::Nothing) | Err(BusError::Closed { .. }) => {
-                    controller_lost_at = Some(plant.tick());
-                    if scenario.on_controller_loss == OnControllerLoss::End {
-                        break;
-                    }
-                }
-                Err(error) => return Err(error.into()),
-            }
-        }
-        plant.advance();
-        if plant.tick().is_multiple_of(WATCH_TICKS) && !watch(plant.tick()) {
-            interrupted = true;
-            break;
-        }
-    }
-    let stopped = Instant::now();
-    if controller_lost_at.is_none() {
-        plant.send_end()?;
-        partner()?;
-        plant.listen(wait)?;
-    }
-    Ok(PlantEnd {
-        stopped,
-        controller_lost_at,
-        interrupted,
-        lateness: None,
-    })
-}
-
-fn plant_in_real_time<B: Bus>(
-    plant: &mut PlantNode<B>,
-    scenario: &Scenario,
-    begin: Instant,
-    watch: Watch,
-) -> Result<PlantEnd, RunError> {
-    let mut clock = RealTime::new(begin, TICK, scenario.ticks as usize);
-    let silence = (scenario.partner_timeout_s / TICK_S) as u32;
-    let (mut controller_lost_at, mut interrupted) = (None, false);
-    while plant.tick() < scenario.ticks {
-        clock.wait(plant.tick());
-        // What was commanded in answer to the last tick holds from here: a tick of latency, as on a real bus.
-        match plant.listen(Duration::ZERO).and_then(|_| plant.send_sensors()) {
-            Ok(()) => {}
-            Err(BusError::Closed { .. }) => controller_lost_at = controller_lost_at.or(Some(plant.tick())),
-            Err(error) => return Err(error.into()),
-        }
-        plant.advance();
-        if plant.ticks_without_command() >= silence.max(1) {
-            controller_lost_at = controller_lost_at.or(Some(plant.tick()));
-        }
-        if controller_lost_at.is_some() && scenario.on_controller_loss == OnControllerLoss::End {
-            break;
-        }
-        if plant.tick().is_multiple_of(WATCH_TICKS) && !watch(plant.tick()) {
-            interrupted = true;
-            break;
-        }
-    }
-    let stopped = Instant::now();
-    if controller_lost_at.is_none() {
-        plant.send_end()?;
-        plant.listen(guard(scenario))?;
-    }
-    Ok(PlantEnd {
-        stopped,
-        controller_lost_at,
-        interrupted,
-        lateness: Some(clock.lateness()),
-    })
-}
-
-/// The plant's last tick, and how long the mode machine took from there to a safe mode.
-type PlantLost = (u32, Option<u32>);
-
-fn controller_in_lockstep<B: Bus>(
-    controller: &mut ControllerNode<B>,
-    scenario: &Scenario,
-) -> Result<Option<PlantLost>, BusError> {
-    let wait = guard(scenario);
-    loop {
-        match controller.listen(wait) {
-            Ok(Heard::Tick) => {
-                controller.decide()?;
-                controller.send_done()?;
-            }
-            Ok(Heard::End) => {
-                controller.send_tally()?;
-                return Ok(None);
-            }
-            Ok(Heard::Nothing) | Err(BusError::Closed { .. }) => {
-                let last = controller.tick();
-                let mut taken = None;
-                for ticks in 1..=RUN_DOWN_TICKS {
-                    controller.next_tick();
-                    match controller.decide() {
-                        Ok(()) | Err(BusError::Closed { .. }) => {}
-                        Err(error) => return Err(error),
-                    }
-                    if matches!(controller.mode().0, Mode::Safe | Mode::Latched) {
-                        taken = Some(ticks);
-                        break;
-                    }
-                }
-                return Ok(Some((last, taken)));
-            }
-            Err(error) => return Err(error),
-        }
-    }
-}
-
-fn controller_in_real_time<B: Bus>(
-    controller: &mut ControllerNode<B>,
-    scenario: &Scenario,
-    begin: Instant,
-) -> Result<(Lateness, Option<PlantLost>), BusError> {
-    let mut clock = RealTime::new(begin, TICK, scenario.ticks as usize);
-    let silence = (scenario.partner_timeout_s / TICK_S) as u32;
-    let (mut silent, mut last_heard, mut safe_after) = (0, 0, None);
-    for tick in 0.. {
-        clock.wait(tick);
-        match controller.listen(Duration::ZERO) {
-            Ok(Heard::End) => {
-                controller.send_tally()?;
-                break;
-            }
-            Ok(_) => {}
-            Err(BusError::Closed { .. }) => silent = silence,
-            Err(error) => return Err(error),
-        }
-        if controller.heard_anything() {
-            (silent, last_heard, safe_after) = (0, tick, None);
-        } else {
-            silent += 1;
-        }
-        controller.set_tick(tick);
-        match controller.decide() {
-            Ok(()) | Err(BusError::Closed { .. }) => {}
-            Err(error) => return Err(error),
-        }
-        if silent > 0 && safe_after.is_none() && matches!(controller.mode().0, Mode::Safe | Mode::Latched) {
-            safe_after = Some(tick - last_heard);
-        }
-        if silent > silence {
-            return Ok((clock.lateness(), Some((last_heard, safe_after))));
-        }
-    }
-    Ok((clock.lateness(), None))
 }
 
 #[cfg(test)]
@@ -547,7 +361,10 @@ mod tests {
         });
         let outcome = outcome.unwrap();
         assert!(outcome.interrupted);
-        assert_eq!(outcome.remains.recording.samples.len(), 3 * WATCH_TICKS as usize);
+        assert_eq!(
+            outcome.remains.recording.samples.len(),
+            3 * plant_loop::WATCH_TICKS as usize
+        );
     }
 
     #[test]
@@ -588,7 +405,7 @@ mod tests {
             }
             Ok(())
         };
-        let end = plant_in_lockstep(&mut plant, &scenario, &mut turn, &mut |_| true).unwrap();
+        let end = plant_loop::in_lockstep(&mut plant, &scenario, &mut turn, &mut |_| true).unwrap();
         assert_eq!(end.controller_lost_at, Some(100));
         let words: Vec<u16> = plant.into_remains().recording.words().collect();
         assert_eq!(words.len(), 200, "it drives on");
@@ -616,7 +433,7 @@ mod tests {
             plant.listen(Duration::ZERO).unwrap();
             plant.advance();
         }
-        let lost = controller_in_lockstep(&mut controller, &scenario).unwrap();
+        let lost = controller_loop::in_lockstep(&mut controller, &scenario).unwrap();
         let (last, taken) = lost.unwrap();
         assert_eq!(last, 99);
         assert!(taken.is_some_and(|ticks| ticks <= 5), "{taken:?}");

@@ -1,0 +1,130 @@
+//! The plant's half of a run: ticks in lockstep or against the clock, with or without a controller.
+
+use std::time::{Duration, Instant};
+
+use super::{Outcome, RunError, TICK, Watch, guard};
+use crate::bus::{Bus, BusError};
+use crate::clock::{Lateness, RealTime};
+use crate::plant_node::{Answer, PlantNode};
+use crate::scenario::{OnControllerLoss, Scenario, TICK_S};
+use crate::sync::Role;
+
+/// Ticks between two calls of [`Watch`].
+pub(super) const WATCH_TICKS: u32 = 50;
+
+/// How the plant's loop ended.
+pub(super) struct PlantEnd {
+    stopped: Instant,
+    pub(super) controller_lost_at: Option<u32>,
+    interrupted: bool,
+    lateness: Option<Lateness>,
+}
+
+impl PlantEnd {
+    pub(super) fn outcome<B: Bus>(
+        self,
+        plant: PlantNode<B>,
+        mut lateness: Vec<(Role, Lateness)>,
+        started: Instant,
+    ) -> Outcome {
+        lateness.extend(self.lateness.map(|late| (Role::Plant, late)));
+        Outcome {
+            remains: plant.into_remains(),
+            wall_s: (self.stopped - started).as_secs_f64(),
+            lateness,
+            controller_lost_at: self.controller_lost_at,
+            interrupted: self.interrupted,
+        }
+    }
+}
+
+/// `partner` is what the other node does in this thread, if it is here.
+pub(super) fn in_lockstep<B: Bus>(
+    plant: &mut PlantNode<B>,
+    scenario: &Scenario,
+    partner: &mut dyn FnMut() -> Result<(), BusError>,
+    watch: Watch,
+) -> Result<PlantEnd, RunError> {
+    let wait = guard(scenario);
+    let (mut controller_lost_at, mut interrupted) = (None, false);
+    while plant.tick() < scenario.ticks {
+        // A bus whose other end was closed has no controller on it either.
+        let exchange = |plant: &mut PlantNode<B>, partner: &mut dyn FnMut() -> Result<(), BusError>| {
+            plant.send_sensors()?;
+            plant.send_done()?;
+            partner()?;
+            plant.listen(wait)
+        };
+        if controller_lost_at.is_none() {
+            match exchange(plant, partner) {
+                Ok(Answer::Done) => {}
+                Ok(Answer::Nothing) | Err(BusError::Closed { .. }) => {
+                    controller_lost_at = Some(plant.tick());
+                    if scenario.on_controller_loss == OnControllerLoss::End {
+                        break;
+                    }
+                }
+                Err(error) => return Err(error.into()),
+            }
+        }
+        plant.advance();
+        if plant.tick().is_multiple_of(WATCH_TICKS) && !watch(plant.tick()) {
+            interrupted = true;
+            break;
+        }
+    }
+    let stopped = Instant::now();
+    if controller_lost_at.is_none() {
+        plant.send_end()?;
+        partner()?;
+        plant.listen(wait)?;
+    }
+    Ok(PlantEnd {
+        stopped,
+        controller_lost_at,
+        interrupted,
+        lateness: None,
+    })
+}
+
+pub(super) fn in_real_time<B: Bus>(
+    plant: &mut PlantNode<B>,
+    scenario: &Scenario,
+    begin: Instant,
+    watch: Watch,
+) -> Result<PlantEnd, RunError> {
+    let mut clock = RealTime::new(begin, TICK, scenario.ticks as usize);
+    let silence = (scenario.partner_timeout_s / TICK_S) as u32;
+    let (mut controller_lost_at, mut interrupted) = (None, false);
+    while plant.tick() < scenario.ticks {
+        clock.wait(plant.tick());
+        // What was commanded in answer to the last tick holds from here: a tick of latency, as on a real bus.
+        match plant.listen(Duration::ZERO).and_then(|_| plant.send_sensors()) {
+            Ok(()) => {}
+            Err(BusError::Closed { .. }) => controller_lost_at = controller_lost_at.or(Some(plant.tick())),
+            Err(error) => return Err(error.into()),
+        }
+        plant.advance();
+        if plant.ticks_without_command() >= silence.max(1) {
+            controller_lost_at = controller_lost_at.or(Some(plant.tick()));
+        }
+        if controller_lost_at.is_some() && scenario.on_controller_loss == OnControllerLoss::End {
+            break;
+        }
+        if plant.tick().is_multiple_of(WATCH_TICKS) && !watch(plant.tick()) {
+            interrupted = true;
+            break;
+        }
+    }
+    let stopped = Instant::now();
+    if controller_lost_at.is_none() {
+        plant.send_end()?;
+        plant.listen(guard(scenario))?;
+    }
+    Ok(PlantEnd {
+        stopped,
+        controller_lost_at,
+        interrupted,
+        lateness: Some(clock.lateness()),
+    })
+}

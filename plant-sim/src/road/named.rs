@@ -71,9 +71,9 @@ fn from_path(path: &str) -> Result<Arc<dyn Road>, RoadError> {
         reason: error.to_string(),
     })?;
     if extension == "crg" {
-        Ok(Arc::new(EnteredSmoothly::new(crg::read(&bytes, path)?)))
+        Ok(Arc::new(EnteredSmoothly::levelled(crg::read(&bytes, path)?)))
     } else {
-        Ok(Arc::new(EnteredSmoothly::new(profile_from_csv(&bytes, path)?)))
+        Ok(Arc::new(EnteredSmoothly::levelled(profile_from_csv(&bytes, path)?)))
     }
 }
 
@@ -115,8 +115,8 @@ mod tests {
         std::fs::write(&path, "station_m,left_m,right_m\n0,0,0\n100,1,1\n").unwrap();
         let road = from_name_or_path(path.to_str().unwrap(), 10.0, 0).unwrap();
         assert!(
-            (road.height_m(55.0, 0.0) - 0.5).abs() < 1e-12,
-            "the file starts after the entry"
+            (road.height_m(55.0, 0.0) - 0.495).abs() < 1e-12,
+            "the file starts after the entry, level with its first metre"
         );
     }
 }

@@ -65,5 +65,13 @@ fn main() {
             t0.elapsed()
         );
         let _ = h;
+        if let Ok(want) = std::env::var("SHOW") {
+            let sc = oleo_diagnose::screen::Screen::new(&p, &s.best).unwrap();
+            let ids: Vec<usize> = (0..c.specimen.candidates().len()).filter(|&i| names(i).contains(&want)).collect();
+            for f in sc.all(&ids).unwrap().into_iter().flatten() {
+                let d = f.deviations(); let pr = p.parameters(&f.point.effects); let k = f.point.z.len() - 1;
+                println!("    {} cost {:.0} (base {:.0}) last {} = {:e} sd z {}", names(*f.point.effects.last().unwrap()), f.cost, s.best.cost, pr[k].key, pr[k].value(f.point.z[k]), d[k]);
+            }
+        }
     }
 }

@@ -179,6 +179,9 @@ fn held_out_residuals(problem: &Problem<'_>, fit: &Fit) -> Result<Vec<Series>, D
     let folds: Vec<Vec<Series>> = (0..problem.folds)
         .into_par_iter()
         .map(|fold| {
+            if problem.refits_folds() {
+                return Ok(problem.residuals(&problem.predict(&fit.refitted(problem, fold)?)?));
+            }
             let step = fit.step_without(|k| problem.blocks[k].fold == fold);
             let step = step.unwrap_or_else(|| DVector::zeros(fit.point.z.len()));
             let z = (fit.point.z.iter().zip(step.iter()).zip(&fit.ranges)).map(|((z, d), r)| (z + d).clamp(r.0, r.1));

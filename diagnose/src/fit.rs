@@ -107,7 +107,7 @@ pub fn fit(problem: &Problem<'_>, start: Point, effort: Effort) -> Result<Fit, D
                     }
                     Err(stop) => return Err(stop),
                 };
-                let trial_cost = squares(&residuals) + problem.prior_cost(&trial);
+                let trial_cost = problem.squares(&residuals) + problem.prior_cost(&trial);
                 if trial_cost < cost {
                     (point, cost) = (trial, trial_cost);
                     sensitivity.iter_mut().zip(residuals).for_each(|(s, r)| s.residual = r);
@@ -126,10 +126,6 @@ pub fn fit(problem: &Problem<'_>, start: Point, effort: Effort) -> Result<Fit, D
         }
     }
     Ok(Fit { point, normals, prior, cost, ranges, sensitivity: Some(Arc::new(sensitivity)) })
-}
-
-fn squares(residuals: &[crate::specimen::Series]) -> f64 {
-    residuals.iter().flatten().map(|c| c.iter().map(|r| r * r).sum::<f64>()).sum()
 }
 
 /// Sum of the blocks' costs.
@@ -193,9 +189,29 @@ pub(crate) fn bounded_step(
 }
 
 impl Fit {
-    /// Cost of every block when its fold had no say in the fit, in the linear approximation around this fit.
+    /// The point fitted without a fold, by a fit of its own.
+    ///
+    /// # Errors
+    /// As [`fit`].
+    pub fn refitted(&self, problem: &Problem<'_>, fold: usize) -> Result<Point, DiagnoseError> {
+        Ok(fit(&problem.without_fold(fold), self.point.clone(), Effort::FULL)?.point)
+    }
+
+    /// Cost of every block when its fold had no say in the fit: by fits of their own where they are cheap, else in the
+    /// linear approximation around this fit.
     #[must_use]
     pub fn held_out(&self, problem: &Problem<'_>) -> Vec<f64> {
+        if problem.refits_folds() {
+            let mut costs = vec![f64::INFINITY; self.normals.len()];
+            for fold in 0..problem.folds {
+                if let Ok(there) = self.refitted(problem, fold).and_then(|p| problem.block_costs(&p)) {
+                    for (k, cost) in there.into_iter().enumerate().filter(|(k, _)| problem.blocks[*k].fold == fold) {
+                        costs[k] = cost;
+                    }
+                }
+            }
+            return costs;
+        }
         let mut costs = vec![0.0; self.normals.len()];
         for fold in 0..problem.folds {
             let step = self.step_without(|k| problem.blocks[k].fold == fold);

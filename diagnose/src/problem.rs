@@ -69,26 +69,46 @@ impl<'a> Problem<'a> {
     /// Cuts the recordings into blocks. `stop` set from elsewhere ends the work at the next simulation.
     #[must_use]
     pub fn new(specimen: &'a dyn Specimen, stop: &'a AtomicBool) -> Self {
+        let recordings = specimen.recordings();
         let mut blocks = Vec::new();
-        for recording in 0..specimen.recordings() {
+        let mut folds = 0;
+        for recording in 0..recordings {
             let n = specimen.time_s(recording).len();
             for k in 0..BLOCKS_PER_RECORDING {
                 let (start, end) = (n * k / BLOCKS_PER_RECORDING, n * (k + 1) / BLOCKS_PER_RECORDING);
-                // Shifted from recording to recording, so that no fold holds all beginnings.
-                blocks.push(Block {
-                    recording,
-                    start,
-                    end,
-                    fold: (k + 3 * recording) % BLOCKS_PER_RECORDING,
-                });
+                let fold = match recordings {
+                    // The first half predicts the second and the other way round: nothing in between leaks.
+                    1 => 2 * k / BLOCKS_PER_RECORDING,
+                    // Each recording excites what no other does, so all folds hold a part of each; shifted from
+                    // recording to recording, so that no fold holds all beginnings.
+                    _ => (k + 3 * recording) % BLOCKS_PER_RECORDING,
+                };
+                folds = folds.max(fold + 1);
+                blocks.push(Block { recording, start, end, fold });
             }
         }
-        Self {
-            specimen,
-            blocks,
-            folds: BLOCKS_PER_RECORDING,
-            stop, simulated: AtomicUsize::new(0),
-        }
+        Self { specimen, blocks, folds, stop, simulated: AtomicUsize::new(0) }
+    }
+
+    /// The same problem without the blocks of a fold.
+    #[must_use]
+    pub fn without_fold(&self, fold: usize) -> Self {
+        let blocks = self.blocks.iter().filter(|b| b.fold != fold).cloned().collect();
+        Self { specimen: self.specimen, blocks, folds: self.folds, stop: self.stop, simulated: AtomicUsize::new(0) }
+    }
+
+    /// True where fitting once a fold is cheap enough to be done instead of approximated.
+    #[must_use]
+    pub fn refits_folds(&self) -> bool {
+        self.specimen.is_cheap() && self.specimen.recordings() == 1
+    }
+
+    /// Sum of squares of given residuals over the blocks.
+    #[must_use]
+    pub fn squares(&self, residuals: &[Series]) -> f64 {
+        (self.blocks.iter())
+            .map(|b| residuals[b.recording].iter().map(|c| c[b.start..b.end].iter().map(|r| r * r).sum::<f64>()).sum::<f64>())
+            .sum()
     }
 
     /// Recordings simulated so far.

@@ -29,6 +29,8 @@ const BLOCK_GAIN: f64 = 6.0;
 const MIN_SHARE: f64 = 0.08;
 /// The same where it does not.
 const MIN_SHARE_INCOMPLETE: f64 = 0.35;
+/// The same for a cylinder recorded under several conditions, whose few parameters those pin down.
+const MIN_SHARE_CONDITIONS: f64 = 0.1;
 /// Noise ratio up to which a model counts as complete.
 pub const COMPLETE_NOISE_RATIO: f64 = 1.15;
 /// Noise ratio above which laws without a name are tried.
@@ -177,7 +179,7 @@ impl<'p, 'a> Judge<'p, 'a> {
         let all = self.problem.specimen.candidates();
         let excluded = |c: usize| {
             (all[c].id == "unlisted" && !laws)
-                || point.effects.iter().any(|&e| e == c || (!all[c].group.is_empty() && all[e].group == all[c].group))
+                || point.effects.iter().any(|&e| e == c || all[e].excludes(&all[c]))
         };
         self.testable.iter().copied().filter(|&c| !excluded(c)).collect()
     }
@@ -197,17 +199,22 @@ impl<'p, 'a> Judge<'p, 'a> {
         order
     }
 
+    /// Least share for a candidate. A law without a name bends to much, and so does an instrument where the model stays
+    /// incomplete: both must explain more.
+    fn share(&self, candidate: usize, share: f64) -> f64 {
+        let c = &self.problem.specimen.candidates()[candidate];
+        let demanding = c.id == "unlisted" || (c.instrument && share > MIN_SHARE);
+        if demanding { share.max(MIN_SHARE_INCOMPLETE) } else { share }
+    }
+
     /// The best of the screened candidates after a full fit, if it is worth a name.
     fn strongest(&mut self, screened: &Screened, best: &Fit) -> Result<Option<Fit>, DiagnoseError> {
         let before = self.held_out(best);
         let total: f64 = before.iter().sum();
         let mut winner: Option<(f64, Fit)> = None;
-        if std::env::var("DBG").is_ok() {
-            eprintln!("  before {total:.0} structure {:?}", best.point.effects);
-            for (c, f) in self.ranked(screened).iter().take(7) { eprintln!("     {c:.0} in-sample {:.0} {}", f.cost, self.problem.specimen.candidates()[*f.point.effects.last().unwrap()].name()); }
-        }
         for (screened_cost, start) in self.ranked(screened).into_iter().take(FINALISTS) {
-            if !self.worth(&before, &self.held_out(&start), MIN_SHARE, SCREEN_MARGIN) {
+            let share = start.point.effects.last().map_or(MIN_SHARE, |&c| self.share(c, MIN_SHARE));
+            if !self.worth(&before, &self.held_out(&start), share, SCREEN_MARGIN) {
                 continue;
             }
             if winner.as_ref().is_some_and(|(b, _)| total - screened_cost < 0.5 * (total - b)) {
@@ -216,7 +223,7 @@ impl<'p, 'a> Judge<'p, 'a> {
             let full = self.fitted(start.point)?;
             let costs = self.held_out(&full);
             let cost = costs.iter().sum::<f64>();
-            if self.worth(&before, &costs, MIN_SHARE, 1.0) && winner.as_ref().is_none_or(|(b, _)| cost < *b) {
+            if self.worth(&before, &costs, share, 1.0) && winner.as_ref().is_none_or(|(b, _)| cost < *b) {
                 winner = Some((cost, full));
             }
         }
@@ -226,12 +233,21 @@ impl<'p, 'a> Judge<'p, 'a> {
     /// Drops effects that the others have made superfluous.
     fn eliminate(&mut self, mut best: Fit, share: f64) -> Result<Fit, DiagnoseError> {
         loop {
+            let laws = best.point.effects.iter().filter(|&&e| self.problem.specimen.candidates()[e].id == "unlisted").count();
             let costs = self.held_out(&best);
             let mut weakest: Option<(f64, Fit)> = None;
-            for position in 0..best.point.effects.len() {
+            let all = self.problem.specimen.candidates();
+            // Laws without a name go first: what a name explains as well needs none.
+            let mut order: Vec<usize> = (0..best.point.effects.len()).collect();
+            order.sort_by_key(|&p| all[best.point.effects[p]].id != "unlisted");
+            for position in order {
+                let nameless = all[best.point.effects[position]].id == "unlisted";
+                if !nameless && weakest.as_ref().is_some_and(|(_, f)| f.point.effects.iter().filter(|&&e| all[e].id == "unlisted").count() < laws) {
+                    break;
+                }
                 let less = self.fitted(self.problem.without(&best.point, position))?;
                 let without = self.held_out(&less);
-                if self.worth(&without, &costs, share, 1.0) {
+                if self.worth(&without, &costs, self.share(best.point.effects[position], share), 1.0) {
                     continue;
                 }
                 let (gain, _) = Self::gain(&without, &costs);
@@ -265,7 +281,10 @@ impl<'p, 'a> Judge<'p, 'a> {
                 let full = if cost - total < 0.5 * gain { self.fitted(start.point)? } else { start };
                 let held_out = self.held_out(&full);
                 let (lead, error) = Self::gain(&held_out, &costs);
-                if lead < -MIN_GAIN && better.as_ref().is_none_or(|(l, _)| lead < *l) {
+                let named = |f: &Fit| f.point.effects.iter().all(|&e| self.problem.specimen.candidates()[e].id != "unlisted");
+                // A name gives way to a law without one only if the law is clearly better.
+                let least = if named(best) && !named(&full) { 0.1 * gain } else { 0.0 };
+                if lead < -(MIN_GAIN_PER_RESIDUAL * self.count).max(MIN_GAIN).max(least) && better.as_ref().is_none_or(|(l, _)| lead < *l) {
                     better = Some((lead, full));
                 }
                 rival = Some((id, lead, error));
@@ -314,7 +333,12 @@ pub fn select(problem: &Problem<'_>, report: Report<'_>) -> Result<Selection, Di
     let before = best.point.effects.len();
     best = judge.eliminate(best, MIN_SHARE)?;
     if judge.ratio(&judge.held_out(&best)) > COMPLETE_NOISE_RATIO {
-        best = judge.eliminate(best, MIN_SHARE_INCOMPLETE)?;
+        let share = if problem.specimen.recordings() == 1 || !problem.specimen.is_cheap() {
+            MIN_SHARE_INCOMPLETE
+        } else {
+            MIN_SHARE_CONDITIONS
+        };
+        best = judge.eliminate(best, share)?;
     }
 
     report("testing rivals in the place of each effect", 0.88);

@@ -270,6 +270,9 @@ impl Specimen for Cylinder {
     fn kind(&self) -> &'static str {
         "cylinder"
     }
+    fn is_cheap(&self) -> bool {
+        true
+    }
     fn channels(&self) -> &[Channel] {
         &self.channels
     }

@@ -10,6 +10,13 @@ use crate::recording::{ColumnKind, ColumnSpec, Recording};
 /// Noise assumed where the model file states none: a tenth of a psi, the resolution of common gauges.
 const DEFAULT_NOISE_PA: f64 = 690.0;
 
+/// A piston that has moved this far ...
+const MOVED_M: f64 = 0.005;
+/// ... within this time of the first sample was not at rest.
+const SETTLED_S: f64 = 3.0;
+/// Temperature change of an adiabatic stroke by a third of the volume, K.
+const STROKE_TEMPERATURE_K: f64 = 50.0;
+
 /// A gas spring with its recordings.
 pub struct GasSpring {
     model: GasSpringModel,
@@ -39,10 +46,17 @@ impl GasSpring {
     #[must_use]
     pub fn new(model: GasSpringModel, recordings: Vec<Recording>) -> Self {
         let tolerance = |key: &str, otherwise: f64| model.tolerance.get(key).copied().unwrap_or(otherwise);
+        // A recording that begins in the middle of a stroke begins with gas that has just been compressed or let out: by
+        // how much nobody knows, at most as much as an adiabatic stroke makes of it.
+        let moving = recordings.iter().any(|r| {
+            let early = r.columns[0].iter().take_while(|x| (*x - r.columns[0][0]).abs() < MOVED_M).count();
+            early < r.len() && r.time_s[early] - r.time_s[0] < SETTLED_S
+        });
+        let initial_temperature = if moving { STROKE_TEMPERATURE_K } else { tolerance("temperature_K", 5.0) };
         let mut calibration = vec![
             Parameter::calibration("volume_at_zero", tolerance("volume_at_zero", 0.02)),
             Parameter::calibration("initial_pressure", tolerance("initial_pressure", 0.01)),
-            Parameter::calibration("initial_temperature_difference_K", tolerance("temperature_K", 5.0)),
+            Parameter::calibration("initial_temperature_difference_K", initial_temperature),
         ];
         let spread = |c: usize| {
             recordings
@@ -165,6 +179,9 @@ impl GasSpring {
 impl Specimen for GasSpring {
     fn kind(&self) -> &'static str {
         "gas spring"
+    }
+    fn is_cheap(&self) -> bool {
+        true
     }
     fn channels(&self) -> &[Channel] {
         &self.channels

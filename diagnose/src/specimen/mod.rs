@@ -39,6 +39,14 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// True if the two cannot be in one model: members of one group, and two faults of one instrument, which shade into
+    /// each other (a short lag is nearly a skew).
+    #[must_use]
+    pub fn excludes(&self, other: &Self) -> bool {
+        (!self.group.is_empty() && self.group == other.group)
+            || (self.instrument && other.instrument && self.place == other.place)
+    }
+
     /// True if the starting values leave the model as it is.
     #[must_use]
     pub fn absent_at_start(&self) -> bool {
@@ -98,6 +106,10 @@ pub trait Specimen: Sync {
     /// # Errors
     /// A law that the model file cannot hold.
     fn model_toml(&self, hypothesis: &Hypothesis) -> Result<String, String>;
+    /// True if simulating all recordings takes milliseconds.
+    fn is_cheap(&self) -> bool {
+        false
+    }
     /// A law without a name with its values, for the report.
     fn law(&self, candidate: usize, values: &[f64]) -> Option<serde_json::Value> {
         let c = &self.candidates()[candidate];

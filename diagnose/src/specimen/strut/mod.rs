@@ -242,13 +242,10 @@ fn calibration(model: &StrutModel) -> (Vec<Calibration>, Vec<Parameter>) {
             tolerance("flow_coefficient"),
         );
     }
+    // Also where the oil is believed rigid: its volume matters as soon as it is not.
+    add(Calibration::OilVolume, "oil_volume".into(), tolerance("oil_volume"));
     if model.effects.oil_compressibility.is_some() {
-        add(Calibration::OilVolume, "oil_volume".into(), tolerance("oil_volume"));
-        add(
-            Calibration::BulkModulus,
-            "bulk_modulus".into(),
-            tolerance("bulk_modulus"),
-        );
+        add(Calibration::BulkModulus, "bulk_modulus".into(), tolerance("bulk_modulus"));
     }
     if model.effects.gas_heat_transfer.is_some() {
         for i in 0..2 {

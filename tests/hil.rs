@@ -105,7 +105,10 @@ fn the_default_run_leaves_what_it_promises() {
     for heading in ["Road", "Body motion", "Struts", "Controller", "Bus"] {
         assert!(page.contains(&format!("<h2>{heading}</h2>")), "{heading}");
     }
-    assert!(!page.contains("<script src") && !page.contains("<link "), "opens offline");
+    assert!(
+        !page.contains("<script src") && !page.contains("<link "),
+        "opens offline"
+    );
     let mut names: Vec<_> = fs::read_dir(&out)
         .unwrap()
         .map(|entry| entry.unwrap().file_name())

@@ -16,7 +16,11 @@ fn main() {
         let quiet = std::env::var("QUIET").is_ok();
         let s = oleo_diagnose::select::select(&p, &|m, f| {
             if !quiet {
-                println!("   {m} {f:.2} {:.1?} sims {}", t0.elapsed(), p.simulated() / c.specimen.recordings())
+                println!(
+                    "   {m} {f:.2} {:.1?} sims {}",
+                    t0.elapsed(),
+                    p.simulated() / c.specimen.recordings()
+                )
             }
         })
         .unwrap();
@@ -65,12 +69,31 @@ fn main() {
             t0.elapsed()
         );
         let _ = h;
+        if std::env::var("MAP").is_ok() {
+            let res = p.residuals(&p.predict(&s.best.point).unwrap());
+            for (r, series) in res.iter().enumerate() {
+                let f: Vec<String> = series.iter().map(|c| format!("{:7.2}", (c.iter().map(|v| v * v).sum::<f64>() / c.len() as f64).sqrt())).collect();
+                println!("    {:18} {}", c.specimen.recording_name(r), f.join(" "));
+            }
+        }
         if let Ok(want) = std::env::var("SHOW") {
             let sc = oleo_diagnose::screen::Screen::new(&p, &s.best).unwrap();
-            let ids: Vec<usize> = (0..c.specimen.candidates().len()).filter(|&i| names(i).contains(&want)).collect();
+            let ids: Vec<usize> = (0..c.specimen.candidates().len())
+                .filter(|&i| names(i).contains(&want))
+                .collect();
             for f in sc.all(&ids).unwrap().into_iter().flatten() {
-                let d = f.deviations(); let pr = p.parameters(&f.point.effects); let k = f.point.z.len() - 1;
-                println!("    {} cost {:.0} (base {:.0}) last {} = {:e} sd z {}", names(*f.point.effects.last().unwrap()), f.cost, s.best.cost, pr[k].key, pr[k].value(f.point.z[k]), d[k]);
+                let d = f.deviations();
+                let pr = p.parameters(&f.point.effects);
+                let k = f.point.z.len() - 1;
+                println!(
+                    "    {} cost {:.0} (base {:.0}) last {} = {:e} sd z {}",
+                    names(*f.point.effects.last().unwrap()),
+                    f.cost,
+                    s.best.cost,
+                    pr[k].key,
+                    pr[k].value(f.point.z[k]),
+                    d[k]
+                );
             }
         }
     }

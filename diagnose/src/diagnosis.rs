@@ -145,7 +145,10 @@ impl Diagnosis {
             .zip(selection.best.point.z.iter().copied())
             .collect();
         let hypothesis = problem.hypothesis(&selection.best.point);
-        let model_toml = problem.specimen.model_toml(&hypothesis).map_err(DiagnoseError::Output)?;
+        let model_toml = problem
+            .specimen
+            .model_toml(&hypothesis)
+            .map_err(DiagnoseError::Output)?;
         let _ = campaign;
         Ok(Self {
             relations: relations(problem.specimen),
@@ -166,7 +169,10 @@ impl Diagnosis {
     /// `consistent`, `missing_physics` or `unexplained`.
     #[must_use]
     pub fn verdict(&self) -> &'static str {
-        match (self.effects.iter().any(|e| e.chosen.is_some()), self.selection.incomplete) {
+        match (
+            self.effects.iter().any(|e| e.chosen.is_some()),
+            self.selection.incomplete,
+        ) {
             (true, _) => "missing_physics",
             (false, true) => "unexplained",
             (false, false) => "consistent",
@@ -185,7 +191,10 @@ fn held_out_residuals(problem: &Problem<'_>, fit: &Fit) -> Result<Vec<Series>, D
             let step = fit.step_without(|k| problem.blocks[k].fold == fold);
             let step = step.unwrap_or_else(|| DVector::zeros(fit.point.z.len()));
             let z = (fit.point.z.iter().zip(step.iter()).zip(&fit.ranges)).map(|((z, d), r)| (z + d).clamp(r.0, r.1));
-            let point = Point { effects: fit.point.effects.clone(), z: z.collect() };
+            let point = Point {
+                effects: fit.point.effects.clone(),
+                z: z.collect(),
+            };
             Ok(problem.residuals(&problem.predict(&point)?))
         })
         .collect::<Result<_, DiagnoseError>>()?;
@@ -200,7 +209,10 @@ fn held_out_residuals(problem: &Problem<'_>, fit: &Fit) -> Result<Vec<Series>, D
 
 fn ratio(residuals: &[Series], channel: usize) -> f64 {
     let n: usize = residuals.iter().map(|r| r[channel].len()).sum();
-    let sum: f64 = residuals.iter().map(|r| r[channel].iter().map(|v| v * v).sum::<f64>()).sum();
+    let sum: f64 = residuals
+        .iter()
+        .map(|r| r[channel].iter().map(|v| v * v).sum::<f64>())
+        .sum();
     (sum / n as f64).sqrt()
 }
 
@@ -221,8 +233,16 @@ fn estimates(problem: &Problem<'_>, fit: &Fit) -> (Vec<Estimate>, Vec<(String, S
         .map(|((p, &z), &sd)| {
             let (low, high) = (p.value(z - 1.96 * sd), p.value(z + 1.96 * sd));
             match p.inverse_of {
-                Some(key) => Estimate { key: key.into(), value: 1.0 / p.value(z), ci95: [1.0 / high, 1.0 / low] },
-                None => Estimate { key: p.key.clone(), value: p.value(z), ci95: [low, high] },
+                Some(key) => Estimate {
+                    key: key.into(),
+                    value: 1.0 / p.value(z),
+                    ci95: [1.0 / high, 1.0 / low],
+                },
+                None => Estimate {
+                    key: p.key.clone(),
+                    value: p.value(z),
+                    ci95: [low, high],
+                },
             }
         })
         .collect();
@@ -246,8 +266,17 @@ fn effects(problem: &Problem<'_>, selection: &Selection, estimates: &[Estimate])
     let mut out = Vec::new();
     for chosen in &selection.chosen {
         let candidate = &all[chosen.candidate];
-        let position = selection.best.point.effects.iter().position(|&e| e == chosen.candidate).unwrap_or(0);
-        let before: usize = selection.best.point.effects[..position].iter().map(|&e| all[e].parameters.len()).sum();
+        let position = selection
+            .best
+            .point
+            .effects
+            .iter()
+            .position(|&e| e == chosen.candidate)
+            .unwrap_or(0);
+        let before: usize = selection.best.point.effects[..position]
+            .iter()
+            .map(|&e| all[e].parameters.len())
+            .sum();
         let from = problem.specimen.calibration().len() + before;
         let own = &estimates[from..from + candidate.parameters.len()];
         let law = (candidate.id == "unlisted")
@@ -288,5 +317,10 @@ fn confidence(chosen: &Chosen, incomplete: bool) -> f64 {
         None => chosen.gain / chosen.gain_error.max(1.0),
     };
     let certain = 0.5 * (1.0 + libm::erf(0.5 * sigmas.max(0.0) / std::f64::consts::SQRT_2));
-    (if incomplete { 0.5 + 0.8 * (certain - 0.5) } else { certain }).clamp(0.5, 0.99)
+    (if incomplete {
+        0.5 + 0.8 * (certain - 0.5)
+    } else {
+        certain
+    })
+    .clamp(0.5, 0.99)
 }

@@ -125,7 +125,14 @@ pub fn fit(problem: &Problem<'_>, start: Point, effort: Effort) -> Result<Fit, D
             break;
         }
     }
-    Ok(Fit { point, normals, prior, cost, ranges, sensitivity: Some(Arc::new(sensitivity)) })
+    Ok(Fit {
+        point,
+        normals,
+        prior,
+        cost,
+        ranges,
+        sensitivity: Some(Arc::new(sensitivity)),
+    })
 }
 
 /// Sum of the blocks' costs.
@@ -205,7 +212,11 @@ impl Fit {
             let mut costs = vec![f64::INFINITY; self.normals.len()];
             for fold in 0..problem.folds {
                 if let Ok(there) = self.refitted(problem, fold).and_then(|p| problem.block_costs(&p)) {
-                    for (k, cost) in there.into_iter().enumerate().filter(|(k, _)| problem.blocks[*k].fold == fold) {
+                    for (k, cost) in there
+                        .into_iter()
+                        .enumerate()
+                        .filter(|(k, _)| problem.blocks[*k].fold == fold)
+                    {
                         costs[k] = cost;
                     }
                 }
@@ -234,8 +245,13 @@ impl Fit {
     /// Coordinates at their bound stay there.
     #[must_use]
     pub fn step_without(&self, left_out: impl Fn(usize) -> bool) -> Option<DVector<f64>> {
-        let kept: Vec<Normal> =
-            self.normals.iter().enumerate().filter(|(k, _)| !left_out(*k)).map(|(_, n)| n.clone()).collect();
+        let kept: Vec<Normal> = self
+            .normals
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| !left_out(*k))
+            .map(|(_, n)| n.clone())
+            .collect();
         let (h, mut g) = sum(&kept, &self.prior, &self.point.z);
         // Only the difference that leaving out makes: the gradient left at the full fit is rounding and bounds.
         let (_, full) = sum(&self.normals, &self.prior, &self.point.z);

@@ -69,8 +69,11 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
 pub fn rejected(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> Vec<Value> {
     let selection = &diagnosis.selection;
     let all = specimen.candidates();
-    let mut trials: Vec<_> =
-        selection.trials.iter().filter(|t| !selection.best.point.effects.contains(&t.candidate)).collect();
+    let mut trials: Vec<_> = selection
+        .trials
+        .iter()
+        .filter(|t| !selection.best.point.effects.contains(&t.candidate))
+        .collect();
     trials.sort_by(|a, b| a.alone.total_cmp(&b.alone));
     (trials.iter())
         .map(|t| {
@@ -80,10 +83,17 @@ pub fn rejected(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> Vec<Value> {
                 selection.noise_ratio.0, t.alone
             );
             let why = match t.added {
-                Some(added) => format!("{alone}; added to the chosen model from {:.3} to {added:.3}", selection.noise_ratio.1),
+                Some(added) => format!(
+                    "{alone}; added to the chosen model from {:.3} to {added:.3}",
+                    selection.noise_ratio.1
+                ),
                 None => format!("{alone}; it excludes or is excluded by an effect of the chosen model"),
             };
-            let place = if c.label.is_empty() { c.place.clone() } else { format!("{} ({})", c.place, c.label) };
+            let place = if c.label.is_empty() {
+                c.place.clone()
+            } else {
+                format!("{} ({})", c.place, c.label)
+            };
             json!({ "id": c.id, "place": place, "why": why })
         })
         .collect()
@@ -93,7 +103,11 @@ pub fn rejected(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> Vec<Value> {
 #[must_use]
 pub fn not_tested(specimen: &dyn Specimen) -> Vec<Value> {
     (specimen.candidates().iter())
-        .filter_map(|c| c.untestable.as_ref().map(|why| json!({ "id": c.id, "place": c.place, "why": why })))
+        .filter_map(|c| {
+            c.untestable
+                .as_ref()
+                .map(|why| json!({ "id": c.id, "place": c.place, "why": why }))
+        })
         .collect()
 }
 

@@ -50,11 +50,18 @@ pub fn locate(
     improved: &[Series],
 ) -> Result<Vec<Location>, DiagnoseError> {
     let count = problem.count() as f64;
-    let total = |r: &[Series]| r.iter().flatten().map(|c| c.iter().map(|v| v * v).sum::<f64>()).sum::<f64>();
+    let total = |r: &[Series]| {
+        r.iter()
+            .flatten()
+            .map(|c| c.iter().map(|v| v * v).sum::<f64>())
+            .sum::<f64>()
+    };
     let excess = (total(calibrated) - total(improved).min(total(calibrated))).max(1.0);
     let mut out = Vec::new();
     for chosen in &selection.chosen {
-        let Some(position) = selection.best.point.effects.iter().position(|&e| e == chosen.candidate) else { continue };
+        let Some(position) = selection.best.point.effects.iter().position(|&e| e == chosen.candidate) else {
+            continue;
+        };
         let without = fit(problem, problem.without(&selection.best.point, position), Effort::QUICK)?;
         let without = problem.residuals(&problem.predict(&without.point)?);
         let share = ((total(&without) - total(improved)) / excess).clamp(0.0, 1.0);
@@ -62,7 +69,10 @@ pub fn locate(
         out.push(strongest(problem.specimen, place, share, &without, improved));
     }
     if out.is_empty() && total(improved) / count > 1.0 + LEAST_EXCESS {
-        let none: Vec<Series> = improved.iter().map(|r| r.iter().map(|c| vec![1.0; c.len()]).collect()).collect();
+        let none: Vec<Series> = improved
+            .iter()
+            .map(|r| r.iter().map(|c| vec![1.0; c.len()]).collect())
+            .collect();
         out.push(strongest(problem.specimen, "unknown".into(), 1.0, improved, &none));
     }
     Ok(out)
@@ -71,7 +81,11 @@ pub fn locate(
 /// Where `without` is worst against `with`.
 fn strongest(specimen: &dyn Specimen, place: String, share: f64, without: &[Series], with: &[Series]) -> Location {
     let gain = |r: usize, c: usize| -> Vec<f64> {
-        without[r][c].iter().zip(&with[r][c]).map(|(a, b)| a * a - b * b).collect()
+        without[r][c]
+            .iter()
+            .zip(&with[r][c])
+            .map(|(a, b)| a * a - b * b)
+            .collect()
     };
     let (mut worst, mut recording, mut channel) = (f64::MIN, 0, 0);
     for r in 0..without.len() {
@@ -132,7 +146,10 @@ fn concentrated(name: &str, state: &[f64], gain: &[f64]) -> Option<(f64, String)
             let bin = &order[n * b / BINS..n * (b + 1) / BINS];
             let factor = bin.iter().map(|&k| gain[k]).sum::<f64>() / bin.len() as f64 / mean;
             let (low, high) = (state[bin[0]], state[bin[bin.len() - 1]]);
-            (factor, format!("{name} from {low:.3e} to {high:.3e}: {factor:.1} times the mean misfit"))
+            (
+                factor,
+                format!("{name} from {low:.3e} to {high:.3e}: {factor:.1} times the mean misfit"),
+            )
         })
         .max_by(|a, b| a.0.total_cmp(&b.0))
 }
@@ -140,23 +157,36 @@ fn concentrated(name: &str, state: &[f64], gain: &[f64]) -> Option<(f64, String)
 /// Relations between measured neighbours of a strut; none for the other kinds.
 #[must_use]
 pub fn relations(specimen: &dyn Specimen) -> Vec<Relation> {
-    let Some(area) = specimen.piston_area_m2() else { return Vec::new() };
+    let Some(area) = specimen.piston_area_m2() else {
+        return Vec::new();
+    };
     let noise: Vec<f64> = specimen.channels().iter().map(|c| c.noise).collect();
     let force_noise = (noise[0] * noise[0] + area * area * noise[1] * noise[1]).sqrt();
     let pressure_noise = |a: usize, b: usize| (noise[a] * noise[a] + noise[b] * noise[b]).sqrt();
     let m = |r: usize, c: usize, k: usize| specimen.measured(r, c)[k];
     let slow = |r: usize, k: usize| specimen.quiet(r, k, 0.001);
     vec![
-        relation(specimen, "force balance: force - A p1", force_noise, |r, k| Some(m(r, 0, k) - area * m(r, 1, k))),
+        relation(specimen, "force balance: force - A p1", force_noise, |r, k| {
+            Some(m(r, 0, k) - area * m(r, 1, k))
+        }),
         relation(specimen, "closed valve 3: p3 = p1", pressure_noise(1, 3), |r, k| {
             specimen.valve_shut(r, k, 2).then(|| m(r, 1, k) - m(r, 3, k))
         }),
-        relation(specimen, "path 1 at rest, valve 1 open: p1 = p2", pressure_noise(1, 2), |r, k| {
-            (slow(r, k) && specimen.valve_open(r, k, 0)).then(|| m(r, 1, k) - m(r, 2, k))
-        }),
-        relation(specimen, "path 2 at rest, valves 2 and 3 open: p1 = p4", pressure_noise(1, 4), |r, k| {
-            (slow(r, k) && specimen.valve_open(r, k, 1) && specimen.valve_open(r, k, 2)).then(|| m(r, 1, k) - m(r, 4, k))
-        }),
+        relation(
+            specimen,
+            "path 1 at rest, valve 1 open: p1 = p2",
+            pressure_noise(1, 2),
+            |r, k| (slow(r, k) && specimen.valve_open(r, k, 0)).then(|| m(r, 1, k) - m(r, 2, k)),
+        ),
+        relation(
+            specimen,
+            "path 2 at rest, valves 2 and 3 open: p1 = p4",
+            pressure_noise(1, 4),
+            |r, k| {
+                (slow(r, k) && specimen.valve_open(r, k, 1) && specimen.valve_open(r, k, 2))
+                    .then(|| m(r, 1, k) - m(r, 4, k))
+            },
+        ),
     ]
 }
 
@@ -167,13 +197,25 @@ fn relation(
     value: impl Fn(usize, usize) -> Option<f64>,
 ) -> Relation {
     let values: Vec<f64> = (0..specimen.recordings())
-        .flat_map(|r| (0..specimen.time_s(r).len()).filter_map(|k| value(r, k)).collect::<Vec<_>>())
+        .flat_map(|r| {
+            (0..specimen.time_s(r).len())
+                .filter_map(|k| value(r, k))
+                .collect::<Vec<_>>()
+        })
         .collect();
     let samples = values.len();
     if samples < 20 {
-        return Relation { name, noise_ratio: None, samples };
+        return Relation {
+            name,
+            noise_ratio: None,
+            samples,
+        };
     }
     let mean = values.iter().sum::<f64>() / samples as f64;
     let variance = values.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / samples as f64;
-    Relation { name, noise_ratio: Some(variance.sqrt() / noise), samples }
+    Relation {
+        name,
+        noise_ratio: Some(variance.sqrt() / noise),
+        samples,
+    }
 }

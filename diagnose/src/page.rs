@@ -19,11 +19,22 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
     page.fact("recordings", &specimen.recordings().to_string());
     page.fact("simulations of one recording", &diagnosis.simulated.to_string());
     page.fact("time", &format!("{runtime_s:.1} s"));
-    let names: Vec<String> = diagnosis.effects.iter().map(|e| format!("{} ({})", e.id, e.place)).collect();
+    let names: Vec<String> = diagnosis
+        .effects
+        .iter()
+        .map(|e| format!("{} ({})", e.id, e.place))
+        .collect();
     let (verdict, sentence) = match diagnosis.verdict() {
-        "consistent" => (Verdict::Pass, "Nothing is missing: the model, recalibrated within its tolerances, agrees with every recording.".to_owned()),
+        "consistent" => (
+            Verdict::Pass,
+            "Nothing is missing: the model, recalibrated within its tolerances, agrees with every recording."
+                .to_owned(),
+        ),
         "missing_physics" => (Verdict::Fail, format!("The model lacks: {}.", names.join(", "))),
-        _ => (Verdict::Fail, "The model disagrees with the recordings, and nothing in the vocabulary explains it.".to_owned()),
+        _ => (
+            Verdict::Fail,
+            "The model disagrees with the recordings, and nothing in the vocabulary explains it.".to_owned(),
+        ),
     };
     page.verdict(
         verdict,
@@ -38,14 +49,21 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
     the_model(&mut page, diagnosis);
     how_much_better(&mut page, diagnosis);
     page.section("What to record next");
-    page.text(diagnosis.next_experiment.as_deref().unwrap_or(
-        "Nothing is needed to tell the effects found from their rivals.",
-    ));
+    page.text(
+        diagnosis
+            .next_experiment
+            .as_deref()
+            .unwrap_or("Nothing is needed to tell the effects found from their rivals."),
+    );
     let missing = json::not_tested(specimen);
     if missing.is_empty() {
         page.text("The recordings excite every effect of the vocabulary.");
     } else {
-        let mut table = Table::new([Column::text("Not tested"), Column::text("Place"), Column::text("Because")]);
+        let mut table = Table::new([
+            Column::text("Not tested"),
+            Column::text("Place"),
+            Column::text("Because"),
+        ]);
         for m in &missing {
             table.row([text(&m["id"]), text(&m["place"]), text(&m["why"])]);
         }
@@ -79,10 +97,20 @@ pub fn effects_table(diagnosis: &Diagnosis) -> Table {
         let numbers: Vec<String> = (e.parameters.iter())
             .map(|p| {
                 let end = |v: f64| if v.is_finite() { significant(v, 3) } else { "?".into() };
-                format!("{} = {} [{}, {}]", p.key, significant(p.value, 4), end(p.ci95[0]), end(p.ci95[1]))
+                format!(
+                    "{} = {} [{}, {}]",
+                    p.key,
+                    significant(p.value, 4),
+                    end(p.ci95[0]),
+                    end(p.ci95[1])
+                )
             })
             .collect();
-        let name = if e.label.is_empty() { e.id.clone() } else { format!("{}: {}", e.id, e.label) };
+        let name = if e.label.is_empty() {
+            e.id.clone()
+        } else {
+            format!("{}: {}", e.id, e.label)
+        };
         table.row([
             name,
             e.place.clone(),
@@ -119,10 +147,17 @@ fn where_it_is(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     if table.is_empty() {
         page.text("No place stands out: no misfit beyond the noise is left after recalibration.");
     } else {
-        page.text("Share of excess: part of the misfit beyond noise of the recalibrated model that goes with this place.").table(table);
+        page.text(
+            "Share of excess: part of the misfit beyond noise of the recalibrated model that goes with this place.",
+        )
+        .table(table);
     }
     if diagnosis.relations.iter().any(|r| r.noise_ratio.is_some()) {
-        let mut table = Table::new([Column::text("Relation between measured neighbours"), Column::number("Noise ratio"), Column::number("Samples")]);
+        let mut table = Table::new([
+            Column::text("Relation between measured neighbours"),
+            Column::number("Noise ratio"),
+            Column::number("Samples"),
+        ]);
         for r in &diagnosis.relations {
             let value = r.noise_ratio.map_or("not excited".into(), |v| format!("{v:.2}"));
             table.row([r.name.to_owned(), value, r.samples.to_string()]);
@@ -138,19 +173,30 @@ fn where_it_is(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     let time = specimen.time_s(recording);
     let every = time.len().div_ceil(DRAWN);
     let thin = |v: &[f64]| -> Vec<f64> { v.iter().step_by(every).copied().collect() };
-    let (before, after) = (&diagnosis.residuals.0[recording][channel], &diagnosis.residuals.1[recording][channel]);
+    let (before, after) = (
+        &diagnosis.residuals.0[recording][channel],
+        &diagnosis.residuals.1[recording][channel],
+    );
     let name = &specimen.channels()[channel].name;
-    let mut curves = Curves::new(&format!("Residual of {name} in {}", specimen.recording_name(recording)), Axis::new("Time", "s"));
+    let mut curves = Curves::new(
+        &format!("Residual of {name} in {}", specimen.recording_name(recording)),
+        Axis::new("Time", "s"),
+    );
     curves.caption("Recording minus simulation over the sensor's noise; marked: where the misfit is largest.");
     let panel = curves.panel(Axis::new("Residual", "noise"));
-    panel.line("recalibrated only", &thin(time), &thin(before)).line("improved model", &thin(time), &thin(after));
+    panel
+        .line("recalibrated only", &thin(time), &thin(before))
+        .line("improved model", &thin(time), &thin(after));
     if let Some(l) = first {
         panel.region(l.t_s[0], l.t_s[1], "largest misfit");
     }
     page.figure(curves);
     for (state, values) in specimen.states(recording) {
         let (quantity, unit) = state.rsplit_once(", ").unwrap_or((state, ""));
-        let mut curves = Curves::new(&format!("Residual of {name} over {quantity}"), Axis::new(quantity, unit));
+        let mut curves = Curves::new(
+            &format!("Residual of {name} over {quantity}"),
+            Axis::new(quantity, unit),
+        );
         curves
             .panel(Axis::new("Residual", "noise"))
             .series(Style::Points, "recalibrated only", &thin(&values), &thin(before))
@@ -164,15 +210,22 @@ fn what_it_is(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     let all = specimen.candidates();
     page.section("What");
     for chosen in &diagnosis.selection.chosen {
-        let rival = chosen.rival.map_or("no rival could be fitted in its place".to_owned(), |(id, lead, error)| {
-            format!(
-                "its strongest rival, {}, is worse by {} in squared noise units (standard error {}){}",
-                all[id].name(),
-                significant(lead, 3),
-                significant(error, 2),
-                if chosen.ambiguous { ": the recordings cannot tell the two apart" } else { "" }
-            )
-        });
+        let rival = chosen.rival.map_or(
+            "no rival could be fitted in its place".to_owned(),
+            |(id, lead, error)| {
+                format!(
+                    "its strongest rival, {}, is worse by {} in squared noise units (standard error {}){}",
+                    all[id].name(),
+                    significant(lead, 3),
+                    significant(error, 2),
+                    if chosen.ambiguous {
+                        ": the recordings cannot tell the two apart"
+                    } else {
+                        ""
+                    }
+                )
+            },
+        );
         page.text(&format!(
             "{}: without it the held-out noise ratio is {:.2}, with it {:.2}; {rival}.",
             all[chosen.candidate].name(),
@@ -193,7 +246,12 @@ fn what_it_is(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
 fn the_model(page: &mut Page, diagnosis: &Diagnosis) {
     page.section("Model");
     page.text("The improved model is model.toml beside this page; it runs in oleo predict, oleo rig and oleo hil as it is. Recalibration within tolerance is part of it and is not physics:");
-    let mut table = Table::new([Column::text("Calibration"), Column::number("Value"), Column::text("95 % interval"), Column::number("Part of tolerance used")]);
+    let mut table = Table::new([
+        Column::text("Calibration"),
+        Column::number("Value"),
+        Column::text("95 % interval"),
+        Column::number("Part of tolerance used"),
+    ]);
     for (e, z) in &diagnosis.calibration {
         table.row([
             e.key.clone(),
@@ -204,7 +262,9 @@ fn the_model(page: &mut Page, diagnosis: &Diagnosis) {
     }
     page.details("Calibration", table);
     for (a, b, r) in &diagnosis.correlated {
-        page.text(&format!("Correlated estimates: {a} and {b}, r = {r:.2}; only their combination is well determined."));
+        page.text(&format!(
+            "Correlated estimates: {a} and {b}, r = {r:.2}; only their combination is well determined."
+        ));
     }
 }
 
@@ -213,7 +273,11 @@ fn how_much_better(page: &mut Page, diagnosis: &Diagnosis) {
     let channels = &diagnosis.channels;
     let names: Vec<&str> = channels.iter().map(|c| c.name.as_str()).collect();
     let column = |f: fn(&crate::diagnosis::ChannelFigures) -> f64| channels.iter().map(f).collect::<Vec<_>>();
-    let mut bars = Bars::new("Noise ratio per channel", names, Axis::new("RMS residual", "noise").logarithmic());
+    let mut bars = Bars::new(
+        "Noise ratio per channel",
+        names,
+        Axis::new("RMS residual", "noise").logarithmic(),
+    );
     bars.caption("Held out: simulated with parameters fitted without the block that is judged. 1 is perfect.");
     bars.series("as given", &column(|c| c.before))
         .series("recalibrated, held out", &column(|c| c.held_out_before))
@@ -237,5 +301,6 @@ fn how_much_better(page: &mut Page, diagnosis: &Diagnosis) {
             format!("{:.2}", c.lag_one),
         ]);
     }
-    page.text("Lag-one correlation of the improved model's residuals: 0 is white noise, 1 a slow error that is left.").table(table);
+    page.text("Lag-one correlation of the improved model's residuals: 0 is white noise, 1 a slow error that is left.")
+        .table(table);
 }

@@ -84,17 +84,34 @@ impl<'a> Problem<'a> {
                     _ => (k + 3 * recording) % BLOCKS_PER_RECORDING,
                 };
                 folds = folds.max(fold + 1);
-                blocks.push(Block { recording, start, end, fold });
+                blocks.push(Block {
+                    recording,
+                    start,
+                    end,
+                    fold,
+                });
             }
         }
-        Self { specimen, blocks, folds, stop, simulated: AtomicUsize::new(0) }
+        Self {
+            specimen,
+            blocks,
+            folds,
+            stop,
+            simulated: AtomicUsize::new(0),
+        }
     }
 
     /// The same problem without the blocks of a fold.
     #[must_use]
     pub fn without_fold(&self, fold: usize) -> Self {
         let blocks = self.blocks.iter().filter(|b| b.fold != fold).cloned().collect();
-        Self { specimen: self.specimen, blocks, folds: self.folds, stop: self.stop, simulated: AtomicUsize::new(0) }
+        Self {
+            specimen: self.specimen,
+            blocks,
+            folds: self.folds,
+            stop: self.stop,
+            simulated: AtomicUsize::new(0),
+        }
     }
 
     /// True where fitting once a fold is cheap enough to be done instead of approximated.
@@ -107,7 +124,12 @@ impl<'a> Problem<'a> {
     #[must_use]
     pub fn squares(&self, residuals: &[Series]) -> f64 {
         (self.blocks.iter())
-            .map(|b| residuals[b.recording].iter().map(|c| c[b.start..b.end].iter().map(|r| r * r).sum::<f64>()).sum::<f64>())
+            .map(|b| {
+                residuals[b.recording]
+                    .iter()
+                    .map(|c| c[b.start..b.end].iter().map(|r| r * r).sum::<f64>())
+                    .sum::<f64>()
+            })
             .sum()
     }
 
@@ -207,14 +229,21 @@ impl<'a> Problem<'a> {
     /// A hypothesis that cannot be simulated, or the wish to stop.
     pub fn truths(&self, point: &Point) -> Result<Vec<Series>, DiagnoseError> {
         let hypothesis = self.hypothesis(point);
-        (0..self.specimen.recordings()).into_par_iter().map(|r| self.simulate(&hypothesis, r)).collect()
+        (0..self.specimen.recordings())
+            .into_par_iter()
+            .map(|r| self.simulate(&hypothesis, r))
+            .collect()
     }
 
     /// What the instruments show of given truths at a point.
     #[must_use]
     pub fn observed(&self, point: &Point, truths: &[Series]) -> Vec<Series> {
         let hypothesis = self.hypothesis(point);
-        truths.par_iter().enumerate().map(|(r, t)| self.specimen.observe(&hypothesis, r, t)).collect()
+        truths
+            .par_iter()
+            .enumerate()
+            .map(|(r, t)| self.specimen.observe(&hypothesis, r, t))
+            .collect()
     }
 
     /// What the instruments would have shown, every recording.
@@ -388,7 +417,12 @@ impl<'a> Problem<'a> {
                         g[i] += dot(&column[c][b.start..b.end], r);
                     }
                 }
-                Normal { h: old.h.clone(), g, cost, count: old.count }
+                Normal {
+                    h: old.h.clone(),
+                    g,
+                    cost,
+                    count: old.count,
+                }
             })
             .collect()
     }

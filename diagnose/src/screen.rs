@@ -52,7 +52,12 @@ impl<'p, 'a> Screen<'p, 'a> {
             let columns: Vec<usize> = (0..fit.point.z.len()).collect();
             Arc::new(problem.sensitivities(&fit.point, &columns, Some(&truths))?)
         };
-        Ok(Self { problem, fit, base, truths })
+        Ok(Self {
+            problem,
+            fit,
+            base,
+            truths,
+        })
     }
 
     /// Every candidate added alone, in the order given; `None` where it cannot be simulated at all.
@@ -60,8 +65,10 @@ impl<'p, 'a> Screen<'p, 'a> {
     /// # Errors
     /// The wish to stop.
     pub fn all(&self, candidates: &[usize]) -> Result<Vec<Option<Fit>>, DiagnoseError> {
-        let first: Vec<Option<Way>> =
-            candidates.par_iter().map(|&c| self.begin(c)).collect::<Result<_, DiagnoseError>>()?;
+        let first: Vec<Option<Way>> = candidates
+            .par_iter()
+            .map(|&c| self.begin(c))
+            .collect::<Result<_, DiagnoseError>>()?;
         let mut order: Vec<usize> = (0..first.len()).filter(|&k| first[k].is_some()).collect();
         let cost = |k: usize| first[k].as_ref().map_or(f64::INFINITY, |w| w.cost);
         order.sort_by(|&a, &b| cost(a).total_cmp(&cost(b)));
@@ -106,7 +113,11 @@ impl<'p, 'a> Screen<'p, 'a> {
                 && candidate.place != "sensor:displacement_m"
                 && candidate.parameters.iter().all(|p| p.instrument_only)
         });
-        if outside { Ok(None) } else { self.problem.truths(point).map(Some) }
+        if outside {
+            Ok(None)
+        } else {
+            self.problem.truths(point).map(Some)
+        }
     }
 
     fn at(&self, point: Point, known: Option<&[Series]>) -> Result<Way, DiagnoseError> {
@@ -115,15 +126,27 @@ impl<'p, 'a> Screen<'p, 'a> {
         let new: Vec<usize> = (self.fit.point.z.len()..point.z.len()).collect();
         let normals = self.extended(&self.problem.sensitivities(&point, &new, Some(truths))?);
         let (answer, cost) = self.answered(&point, &normals);
-        Ok(Way { point, normals, answer, cost, damping: 1e-3, done: new.is_empty() })
+        Ok(Way {
+            point,
+            normals,
+            answer,
+            cost,
+            damping: 1e-3,
+            done: new.is_empty(),
+        })
     }
 
     /// The cost at a point, and the true quantities for going on from it.
     fn cost_at(&self, point: &Point) -> Result<(f64, Option<Vec<Series>>), DiagnoseError> {
         let simulated = self.truths_at(point)?;
-        let shown = self.problem.observed(point, simulated.as_deref().unwrap_or(&self.truths));
+        let shown = self
+            .problem
+            .observed(point, simulated.as_deref().unwrap_or(&self.truths));
         let residuals: Vec<Sensitivity> = (self.problem.residuals(&shown).into_iter())
-            .map(|residual| Sensitivity { residual, columns: Vec::new() })
+            .map(|residual| Sensitivity {
+                residual,
+                columns: Vec::new(),
+            })
             .collect();
         Ok((self.answered(point, &self.extended(&residuals)).1, simulated))
     }
@@ -132,7 +155,10 @@ impl<'p, 'a> Screen<'p, 'a> {
         let old = self.fit.point.z.len();
         let parameters = self.problem.parameters(&way.point.effects);
         let ranges: Vec<(f64, f64)> = parameters.iter().map(|p| p.z_range()).collect();
-        let prior = DVector::from_iterator(parameters.len(), parameters.iter().map(|p| f64::from(u8::from(p.prior))));
+        let prior = DVector::from_iterator(
+            parameters.len(),
+            parameters.iter().map(|p| f64::from(u8::from(p.prior))),
+        );
         for _ in 0..steps {
             if way.done {
                 break;
@@ -197,7 +223,10 @@ impl<'p, 'a> Screen<'p, 'a> {
         let old = self.fit.point.z.len();
         let parameters = self.problem.parameters(&way.point.effects);
         let ranges = parameters.iter().map(|p| p.z_range()).collect();
-        let prior = DVector::from_iterator(parameters.len(), parameters.iter().map(|p| f64::from(u8::from(p.prior))));
+        let prior = DVector::from_iterator(
+            parameters.len(),
+            parameters.iter().map(|p| f64::from(u8::from(p.prior))),
+        );
         let mut point = way.point;
         (0..old).for_each(|k| point.z[k] += way.answer[k]);
         let mut step = DVector::zeros(point.z.len());
@@ -208,10 +237,21 @@ impl<'p, 'a> Screen<'p, 'a> {
             .map(|n| {
                 let moved = &n.h * &step;
                 let cost = (n.cost - 2.0 * n.g.dot(&step) + step.dot(&moved)).max(0.0);
-                Normal { g: n.g - moved, cost, ..n }
+                Normal {
+                    g: n.g - moved,
+                    cost,
+                    ..n
+                }
             })
             .collect();
-        Fit { point, normals, prior, cost: way.cost, ranges, sensitivity: None }
+        Fit {
+            point,
+            normals,
+            prior,
+            cost: way.cost,
+            ranges,
+            sensitivity: None,
+        }
     }
 
     /// Normal equations of the frozen columns and the new ones together.
@@ -248,7 +288,12 @@ impl<'p, 'a> Screen<'p, 'a> {
                         }
                     }
                 }
-                Normal { h, g, cost, count: frozen.count }
+                Normal {
+                    h,
+                    g,
+                    cost,
+                    count: frozen.count,
+                }
             })
             .collect()
     }

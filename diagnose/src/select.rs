@@ -102,7 +102,12 @@ impl<'p, 'a> Judge<'p, 'a> {
     fn new(problem: &'p Problem<'a>) -> Self {
         let all = problem.specimen.candidates();
         let testable = (0..all.len()).filter(|&c| all[c].untestable.is_none()).collect();
-        Self { problem, count: problem.count() as f64, testable, known: BTreeMap::new() }
+        Self {
+            problem,
+            count: problem.count() as f64,
+            testable,
+            known: BTreeMap::new(),
+        }
     }
 
     /// The full fit of a structure; each is made once.
@@ -117,7 +122,13 @@ impl<'p, 'a> Judge<'p, 'a> {
             }
         }
         let full = fit(self.problem, start, Effort::FULL)?;
-        self.known.insert(key, Fit { sensitivity: None, ..full.clone() });
+        self.known.insert(
+            key,
+            Fit {
+                sensitivity: None,
+                ..full.clone()
+            },
+        );
         Ok(full)
     }
 
@@ -143,7 +154,11 @@ impl<'p, 'a> Judge<'p, 'a> {
     /// of the misfit, and the raw gain is as scattered as they are.
     fn logarithmic_gain(before: &[f64], after: &[f64]) -> (f64, f64) {
         let n = before.len() as f64;
-        let gains: Vec<f64> = before.iter().zip(after).map(|(b, a)| libm::log(b.max(1e-9) / a.max(1e-9))).collect();
+        let gains: Vec<f64> = before
+            .iter()
+            .zip(after)
+            .map(|(b, a)| libm::log(b.max(1e-9) / a.max(1e-9)))
+            .collect();
         let mean = gains.iter().sum::<f64>() / n;
         let variance = gains.iter().map(|g| (g - mean) * (g - mean)).sum::<f64>() / (n - 1.0).max(1.0);
         (mean, (variance / n).sqrt())
@@ -178,8 +193,7 @@ impl<'p, 'a> Judge<'p, 'a> {
     fn open(&self, point: &Point, laws: bool) -> Vec<usize> {
         let all = self.problem.specimen.candidates();
         let excluded = |c: usize| {
-            (all[c].id == "unlisted" && !laws)
-                || point.effects.iter().any(|&e| e == c || all[e].excludes(&all[c]))
+            (all[c].id == "unlisted" && !laws) || point.effects.iter().any(|&e| e == c || all[e].excludes(&all[c]))
         };
         self.testable.iter().copied().filter(|&c| !excluded(c)).collect()
     }
@@ -204,7 +218,11 @@ impl<'p, 'a> Judge<'p, 'a> {
     fn share(&self, candidate: usize, share: f64) -> f64 {
         let c = &self.problem.specimen.candidates()[candidate];
         let demanding = c.id == "unlisted" || (c.instrument && share > MIN_SHARE);
-        if demanding { share.max(MIN_SHARE_INCOMPLETE) } else { share }
+        if demanding {
+            share.max(MIN_SHARE_INCOMPLETE)
+        } else {
+            share
+        }
     }
 
     /// The best of the screened candidates after a full fit, if it is worth a name.
@@ -213,11 +231,18 @@ impl<'p, 'a> Judge<'p, 'a> {
         let total: f64 = before.iter().sum();
         let mut winner: Option<(f64, Fit)> = None;
         for (screened_cost, start) in self.ranked(screened).into_iter().take(FINALISTS) {
-            let share = start.point.effects.last().map_or(MIN_SHARE, |&c| self.share(c, MIN_SHARE));
+            let share = start
+                .point
+                .effects
+                .last()
+                .map_or(MIN_SHARE, |&c| self.share(c, MIN_SHARE));
             if !self.worth(&before, &self.held_out(&start), share, SCREEN_MARGIN) {
                 continue;
             }
-            if winner.as_ref().is_some_and(|(b, _)| total - screened_cost < 0.5 * (total - b)) {
+            if winner
+                .as_ref()
+                .is_some_and(|(b, _)| total - screened_cost < 0.5 * (total - b))
+            {
                 continue;
             }
             let full = self.fitted(start.point)?;
@@ -233,7 +258,12 @@ impl<'p, 'a> Judge<'p, 'a> {
     /// Drops effects that the others have made superfluous.
     fn eliminate(&mut self, mut best: Fit, share: f64) -> Result<Fit, DiagnoseError> {
         loop {
-            let laws = best.point.effects.iter().filter(|&&e| self.problem.specimen.candidates()[e].id == "unlisted").count();
+            let laws = best
+                .point
+                .effects
+                .iter()
+                .filter(|&&e| self.problem.specimen.candidates()[e].id == "unlisted")
+                .count();
             let costs = self.held_out(&best);
             let mut weakest: Option<(f64, Fit)> = None;
             let all = self.problem.specimen.candidates();
@@ -242,7 +272,11 @@ impl<'p, 'a> Judge<'p, 'a> {
             order.sort_by_key(|&p| all[best.point.effects[p]].id != "unlisted");
             for position in order {
                 let nameless = all[best.point.effects[position]].id == "unlisted";
-                if !nameless && weakest.as_ref().is_some_and(|(_, f)| f.point.effects.iter().filter(|&&e| all[e].id == "unlisted").count() < laws) {
+                if !nameless
+                    && weakest.as_ref().is_some_and(|(_, f)| {
+                        f.point.effects.iter().filter(|&&e| all[e].id == "unlisted").count() < laws
+                    })
+                {
                     break;
                 }
                 let less = self.fitted(self.problem.without(&best.point, position))?;
@@ -272,26 +306,48 @@ impl<'p, 'a> Judge<'p, 'a> {
             let less = self.fitted(self.problem.without(&best.point, position))?;
             let without = self.held_out(&less);
             let (gain, gain_error) = Self::gain(&without, &costs);
-            let rivals: Vec<usize> = self.open(&less.point, laws).into_iter().filter(|&c| c != candidate).collect();
+            let rivals: Vec<usize> = self
+                .open(&less.point, laws)
+                .into_iter()
+                .filter(|&c| c != candidate)
+                .collect();
             let screened = self.screen(&less, rivals)?;
             let mut rival = None;
             let mut ambiguous = false;
             if let Some((cost, start)) = self.ranked(&screened).into_iter().next() {
                 let id = *start.point.effects.last().unwrap_or(&candidate);
-                let full = if cost - total < 0.5 * gain { self.fitted(start.point)? } else { start };
+                let full = if cost - total < 0.5 * gain {
+                    self.fitted(start.point)?
+                } else {
+                    start
+                };
                 let held_out = self.held_out(&full);
                 let (lead, error) = Self::gain(&held_out, &costs);
-                let named = |f: &Fit| f.point.effects.iter().all(|&e| self.problem.specimen.candidates()[e].id != "unlisted");
+                let named = |f: &Fit| {
+                    f.point
+                        .effects
+                        .iter()
+                        .all(|&e| self.problem.specimen.candidates()[e].id != "unlisted")
+                };
                 // A name gives way to a law without one only if the law is clearly better.
                 let least = if named(best) && !named(&full) { 0.1 * gain } else { 0.0 };
-                if lead < -(MIN_GAIN_PER_RESIDUAL * self.count).max(MIN_GAIN).max(least) && better.as_ref().is_none_or(|(l, _)| lead < *l) {
+                if lead < -(MIN_GAIN_PER_RESIDUAL * self.count).max(MIN_GAIN).max(least)
+                    && better.as_ref().is_none_or(|(l, _)| lead < *l)
+                {
                     better = Some((lead, full));
                 }
                 rival = Some((id, lead, error));
                 // A rival that explains nearly nothing itself is no ambiguity, however scattered the blocks.
                 ambiguous = !self.worth(&held_out, &costs, 0.0, AMBIGUITY_MARGIN) && lead < 0.2 * gain;
             }
-            chosen.push(Chosen { candidate, gain, gain_error, without: self.ratio(&without), rival, ambiguous });
+            chosen.push(Chosen {
+                candidate,
+                gain,
+                gain_error,
+                without: self.ratio(&without),
+                rival,
+                ambiguous,
+            });
         }
         chosen.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok((chosen, better.map(|(_, f)| f)))
@@ -359,14 +415,25 @@ pub fn select(problem: &Problem<'_>, report: Report<'_>) -> Result<Selection, Di
         }
     }
     let noise_ratio = (judge.ratio(&calibrated_costs), judge.ratio(&judge.held_out(&best)));
-    Ok(Selection { calibrated, best, chosen, trials, noise_ratio, incomplete: noise_ratio.1 > COMPLETE_NOISE_RATIO })
+    Ok(Selection {
+        calibrated,
+        best,
+        chosen,
+        trials,
+        noise_ratio,
+        incomplete: noise_ratio.1 > COMPLETE_NOISE_RATIO,
+    })
 }
 
 fn record_alone(judge: &Judge<'_, '_>, screened: &Screened, trials: &mut Vec<Trial>) {
     for (candidate, fit) in screened {
         if trials.iter().all(|t| t.candidate != *candidate) {
             let alone = fit.as_ref().map_or(f64::INFINITY, |f| judge.ratio(&judge.held_out(f)));
-            trials.push(Trial { candidate: *candidate, alone, added: None });
+            trials.push(Trial {
+                candidate: *candidate,
+                alone,
+                added: None,
+            });
         }
     }
 }

@@ -13,7 +13,9 @@ const STEPS: usize = 40_000;
 fn nanoseconds(model: &StrutModel, steps: usize, runs: usize) -> f64 {
     let mut best = f64::INFINITY;
     for _ in 0..runs {
-        let Ok(mut strut) = Strut::at_rest(model, [true; 3]) else { return f64::NAN };
+        let Ok(mut strut) = Strut::at_rest(model, [true; 3]) else {
+            return f64::NAN;
+        };
         let mut before = 0.0;
         let begin = Instant::now();
         for i in 1..=steps {

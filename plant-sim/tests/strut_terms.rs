@@ -251,6 +251,7 @@ fn accumulator_piston_friction_opens_a_loop_of_twice_its_pressure() {
     model.effects.accumulator_piston_friction = Some(AccumulatorPistonFriction {
         pressure_1_pa: 4e4,
         pressure_2_pa: 0.0,
+        presliding_volume_m3: 1e-7,
     });
     let mut strut = Strut::at_rest(&model, STIFF).unwrap();
     let there = slowly(&mut strut, 0.02, STIFF).pressure_pa[0];

@@ -38,7 +38,9 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let stop = AtomicBool::new(false);
     let problem = Problem::new(&*campaign.specimen, &stop);
     let progress = Progress::new(&campaign.name, STEPS);
-    let diagnosis = Diagnosis::of(&campaign, &problem, &|_, part| progress.set((part * STEPS as f64) as u64))?;
+    let diagnosis = Diagnosis::of(&campaign, &problem, &|_, part| {
+        progress.set((part * STEPS as f64) as u64)
+    })?;
     drop(progress);
     let runtime_s = begun.elapsed().as_secs_f64();
     let command = format!("oleo diagnose {} --out {}", args.campaign.display(), args.out.display());

@@ -4,6 +4,6 @@
 pub mod diagnose;
 pub mod drive;
 pub mod hil;
-pub mod study;
 pub mod predict;
 pub mod rig;
+pub mod study;

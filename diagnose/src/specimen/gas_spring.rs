@@ -49,10 +49,17 @@ impl GasSpring {
         // A recording that begins in the middle of a stroke begins with gas that has just been compressed or let out: by
         // how much nobody knows, at most as much as an adiabatic stroke makes of it.
         let moving = recordings.iter().any(|r| {
-            let early = r.columns[0].iter().take_while(|x| (*x - r.columns[0][0]).abs() < MOVED_M).count();
+            let early = r.columns[0]
+                .iter()
+                .take_while(|x| (*x - r.columns[0][0]).abs() < MOVED_M)
+                .count();
             early < r.len() && r.time_s[early] - r.time_s[0] < SETTLED_S
         });
-        let initial_temperature = if moving { STROKE_TEMPERATURE_K } else { tolerance("temperature_K", 5.0) };
+        let initial_temperature = if moving {
+            STROKE_TEMPERATURE_K
+        } else {
+            tolerance("temperature_K", 5.0)
+        };
         let mut calibration = vec![
             Parameter::calibration("volume_at_zero", tolerance("volume_at_zero", 0.02)),
             Parameter::calibration("initial_pressure", tolerance("initial_pressure", 0.01)),

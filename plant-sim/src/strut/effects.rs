@@ -23,7 +23,8 @@ pub enum OilCount {
     /// in the force-displacement plane shifts `area / beta` of oil: harmless in a recording, centimetres in an hour.
     #[default]
     Chamber,
-    /// That at static pressure: `d/dt [(V - A x)(p1 - p_static)/beta] = A v - Q1 - Q2`. Conserves oil.
+    /// That at static pressure: `d/dt [(V - A x) (exp((p1 - p_static)/beta) - 1)] = A v - Q1 - Q2`.
+    /// Conserves oil.
     Static,
 }
 /// Finite stiffness of the oil: `dp = beta dV / V`. Report: 1.5e9 Pa; range 0.5e9 to 2.5e9.
@@ -115,7 +116,14 @@ term! {
         pressure_1_pa: f64 = "pressure_1_Pa",
         /// Breakaway pressure of accumulator 2, Pa.
         pressure_2_pa: f64 = "pressure_2_Pa",
+        /// Oil volume that shears a piston's seal from rest to sliding, m3.
+        #[serde(default = "presliding_volume")]
+        presliding_volume_m3: f64 = "presliding_volume_m3",
     }
+}
+/// 0.05 mm of a 50 mm piston. *Assumed*; a diagnosis fits it.
+fn presliding_volume() -> f64 {
+    1e-7
 }
 term! {
     /// Oil passing beside the damper packs (the report's manufacturing error): an orifice in parallel.

@@ -273,6 +273,7 @@ impl StrutModel {
         if let Some(t) = &e.accumulator_piston_friction {
             not_negative("pressure_1_Pa", t.pressure_1_pa)?;
             not_negative("pressure_2_Pa", t.pressure_2_pa)?;
+            positive("presliding_volume_m3", t.presliding_volume_m3)?;
         }
         if let Some(t) = &e.damper_leakage {
             not_negative("flow_coefficient_1", t.flow_coefficient_1)?;

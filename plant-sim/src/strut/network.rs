@@ -380,6 +380,7 @@ fn parameters(model: &StrutModel) -> Parameters {
                 tau,
                 real.clone(),
             ),
+            piston_presliding_m3: (e.accumulator_piston_friction.as_ref()).map_or(1.0, |f| f.presliding_volume_m3),
             piston_friction_pa: e
                 .accumulator_piston_friction
                 .as_ref()

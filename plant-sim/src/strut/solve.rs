@@ -18,8 +18,6 @@ use super::gas::{Departure, Gas, GasState};
 use super::model::ATMOSPHERE_PA;
 use super::orifice::{unit_drop, unit_flow};
 
-/// Oil volume that shears an accumulator piston's seal from rest to sliding, m3: 0.05 mm of a 50 mm piston. *Assumed.*
-const PISTON_PRESLIDING_M3: f64 = 1e-7;
 
 /// One path as the solver sees it.
 #[derive(Debug, Clone)]
@@ -30,6 +28,7 @@ pub(super) struct Path {
     pub resistance: f64,
     pub gas: Gas,
     pub piston_friction_pa: f64,
+    pub piston_presliding_m3: f64,
     pub fade_per_j: f64,
     pub series_law: Option<Pack>,
     pub parallel_law: Option<Pack>,
@@ -203,7 +202,7 @@ impl Path {
         let (mut oil, mut oil_slope) = (step.pressure_pa - ATMOSPHERE_PA, step.pressure_by_flow);
         let (mut shear, mut shear_slope) = (at.shear, 0.0);
         if self.piston_friction_pa > 0.0 {
-            let k = at.h / PISTON_PRESLIDING_M3;
+            let k = at.h / self.piston_presliding_m3;
             let divisor = 1.0 + k * flow.abs();
             shear = (at.shear + k * flow) / divisor;
             oil += self.piston_friction_pa * shear;
@@ -235,11 +234,15 @@ impl Parameters {
     /// Volume that the chamber holds at a gauge pressure beyond what it holds at static pressure, and its derivative.
     #[inline(always)]
     pub fn held(&self, p1: f64, displacement_m: f64) -> (f64, f64) {
-        let mut slope = self.mount_compliance;
+        let over = p1 - self.static_pa;
+        let (mut volume, mut slope) = (self.mount_compliance * over, self.mount_compliance);
         if self.conserves_oil {
-            slope += (self.oil_volume_m3 - self.area_m2 * displacement_m) * self.inverse_bulk_modulus;
+            // exp(y) - 1 of the density at constant bulk modulus, y at most a few per cent: to y^4/24, 1e-8.
+            let oil = self.oil_volume_m3 - self.area_m2 * displacement_m;
+            let y = over * self.inverse_bulk_modulus;
+            volume += oil * y * (1.0 + y * (0.5 + y / 6.0));
+            slope += oil * self.inverse_bulk_modulus * (1.0 + y * (1.0 + 0.5 * y));
         }
-        let mut volume = slope * (p1 - self.static_pa);
         if let Some(air) = &self.air {
             let (left, thinning) = bubbles(air, p1);
             volume -= self.oil_volume_m3 * left;

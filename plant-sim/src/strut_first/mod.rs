@@ -19,9 +19,9 @@ mod look_up;
 mod model;
 mod switching;
 
-pub use characteristics::{Characteristics, Damping, Spring};
 #[cfg(test)]
 pub(crate) use characteristics::isothermal_force_n;
+pub use characteristics::{Characteristics, Damping, Spring};
 pub use look_up::LookUpTable;
 pub use model::{FirstGenerationOutput, FirstGenerationStrut};
 pub use switching::DelayedSwitch;

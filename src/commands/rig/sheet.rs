@@ -15,7 +15,13 @@ pub struct Specimen {
     #[arg(long, value_name = "MODEL.toml")]
     strut: Option<PathBuf>,
     /// Static load of the built-in strut, N
-    #[arg(long, value_name = "N", default_value_t = 8000.0, conflicts_with = "strut", allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 8000.0,
+        conflicts_with = "strut",
+        allow_negative_numbers = true
+    )]
     static_load: f64,
     /// Folder for CSV data, summary.json and report.html; without it only the table is printed
     #[arg(long, value_name = "DIR")]

@@ -2,8 +2,8 @@
 
 use oleo_plant_sim::strut::{
     AccumulatorPistonFriction, BumpStop, DamperLeakage, DampingFade, Effects, EntrainedAir, GasChargeError,
-    GasEquation, GasHeatTransfer, LineInertance, LineResistance, MountCompliance, OilCompressibility, OilCount, RealGas,
-    SealFriction, SideLoadFriction, TransitionShape, Valve3Leakage, ValveDelay, ValveTransition,
+    GasEquation, GasHeatTransfer, LineInertance, LineResistance, MountCompliance, OilCompressibility, OilCount,
+    RealGas, SealFriction, SideLoadFriction, TransitionShape, Valve3Leakage, ValveDelay, ValveTransition,
 };
 
 use super::laws;
@@ -17,7 +17,12 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
     let column = || candidate.place.trim_start_matches("sensor:").to_owned();
     let second = candidate.place.ends_with('2');
     match candidate.id {
-        "oil_compressibility" => effects.oil_compressibility = Some(OilCompressibility { bulk_modulus_pa: 1.0 / v[0].max(1e-13), counted_at: OilCount::default() }),
+        "oil_compressibility" => {
+            effects.oil_compressibility = Some(OilCompressibility {
+                bulk_modulus_pa: 1.0 / v[0].max(1e-13),
+                counted_at: OilCount::default(),
+            })
+        }
         "entrained_air" => {
             effects.entrained_air = Some(EntrainedAir {
                 volume_fraction: v[0],
@@ -60,8 +65,10 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
             let none = AccumulatorPistonFriction {
                 pressure_1_pa: 0.0,
                 pressure_2_pa: 0.0,
+                presliding_volume_m3: v[1],
             };
             let term = effects.accumulator_piston_friction.get_or_insert(none);
+            term.presliding_volume_m3 = v[1];
             *(if second {
                 &mut term.pressure_2_pa
             } else {
@@ -122,7 +129,11 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
             term.stiffness_n_m = v[2];
             term.progression_n_m3 = v[3];
         }
-        "mount_compliance" => effects.mount_compliance = Some(MountCompliance { stiffness_n_m: 1.0 / v[0].max(1e-15) }),
+        "mount_compliance" => {
+            effects.mount_compliance = Some(MountCompliance {
+                stiffness_n_m: 1.0 / v[0].max(1e-15),
+            })
+        }
         "damping_fade" => {
             let (f1, f2, tau) = match candidate.place.as_str() {
                 "path-1" => (v[0], 0.0, v[1]),

@@ -107,7 +107,7 @@ pub fn candidates(_excitation: &Excitation, untestable: &Option<String>) -> Vec<
         .iter()
         .map(|kind| {
             let least = if kind.monotone { 0.0 } else { -1e4 * kind.scale };
-            
+
             let parameters = (1..kind.knots.len())
                 .map(|k| {
                     let key = format!("rise_{:.3e}_to_{:.3e}", kind.knots[k - 1], kind.knots[k]);

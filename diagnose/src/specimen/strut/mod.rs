@@ -186,7 +186,9 @@ impl TwoStageStrut {
 
     fn held(&self, recording: usize, sample: usize, valve: usize, open: bool) -> bool {
         let from = sample.saturating_sub(self.settled(recording));
-        self.inputs[recording].signals[from..=sample].iter().all(|s| s[valve] == open)
+        self.inputs[recording].signals[from..=sample]
+            .iter()
+            .all(|s| s[valve] == open)
     }
 
     /// Time since the last switching edge, s; the time itself before the first.
@@ -245,7 +247,11 @@ fn calibration(model: &StrutModel) -> (Vec<Calibration>, Vec<Parameter>) {
     // Also where the oil is believed rigid: its volume matters as soon as it is not.
     add(Calibration::OilVolume, "oil_volume".into(), tolerance("oil_volume"));
     if model.effects.oil_compressibility.is_some() {
-        add(Calibration::BulkModulus, "bulk_modulus".into(), tolerance("bulk_modulus"));
+        add(
+            Calibration::BulkModulus,
+            "bulk_modulus".into(),
+            tolerance("bulk_modulus"),
+        );
     }
     if model.effects.gas_heat_transfer.is_some() {
         for i in 0..2 {
@@ -349,7 +355,10 @@ impl Specimen for TwoStageStrut {
     fn quiet(&self, recording: usize, sample: usize, speed_m_s: f64) -> bool {
         let segments = &self.inputs[recording].motion.segments;
         let back = self.settled(recording);
-        sample >= back && segments[sample - back..sample].iter().all(|s| s.to_m_s.abs() < speed_m_s)
+        sample >= back
+            && segments[sample - back..sample]
+                .iter()
+                .all(|s| s.to_m_s.abs() < speed_m_s)
     }
 
     fn valve_open(&self, recording: usize, sample: usize, valve: usize) -> bool {

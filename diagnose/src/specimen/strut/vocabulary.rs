@@ -94,7 +94,7 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
             add(
                 "accumulator_piston_friction",
                 &format!("accumulator-{i}"),
-                vec![pressure],
+                vec![pressure, Parameter::log("presliding_volume_m3", 3e-7, (1e-8, 2e-5))],
                 vec![],
                 None,
             );

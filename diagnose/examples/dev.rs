@@ -72,7 +72,10 @@ fn main() {
         if std::env::var("MAP").is_ok() {
             let res = p.residuals(&p.predict(&s.best.point).unwrap());
             for (r, series) in res.iter().enumerate() {
-                let f: Vec<String> = series.iter().map(|c| format!("{:7.2}", (c.iter().map(|v| v * v).sum::<f64>() / c.len() as f64).sqrt())).collect();
+                let f: Vec<String> = series
+                    .iter()
+                    .map(|c| format!("{:7.2}", (c.iter().map(|v| v * v).sum::<f64>() / c.len() as f64).sqrt()))
+                    .collect();
                 println!("    {:18} {}", c.specimen.recording_name(r), f.join(" "));
             }
         }

@@ -88,8 +88,8 @@ fn strongest(specimen: &dyn Specimen, place: String, share: f64, without: &[Seri
             .collect()
     };
     let (mut worst, mut recording, mut channel) = (f64::MIN, 0, 0);
-    for r in 0..without.len() {
-        for c in 0..without[r].len() {
+    for (r, channels) in without.iter().enumerate() {
+        for c in 0..channels.len() {
             let sum: f64 = gain(r, c).iter().sum();
             if sum > worst {
                 (worst, recording, channel) = (sum, r, c);

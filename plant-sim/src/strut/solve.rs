@@ -18,7 +18,6 @@ use super::gas::{Departure, Gas, GasState};
 use super::model::ATMOSPHERE_PA;
 use super::orifice::{unit_drop, unit_flow};
 
-
 /// One path as the solver sees it.
 #[derive(Debug, Clone)]
 pub(super) struct Path {

@@ -280,10 +280,10 @@ fn calibration(model: &StrutModel) -> (Vec<Calibration>, Vec<Parameter>) {
         "force_offset_N".into(),
         tolerance("force_offset_N"),
     );
-    for i in 2..6 {
+    for (i, column) in COLUMNS.iter().enumerate().skip(2) {
         add(
             Calibration::Offset(i),
-            format!("{} offset", COLUMNS[i]),
+            format!("{column} offset"),
             tolerance("pressure_offset_Pa"),
         );
     }
@@ -399,9 +399,10 @@ fn keep_displacement_faults(effects: &mut Effects) {
         &mut effects.sensor_skew,
         &mut effects.sensor_sign,
         &mut effects.sensor_offset,
-    ] {
-        if let Some(map) = fault {
-            map.retain(|column, _| column == COLUMNS[0]);
-        }
+    ]
+    .into_iter()
+    .flatten()
+    {
+        fault.retain(|column, _| column == COLUMNS[0]);
     }
 }

@@ -17,8 +17,6 @@ use super::valve::ValveMotion;
 
 /// `1 - 1/sqrt 2`.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
-/// Jitter that smoothing leaves of a displacement's stated noise.
-const JITTER_PER_NOISE: f64 = 0.5;
 /// Longest step while something moves fast, s.
 const FAST_STEP_S: f64 = 2.5e-3;
 /// Longest step while a valve moves, s: the openings are followed, not only their ends.
@@ -66,9 +64,6 @@ pub struct Strut {
     /// that no oil is gained or lost over an hour.
     told_m: f64,
     friction_n: f64,
-    /// Displacement that the seal has followed to, and how far the rod may be from there without moving it.
-    seal_at_m: f64,
-    jitter_m: f64,
     static_pa: f64,
     store: Store,
     guess: Guess,
@@ -139,8 +134,6 @@ impl Strut {
             speed_m_s: 0.0,
             told_m: displacement_m,
             friction_n: 0.0,
-            seal_at_m: displacement_m,
-            jitter_m: JITTER_PER_NOISE * model.noise.get("displacement_m").copied().unwrap_or(0.0),
             static_pa,
             store,
             guess: Guess {
@@ -266,11 +259,7 @@ impl Strut {
         }
         if self.seal.is_some() || self.side_load.is_some() {
             let force = p.area_m2 * last.pressure[0];
-            // The seal answers to what the rod has really moved: jitter of a measured displacement within its noise, left
-            // by any smoothing, would shake a held seal loose within seconds. Play of that width keeps it.
-            let moved = end.0 - self.seal_at_m;
-            let stroke = moved.signum() * (moved.abs() - self.jitter_m).max(0.0);
-            self.seal_at_m += stroke;
+            let stroke = end.0 - self.actuator_m;
             self.friction_n = advance_friction(
                 self.friction_n,
                 stroke,

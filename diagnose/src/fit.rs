@@ -155,7 +155,7 @@ pub(crate) fn sum(normals: &[Normal], prior: &DVector<f64>, z: &[f64]) -> (DMatr
     (h, g)
 }
 
-/// Damped Newton step; coordinates that would leave their range are frozen at its edge and the rest solved again.
+/// Damped Newton step within the ranges: the minimum of the damped quadratic in the box.
 pub(crate) fn bounded_step(
     h: &DMatrix<f64>,
     g: &DVector<f64>,
@@ -164,35 +164,51 @@ pub(crate) fn bounded_step(
     ranges: &[(f64, f64)],
 ) -> Option<DVector<f64>> {
     let p = z.len();
-    let mut fixed: Vec<Option<f64>> = vec![None; p];
-    for _ in 0..=p {
-        let free: Vec<usize> = (0..p).filter(|&k| fixed[k].is_none()).collect();
-        let mut a = DMatrix::zeros(free.len(), free.len());
-        let mut b = DVector::zeros(free.len());
-        for (i, &fi) in free.iter().enumerate() {
-            b[i] = g[fi] - (0..p).filter_map(|k| fixed[k].map(|d| h[(fi, k)] * d)).sum::<f64>();
-            for (j, &fj) in free.iter().enumerate() {
-                a[(i, j)] = h[(fi, fj)];
+    let mut a = h.clone();
+    (0..p).for_each(|k| a[(k, k)] += damping * (h[(k, k)] + 1e-3));
+    let limits: Vec<(f64, f64)> = (z.iter().zip(ranges))
+        .map(|(z, r)| ((r.0 - z).min(0.0), (r.1 - z).max(0.0)))
+        .collect();
+    let mut step = DVector::zeros(p);
+    let mut fixed = vec![false; p];
+    // Primal active set (Nocedal & Wright, Numerical Optimization, 16.5): every step is feasible and none is worse.
+    for _ in 0..4 * p + 10 {
+        let free: Vec<usize> = (0..p).filter(|&k| !fixed[k]).collect();
+        let part = a.select_rows(&free).select_columns(&free);
+        let gradient = g - &a * &step;
+        let right = DVector::from_iterator(free.len(), free.iter().map(|&k| gradient[k]));
+        let direction = part.cholesky()?.solve(&right);
+        let mut reach = 1.0;
+        let mut stop = None;
+        for (&k, &d) in free.iter().zip(direction.iter()) {
+            let room = if d > 0.0 {
+                limits[k].1 - step[k]
+            } else {
+                limits[k].0 - step[k]
+            };
+            if d != 0.0 && room / d < reach {
+                (reach, stop) = ((room / d).max(0.0), Some(k));
             }
-            a[(i, i)] += damping * (h[(fi, fi)] + 1e-3);
         }
-        let solution = a.cholesky()?.solve(&b);
-        let mut step = DVector::zeros(p);
-        (0..p).for_each(|k| step[k] = fixed[k].unwrap_or(0.0));
-        let mut clipped = false;
-        for (i, &k) in free.iter().enumerate() {
-            step[k] = solution[i];
-            let there = (z[k] + step[k]).clamp(ranges[k].0, ranges[k].1);
-            if there != z[k] + step[k] {
-                fixed[k] = Some(there - z[k]);
-                clipped = true;
-            }
+        for (&k, &d) in free.iter().zip(direction.iter()) {
+            step[k] = (step[k] + reach * d).clamp(limits[k].0, limits[k].1);
         }
-        if !clipped {
-            return Some(step);
+        if let Some(k) = stop {
+            fixed[k] = true;
+            continue;
+        }
+        let gradient = g - &a * &step;
+        // The coordinate at a limit that would gain most by coming back.
+        let pull = |k: usize| if step[k] <= limits[k].0 { gradient[k] } else { -gradient[k] } / a[(k, k)].sqrt();
+        let release = (0..p)
+            .filter(|&k| fixed[k] && limits[k].0 < limits[k].1)
+            .max_by(|&x, &y| pull(x).total_cmp(&pull(y)));
+        match release {
+            Some(k) if pull(k) > 1e-6 => fixed[k] = false,
+            _ => return Some(step),
         }
     }
-    None
+    Some(step)
 }
 
 impl Fit {

@@ -90,7 +90,7 @@ impl<'p, 'a> Screen<'p, 'a> {
         let mut best: Option<Way> = None;
         for start in std::iter::once(&own).chain(&description.starts) {
             let point = self.problem.with_effect(&self.fit.point, candidate, start);
-            let known = description.absent_at_start().then_some(self.truths.as_slice());
+            let known = description.absent_at(start).then_some(self.truths.as_slice());
             let way = self.at(point, known).and_then(|mut way| {
                 self.advance(&mut way, FIRST_STEPS)?;
                 Ok(way)

@@ -47,10 +47,13 @@ impl Candidate {
             || (self.instrument && other.instrument && self.place == other.place)
     }
 
-    /// True if the starting values leave the model as it is.
+    /// True if these values leave the model as it is: an amount that starts at zero is zero.
     #[must_use]
-    pub fn absent_at_start(&self) -> bool {
-        self.parameters.iter().any(|p| p.start == 0.0)
+    pub fn absent_at(&self, values: &[f64]) -> bool {
+        self.parameters
+            .iter()
+            .zip(values)
+            .any(|(p, v)| p.start == 0.0 && *v == 0.0)
     }
 
     /// Id and place in one word, unique.

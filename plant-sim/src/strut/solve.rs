@@ -242,7 +242,7 @@ impl Parameters {
             volume += oil * y * (1.0 + y * (0.5 + y / 6.0));
             slope += oil * self.inverse_bulk_modulus * (1.0 + y * (1.0 + 0.5 * y));
         }
-        if let Some(air) = &self.air {
+        if let Some(air) = self.air.as_ref().filter(|_| self.conserves_oil) {
             let (left, thinning) = bubbles(air, p1);
             volume -= self.oil_volume_m3 * left;
             slope += self.oil_volume_m3 * thinning;
@@ -264,6 +264,13 @@ impl Parameters {
             let oil = (self.oil_volume_m3 - self.area_m2 * displacement_m) * self.inverse_bulk_modulus;
             volume += oil * (p1 - base.p1);
             slope += oil;
+            // The recordings' equation counts air as it counts oil: both give way in the chamber as it is now.
+            if let Some(air) = &self.air {
+                let chamber = self.oil_volume_m3 - self.area_m2 * displacement_m;
+                let ((before, _), (left, thinning)) = (bubbles(air, base.p1), bubbles(air, p1));
+                volume += chamber * (before - left);
+                slope += chamber * thinning;
+            }
         }
         GivenWay {
             volume,

@@ -43,7 +43,7 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
             "entrained_air",
             "main-chamber",
             vec![Parameter::amount("volume_fraction", 1e-3, 0.3), exponent],
-            vec![],
+            vec![vec![5e-3, 1.2]],
             None,
         );
     }
@@ -95,7 +95,7 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
                 "accumulator_piston_friction",
                 &format!("accumulator-{i}"),
                 vec![pressure, Parameter::log("presliding_volume_m3", 3e-7, (1e-8, 2e-5))],
-                vec![],
+                vec![vec![1e5, 5e-7]],
                 None,
             );
         }

@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, specimen_name};
+use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, SpecimenName, specimen_name};
 use oleo_plant_sim::strut::StrutModel;
 use rayon::prelude::*;
 
 use crate::error::DiagnoseError;
-use crate::recording::{ColumnSpec, GapPolicy, Recording, read};
+use crate::recording::{ColumnSpec, GapPolicy, MIN_SAMPLES, Recording, read};
 use crate::specimen::Specimen;
+use crate::specimen::balance::balance_remarks;
 use crate::specimen::{cylinder, gas_spring, strut};
 
 /// A campaign, ready to be diagnosed.
@@ -25,6 +26,37 @@ pub struct Campaign {
 
 /// Name of the belief.
 const MODEL_FILE: &str = "model.toml";
+/// Kinds of specimen, as `specimen.kind` of a model file names them.
+const STRUT: &str = "two-stage hydropneumatic strut";
+const GAS_SPRING: &str = "gas spring";
+const CYLINDER: &str = "cylinder";
+
+/// What of a campaign is kept from the fit, to be predicted.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct KeptBack {
+    /// Part of every recording's samples that may be fitted, from its start, 0 to 1; all where absent.
+    pub fit_until: Option<f64>,
+    /// Names (file stems) of recordings that are not fitted at all.
+    pub recordings: Vec<String>,
+}
+
+impl KeptBack {
+    /// True if everything is fitted.
+    #[must_use]
+    pub fn is_nothing(&self) -> bool {
+        self.fit_until.is_none() && self.recordings.is_empty()
+    }
+
+    /// Number of samples of a recording that are fitted.
+    #[must_use]
+    pub fn fitted_samples(&self, name: &str, samples: usize) -> usize {
+        if self.recordings.iter().any(|r| r == name) {
+            return 0;
+        }
+        self.fit_until
+            .map_or(samples, |part| (part * samples as f64).round() as usize)
+    }
+}
 
 impl Campaign {
     /// Reads `model.toml` and every CSV file of a folder, in the order of their names.
@@ -32,58 +64,164 @@ impl Campaign {
     /// # Errors
     /// One line: which file, where in it, what to do.
     pub fn open(folder: &Path) -> Result<Self, DiagnoseError> {
-        let model_path = folder.join(MODEL_FILE);
-        if !folder.is_dir() {
+        let (model, recordings, notes) = read_folder(folder)?;
+        Self::of(folder, &model, recordings, notes)
+    }
+
+    /// As [`Self::open`], but with only what may be fitted; the second campaign holds every recording whole, with the
+    /// same samples, for judging predictions.
+    ///
+    /// # Errors
+    /// As [`Self::open`]; a name that no recording has; nothing or too little left to fit; nothing kept back.
+    pub fn open_in_part(folder: &Path, kept_back: &KeptBack) -> Result<(Self, Whole), DiagnoseError> {
+        let (model, whole, notes) = read_folder(folder)?;
+        let names = || whole.iter().map(|r| r.name.as_str()).collect::<Vec<_>>().join(", ");
+        if let Some(name) = kept_back
+            .recordings
+            .iter()
+            .find(|n| whole.iter().all(|r| r.name != **n))
+        {
+            let what = format!("holds no recording '{name}' to hold out; it holds: {}", names());
+            return Err(DiagnoseError::file(folder, what));
+        }
+        let mut fitted = Vec::new();
+        for recording in &whole {
+            let samples = kept_back.fitted_samples(&recording.name, recording.len());
+            if samples == 0 {
+                continue;
+            }
+            if samples < MIN_SAMPLES {
+                let what = format!(
+                    "recording {} would be fitted on {samples} samples, at least {MIN_SAMPLES} are needed; \
+                     fit a larger part or hold the recording out",
+                    recording.name
+                );
+                return Err(DiagnoseError::file(folder, what));
+            }
+            fitted.push(recording.first(samples));
+        }
+        if fitted.is_empty() {
             return Err(DiagnoseError::file(
                 folder,
-                "is not a folder; a campaign is a folder with model.toml and recordings",
+                format!("no recording is left to fit; hold out fewer of: {}", names()),
             ));
         }
-        let text = std::fs::read_to_string(&model_path).map_err(|e| {
-            DiagnoseError::file(&model_path, format!("{e}; a campaign needs the model that is believed"))
-        })?;
-        let source = model_path.display().to_string();
-        let head = specimen_name(&text, &source).map_err(DiagnoseError::Model)?;
-        let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
-            .map_err(|e| DiagnoseError::file(folder, e.to_string()))?
-            .filter_map(|entry| entry.ok().map(|e| e.path()))
-            .filter(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")))
-            .collect();
-        files.sort();
-        if files.is_empty() {
-            return Err(DiagnoseError::file(folder, "holds no recording (*.csv)"));
-        }
-        let (specimen, notes): (Box<dyn Specimen>, Vec<String>) = match head.kind.as_str() {
-            "two-stage hydropneumatic strut" => {
-                let model = StrutModel::from_toml(&text, &source).map_err(|e| DiagnoseError::Model(e.to_string()))?;
-                let (recordings, notes) = read_all(&files, &strut::columns(), GapPolicy::Cut)?;
-                let strut = strut::TwoStageStrut::new(model, recordings).map_err(DiagnoseError::Model)?;
-                (Box::new(strut), notes)
-            }
-            "gas spring" => {
-                let model = GasSpringModel::from_toml(&text, &source).map_err(DiagnoseError::Model)?;
-                let (recordings, notes) = read_all(&files, &gas_spring::columns(), GapPolicy::Cut)?;
-                (Box::new(gas_spring::GasSpring::new(model, recordings)), notes)
-            }
-            "cylinder" => {
-                let model = CylinderModel::from_toml(&text, &source).map_err(DiagnoseError::Model)?;
-                let (recordings, notes) = read_all(&files, &cylinder::columns(&model), GapPolicy::Keep)?;
-                (Box::new(cylinder::Cylinder::new(model, recordings)), notes)
-            }
-            other => {
-                return Err(DiagnoseError::Model(format!(
-                    "{source}, key specimen.kind: '{other}' is not known; \
-                     'two-stage hydropneumatic strut', 'gas spring' and 'cylinder' are"
-                )));
-            }
-        };
+        let campaign = Self::of(folder, &model, fitted, notes)?;
+        Ok((campaign, Whole { recordings: whole }))
+    }
+
+    fn of(
+        folder: &Path,
+        model: &ModelText,
+        recordings: Vec<Recording>,
+        mut notes: Vec<String>,
+    ) -> Result<Self, DiagnoseError> {
+        let (specimen, remarks) = model.specimen(recordings)?;
+        notes.extend(remarks);
         Ok(Self {
             folder: folder.to_path_buf(),
-            name: head.name,
+            name: model.head.name.clone(),
             specimen,
             notes,
         })
     }
+}
+
+/// Every recording of a campaign in full, beside the part that was fitted.
+pub struct Whole {
+    recordings: Vec<Recording>,
+}
+
+impl Whole {
+    /// The specimen with all recordings, believed to be as a model file says.
+    ///
+    /// # Errors
+    /// As [`Campaign::open`].
+    pub fn specimen(&self, model_toml: &str) -> Result<Box<dyn Specimen>, DiagnoseError> {
+        let model = ModelText::new(model_toml.to_owned(), "improved model".to_owned())?;
+        Ok(model.specimen(self.recordings.clone())?.0)
+    }
+}
+
+/// A model file, read as far as its kind.
+struct ModelText {
+    text: String,
+    source: String,
+    head: SpecimenName,
+}
+
+impl ModelText {
+    fn new(text: String, source: String) -> Result<Self, DiagnoseError> {
+        let head = specimen_name(&text, &source).map_err(DiagnoseError::Model)?;
+        Ok(Self { text, source, head })
+    }
+
+    /// The columns that recordings of this specimen must have.
+    fn columns(&self) -> Result<(Vec<ColumnSpec>, GapPolicy), DiagnoseError> {
+        match self.head.kind.as_str() {
+            STRUT => Ok((strut::columns(), GapPolicy::Cut)),
+            GAS_SPRING => Ok((gas_spring::columns(), GapPolicy::Cut)),
+            CYLINDER => Ok((cylinder::columns(&self.cylinder()?), GapPolicy::Keep)),
+            other => Err(DiagnoseError::Model(format!(
+                "{}, key specimen.kind: '{other}' is not known; '{STRUT}', '{GAS_SPRING}' and '{CYLINDER}' are",
+                self.source
+            ))),
+        }
+    }
+
+    fn cylinder(&self) -> Result<CylinderModel, DiagnoseError> {
+        CylinderModel::from_toml(&self.text, &self.source).map_err(DiagnoseError::Model)
+    }
+
+    /// Model and recordings put together, and what can be said of the recordings without any model fitted.
+    fn specimen(&self, recordings: Vec<Recording>) -> Result<(Box<dyn Specimen>, Vec<String>), DiagnoseError> {
+        match self.head.kind.as_str() {
+            GAS_SPRING => {
+                let model = GasSpringModel::from_toml(&self.text, &self.source).map_err(DiagnoseError::Model)?;
+                let remarks = gas_spring::corner_remarks(&model, &recordings);
+                Ok((Box::new(gas_spring::GasSpring::new(model, recordings)), remarks))
+            }
+            CYLINDER => {
+                let model = self.cylinder()?;
+                let remarks = balance_remarks(&model, &recordings);
+                Ok((Box::new(cylinder::Cylinder::new(model, recordings)), remarks))
+            }
+            _ => {
+                let model =
+                    StrutModel::from_toml(&self.text, &self.source).map_err(|e| DiagnoseError::Model(e.to_string()))?;
+                let strut = strut::TwoStageStrut::new(model, recordings).map_err(DiagnoseError::Model)?;
+                Ok((Box::new(strut), Vec::new()))
+            }
+        }
+    }
+}
+
+fn read_folder(folder: &Path) -> Result<(ModelText, Vec<Recording>, Vec<String>), DiagnoseError> {
+    let model_path = folder.join(MODEL_FILE);
+    if !folder.is_dir() {
+        return Err(DiagnoseError::file(
+            folder,
+            "is not a folder; a campaign is a folder with model.toml and recordings",
+        ));
+    }
+    let text = std::fs::read_to_string(&model_path)
+        .map_err(|e| DiagnoseError::file(&model_path, format!("{e}; a campaign needs the model that is believed")))?;
+    let model = ModelText::new(text, model_path.display().to_string())?;
+    let (columns, gaps) = model.columns()?;
+    let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
+        .map_err(|e| DiagnoseError::file(folder, e.to_string()))?
+        .filter_map(|entry| entry.ok().map(|e| e.path()))
+        .filter(|p| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")))
+        .collect();
+    files.sort();
+    if files.is_empty() {
+        return Err(DiagnoseError::file(
+            folder,
+            "holds no recording; put the recordings (*.csv) beside model.toml",
+        ));
+    }
+    let (recordings, notes) = read_all(&files, &columns, gaps)?;
+    Ok((model, recordings, notes))
 }
 
 /// A file that is too short is left out with a note as long as others remain; anything else wrong is an error.

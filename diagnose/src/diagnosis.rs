@@ -111,7 +111,7 @@ impl Diagnosis {
                 lag_one: lag_one(&improved, c),
             })
             .collect();
-        let (estimates, correlated) = estimates(problem, &selection.best);
+        let (estimates, correlated) = estimates(problem, &selection.best)?;
         let mut effects = effects(problem, &selection, &estimates);
         let seen = effects.iter().any(|e| e.id == "unlisted");
         // A strut's model is said to be complete but for what is missing: what is left then has no name.
@@ -226,9 +226,11 @@ fn lag_one(residuals: &[Series], channel: usize) -> f64 {
 }
 
 /// Values and intervals of all parameters, and which are strongly correlated.
-fn estimates(problem: &Problem<'_>, fit: &Fit) -> (Vec<Estimate>, Vec<(String, String, f64)>) {
+type Estimates = (Vec<Estimate>, Vec<(String, String, f64)>);
+
+fn estimates(problem: &Problem<'_>, fit: &Fit) -> Result<Estimates, DiagnoseError> {
     let parameters = problem.parameters(&fit.point.effects);
-    let deviations = fit.deviations();
+    let deviations = crate::interval::deviations(problem, fit)?;
     let estimates = (parameters.iter().zip(&fit.point.z).zip(deviations.iter()))
         .map(|((p, &z), &sd)| {
             let (low, high) = (p.value(z - 1.96 * sd), p.value(z + 1.96 * sd));
@@ -257,7 +259,7 @@ fn estimates(problem: &Problem<'_>, fit: &Fit) -> (Vec<Estimate>, Vec<(String, S
             }
         }
     }
-    (estimates, correlated)
+    Ok((estimates, correlated))
 }
 
 fn effects(problem: &Problem<'_>, selection: &Selection, estimates: &[Estimate]) -> Vec<Effect> {

@@ -20,6 +20,9 @@ pub fn separate(a: &Candidate, b: &Candidate) -> String {
         "a step of 50 mm within 0.2 s held for 30 s, valves open: heat relaxes over seconds, a late sensor does not"
     } else if is("real_gas", "gas_charge_error") {
         "slow sawtooth over the whole travel with valve 3 closed, up to 12 MPa: the real gas departs with pressure, the charge does not"
+    } else if a.place == "main-seal" && b.place == "main-seal" {
+        "strokes of full travel at a tenth and at ten times the speed, each at the lowest and the highest pressure: viscous \
+         friction follows the speed, a seal's does not, and what grows with pressure does so at every speed"
     } else if any("line_resistance") || any("damper_leakage") || any("damping_fade") {
         "sines of 25 mm at 0.05, 0.2 and 0.8 m/s, valves 1 and 2 closed, each for 60 s: leakage shows at low, resistance at high speed, fade over time"
     } else if any("valve_transition") || any("valve_delay") {

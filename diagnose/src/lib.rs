@@ -19,6 +19,7 @@ pub mod diagnosis;
 pub mod error;
 mod experiment;
 pub mod fit;
+pub mod interval;
 pub mod json;
 pub mod locate;
 pub mod page;
@@ -28,7 +29,9 @@ pub mod recording;
 pub mod screen;
 pub mod select;
 pub mod specimen;
+pub mod unseen;
 
-pub use campaign::Campaign;
+pub use campaign::{Campaign, KeptBack};
 pub use diagnosis::Diagnosis;
 pub use error::DiagnoseError;
+pub use unseen::Unseen;

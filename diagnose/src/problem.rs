@@ -101,10 +101,25 @@ impl<'a> Problem<'a> {
         }
     }
 
+    /// Another specimen, under the same wish to stop.
+    #[must_use]
+    pub fn on<'b>(&self, specimen: &'b dyn Specimen) -> Problem<'b>
+    where
+        'a: 'b,
+    {
+        Problem::new(specimen, self.stop)
+    }
+
     /// The same problem without the blocks of a fold.
     #[must_use]
     pub fn without_fold(&self, fold: usize) -> Self {
-        let blocks = self.blocks.iter().filter(|b| b.fold != fold).cloned().collect();
+        self.keeping(|b| b.fold != fold)
+    }
+
+    /// The same problem with some of its blocks.
+    #[must_use]
+    pub fn keeping(&self, wanted: impl Fn(&Block) -> bool) -> Self {
+        let blocks = self.blocks.iter().filter(|b| wanted(b)).cloned().collect();
         Self {
             specimen: self.specimen,
             blocks,

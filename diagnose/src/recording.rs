@@ -70,6 +70,18 @@ impl Recording {
         self.time_s.is_empty()
     }
 
+    /// The first samples of it.
+    #[must_use]
+    pub fn first(&self, samples: usize) -> Self {
+        let part = |series: &Vec<f64>| series[..samples.min(series.len())].to_vec();
+        Self {
+            name: self.name.clone(),
+            time_s: part(&self.time_s),
+            columns: self.columns.iter().map(part).collect(),
+            notes: self.notes.clone(),
+        }
+    }
+
     /// Median sampling interval, s.
     #[must_use]
     pub fn interval_s(&self) -> f64 {

@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use oleo_diagnose::problem::Problem;
-use oleo_diagnose::{Campaign, Diagnosis, json, page};
-use oleo_report::{OutputDirectory, Progress};
+use oleo_diagnose::{Campaign, Diagnosis, KeptBack, Unseen, json, page};
+use oleo_report::{Cell, Column, OutputDirectory, Progress, Table};
 
 use crate::failure::Failure;
 
@@ -16,7 +16,11 @@ use crate::failure::Failure;
 #[command(after_help = "Example:\n  oleo diagnose campaign --out found\n\n\
     A campaign is a folder with model.toml (what is believed) and recordings (*.csv). Written to DIR: report.json,\n\
     report.html (opens offline) and model.toml, the improved model, which oleo predict, rig and hil run as it is.\n\
-    Exit status 0 whatever the verdict.")]
+    Exit status 0 whatever the verdict.\n\n\
+    To see whether the improved model predicts what it was not fitted to, keep something back:\n  \
+    oleo diagnose gas-spring --fit-until 0.5 --out found       fits the first half of every recording\n  \
+    oleo diagnose cylinder --hold-out 5bar --out found         fits all recordings but 5bar.csv\n\
+    The noise ratios of every model on both parts are printed and are in report.json under kept_back.")]
 pub struct Args {
     /// Folder with model.toml and the recordings
     #[arg(value_name = "CAMPAIGN")]
@@ -24,6 +28,19 @@ pub struct Args {
     /// Folder to write
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Fit only this first part of every recording (0.05 to 0.95), predict the rest
+    #[arg(long, value_name = "PART", value_parser = part)]
+    fit_until: Option<f64>,
+    /// Recording (file name without .csv) to predict instead of fitting; may be repeated
+    #[arg(long, value_name = "NAME")]
+    hold_out: Vec<String>,
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(part) if (0.05..=0.95).contains(&part) => Ok(part),
+        _ => Err("give a part of the recording from 0.05 to 0.95, such as 0.5".into()),
+    }
 }
 
 /// Steps of the progress bar.
@@ -32,7 +49,16 @@ const STEPS: u64 = 100;
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let begun = Instant::now();
-    let campaign = Campaign::open(&args.campaign)?;
+    let kept_back = KeptBack {
+        fit_until: args.fit_until,
+        recordings: args.hold_out.clone(),
+    };
+    let (campaign, whole) = if kept_back.is_nothing() {
+        (Campaign::open(&args.campaign)?, None)
+    } else {
+        let (campaign, whole) = Campaign::open_in_part(&args.campaign, &kept_back)?;
+        (campaign, Some(whole))
+    };
     // Staged before the work: Ctrl-C from here on removes the folder and ends with nothing half-written.
     let mut out = OutputDirectory::stage(&args.out)?;
     let stop = AtomicBool::new(false);
@@ -41,11 +67,23 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let diagnosis = Diagnosis::of(&campaign, &problem, &|_, part| {
         progress.set((part * STEPS as f64) as u64)
     })?;
+    let unseen = (whole.as_ref())
+        .map(|whole| Unseen::of(&problem, &diagnosis, whole, &kept_back))
+        .transpose()?;
     drop(progress);
     let runtime_s = begun.elapsed().as_secs_f64();
-    let command = format!("oleo diagnose {} --out {}", args.campaign.display(), args.out.display());
-    out.json("report.json", &json::report(&campaign, &diagnosis, runtime_s))?;
-    out.page(&page::page(&campaign, &diagnosis, &command, runtime_s))?;
+    let mut report = json::report(&campaign, &diagnosis, runtime_s);
+    let mut page = page::page(&campaign, &diagnosis, &args.command(), runtime_s);
+    if let Some(unseen) = &unseen {
+        report["kept_back"] = unseen.json(&kept_back);
+        page.section("Prediction of what was not fitted");
+        page.text(
+            "Every model was fitted on the same part and simulated freely over all of it; 1 is perfect, and lower is better.",
+        )
+        .table(prediction_table(unseen));
+    }
+    out.json("report.json", &report)?;
+    out.page(&page)?;
     out.write("model.toml", &diagnosis.model_toml)?;
     out.commit()?;
     let mut text = format!(
@@ -58,9 +96,45 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     if !diagnosis.effects.is_empty() {
         text += &page::effects_table(&diagnosis).to_string();
     }
+    if let Some(unseen) = &unseen {
+        text += &format!("\n{}", prediction_table(unseen));
+    }
     if let Some(next) = &diagnosis.next_experiment {
         text += &format!("\n{next}\n");
     }
     let _ = std::io::Write::write_all(&mut std::io::stdout(), text.as_bytes());
     Ok(ExitCode::SUCCESS)
+}
+
+impl Args {
+    /// The command line again, for the page.
+    fn command(&self) -> String {
+        let mut line = format!("oleo diagnose {}", self.campaign.display());
+        if let Some(part) = self.fit_until {
+            line += &format!(" --fit-until {part}");
+        }
+        for name in &self.hold_out {
+            line += &format!(" --hold-out {name}");
+        }
+        format!("{line} --out {}", self.out.display())
+    }
+}
+
+/// Noise ratios of every model on what was fitted and on what was kept back.
+fn prediction_table(unseen: &Unseen) -> Table {
+    let mut columns = vec![Column::text("Model")];
+    for channel in &unseen.channels {
+        columns.push(Column::number(&format!("{channel}, fitted")));
+        columns.push(Column::number(&format!("{channel}, kept back")));
+    }
+    let mut table = Table::new(columns);
+    for model in &unseen.models {
+        let mut row = vec![Cell::from(model.model.as_str())];
+        for (fitted, kept_back) in model.fitted.iter().zip(&model.kept_back) {
+            row.push(Cell::from(format!("{fitted:.2}")));
+            row.push(Cell::from(format!("{kept_back:.2}")));
+        }
+        table.row(row);
+    }
+    table
 }

@@ -1,7 +1,7 @@
 //! A cylinder: force against pressures on areas. What may be missing is friction (constant, or growing with pressure),
 //! mass, viscous drag, and the faults of the instruments, of which a late force is the great impostor of viscous drag.
 
-use oleo_plant_sim::specimen::{CylinderModel, CylinderSeal, SmoothedMotion, smooth_motion};
+use oleo_plant_sim::specimen::{CylinderEffects, CylinderModel, CylinderSeal, SmoothedMotion, smooth_motion};
 use oleo_plant_sim::strut::{SensorEffect, SideLoadFriction};
 
 use super::{Candidate, Channel, Hypothesis, Series, Specimen, instrument};
@@ -12,6 +12,8 @@ use crate::recording::{ColumnKind, ColumnSpec, Recording};
 const DEFAULT_NOISE_PART: f64 = 1e-3;
 /// Half window of the motion's smoothing, in samples.
 const SMOOTHING_SAMPLES: f64 = 5.0;
+/// Key of the presliding stiffness.
+const PRESLIDING: &str = "presliding_stiffness_N_m";
 
 /// A cylinder with its recordings.
 pub struct Cylinder {
@@ -59,17 +61,16 @@ impl Cylinder {
                 })
                 .fold(0.0, f64::max)
         };
-        let mut calibration = vec![Parameter::calibration(
-            "force_offset_N",
-            tolerance("force_offset_N", 0.0).max(1e-9),
-        )];
+        // An offset of a pressure is one of the force: in the balance only their sum shows.
+        let offsets = (model.chamber.iter())
+            .map(|c| c.area_m2 * tolerance("pressure_offset_Pa", 0.0))
+            .fold(tolerance("force_offset_N", 0.0), libm::hypot);
+        let mut calibration = vec![Parameter::calibration("force_offset_N", offsets.max(1e-9))];
         for chamber in &model.chamber {
             calibration.push(Parameter::calibration(
                 format!("area of {}", chamber.column),
                 tolerance("area", 0.01),
             ));
-            let offset = tolerance("pressure_offset_Pa", 0.0).max(1e-6);
-            calibration.push(Parameter::calibration(format!("offset of {}", chamber.column), offset));
         }
         let motions: Vec<SmoothedMotion> = recordings
             .iter()
@@ -119,23 +120,24 @@ impl Cylinder {
             group: "",
             untestable: untestable.clone(),
         };
-        let stiffness = || {
-            Parameter::log(
-                "presliding_stiffness_N_m",
-                30.0 * force / spread(0).max(1e-9),
-                (force / spread(0).max(1e-9), 1e9),
-            )
-        };
+        // One seal, one presliding stiffness, whichever part of its friction is there; without friction it does nothing.
+        calibration.push(Parameter::log(
+            PRESLIDING,
+            30.0 * force / spread(0).max(1e-9),
+            (force / spread(0).max(1e-9), 1e9),
+        ));
         let mut candidates = Vec::new();
         let e = &model.effects;
         if e.seal_friction.is_none() {
             candidates.push(free(
                 "seal_friction",
                 "",
-                vec![
-                    Parameter::linear("coulomb_force_N", 0.02 * force, 0.01 * force, (0.0, force)),
-                    stiffness(),
-                ],
+                vec![Parameter::linear(
+                    "coulomb_force_N",
+                    0.02 * force,
+                    0.01 * force,
+                    (0.0, force),
+                )],
                 &still,
             ));
         }
@@ -145,10 +147,12 @@ impl Cylinder {
             candidates.push(free(
                 "side_load_friction",
                 "",
-                vec![
-                    Parameter::linear("coefficient", 0.02 * force / level, 0.01 * force / level, (0.0, 1.0)),
-                    stiffness(),
-                ],
+                vec![Parameter::linear(
+                    "coefficient",
+                    0.02 * force / level,
+                    0.01 * force / level,
+                    (0.0, 1.0),
+                )],
                 &untestable,
             ));
         }
@@ -202,10 +206,10 @@ impl Cylinder {
         let mut model = self.model.clone();
         let offset = model.effects.sensor_offset.get_or_insert_default();
         *offset.entry("force_N".into()).or_default() += hypothesis.calibration[0];
-        for (chamber, c) in model.chamber.iter_mut().zip(hypothesis.calibration[1..].chunks(2)) {
-            chamber.area_m2 *= 1.0 + c[0];
-            *offset.entry(chamber.column.clone()).or_default() += c[1];
+        for (chamber, error) in model.chamber.iter_mut().zip(&hypothesis.calibration[1..]) {
+            chamber.area_m2 *= 1.0 + error;
         }
+        let presliding = hypothesis.calibration.last().copied().unwrap_or(f64::INFINITY);
         for (index, values) in &hypothesis.effects {
             let candidate = &self.candidates[*index];
             let e = &mut model.effects;
@@ -214,20 +218,10 @@ impl Cylinder {
                 effect.get_or_insert_default().insert(column, values[0]);
             };
             match (candidate.id, candidate.label.as_str()) {
-                ("seal_friction", _) => {
-                    e.seal_friction = Some(CylinderSeal {
-                        coulomb_force_n: values[0],
-                        presliding_stiffness_n_m: values[1],
-                    });
-                }
+                ("seal_friction", _) => seal(e, presliding).coulomb_force_n = values[0],
                 ("side_load_friction", _) => {
                     e.side_load_friction = Some(SideLoadFriction { coefficient: values[0] });
-                    // One presliding stiffness for the whole seal: the fitted one of whichever part came last.
-                    let coulomb_force_n = e.seal_friction.as_ref().map_or(0.0, |s| s.coulomb_force_n);
-                    e.seal_friction = Some(CylinderSeal {
-                        coulomb_force_n,
-                        presliding_stiffness_n_m: values[1],
-                    });
+                    seal(e, presliding);
                 }
                 ("unlisted", "moving mass") => e.moving_mass_kg = Some(values[0]),
                 ("unlisted", "viscous friction") => e.viscous_friction_n_s_m = Some(values[0]),
@@ -240,6 +234,14 @@ impl Cylinder {
         }
         model
     }
+}
+
+/// The seal of a model, made with no Coulomb friction where there is none yet.
+fn seal(effects: &mut CylinderEffects, presliding_stiffness_n_m: f64) -> &mut CylinderSeal {
+    effects.seal_friction.get_or_insert(CylinderSeal {
+        coulomb_force_n: 0.0,
+        presliding_stiffness_n_m,
+    })
 }
 
 fn pressing(model: &CylinderModel, recording: &Recording) -> Vec<f64> {

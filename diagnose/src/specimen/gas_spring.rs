@@ -3,6 +3,7 @@
 
 use oleo_plant_sim::specimen::{GasHeatTransferTerm, GasSpringModel};
 
+use super::corner::{Clock, corners};
 use super::{Candidate, Channel, Hypothesis, Series, Specimen, instrument};
 use crate::parameter::Parameter;
 use crate::recording::{ColumnKind, ColumnSpec, Recording};
@@ -10,6 +11,8 @@ use crate::recording::{ColumnKind, ColumnSpec, Recording};
 /// Noise assumed where the model file states none: a tenth of a psi, the resolution of common gauges.
 const DEFAULT_NOISE_PA: f64 = 690.0;
 
+/// Part of the corners that decides.
+const MOSTLY: f64 = 0.8;
 /// A piston that has moved this far ...
 const MOVED_M: f64 = 0.005;
 /// ... within this time of the first sample was not at rest.
@@ -39,6 +42,38 @@ pub fn columns() -> Vec<ColumnSpec> {
             kind: ColumnKind::Output,
         },
     ]
+}
+
+/// Corners of the motion in one recording: logarithm of the volume against logarithm of the pressure, whose slope there
+/// is the exponent of the fast process, about that of the adiabat whatever the gas does afterwards.
+fn clock(model: &GasSpringModel, recording: &Recording, noise_pa: f64) -> Option<Clock> {
+    let volume = |x: &f64| libm::log((model.chamber.volume_at_zero_m3 - model.chamber.area_m2 * x).max(1e-9));
+    let cause: Vec<f64> = recording.columns[0].iter().map(volume).collect();
+    let effect: Vec<f64> = recording.columns[1].iter().map(|p| libm::log(p.max(1.0))).collect();
+    let mean = recording.columns[1].iter().sum::<f64>() / recording.len() as f64;
+    Clock::of(&corners(&recording.time_s, &cause, &effect, noise_pa / mean.max(1.0)))
+}
+
+/// What the corners of the motion say about the clocks, one line a recording.
+#[must_use]
+pub fn corner_remarks(model: &GasSpringModel, recordings: &[Recording]) -> Vec<String> {
+    let noise = model.noise.get("p_Pa").copied().unwrap_or(DEFAULT_NOISE_PA);
+    (recordings.iter())
+        .filter_map(|r| clock(model, r, noise).map(|c| (r, c)))
+        .map(|(r, c)| {
+            let [low, middle, high] = c.delay_s;
+            let verdict = if c.is_late(r.interval_s()) {
+                "no gas does that: the clocks of the two columns differ"
+            } else {
+                "one clock, as far as the corners tell"
+            };
+            format!(
+                "{}: at {} corners of the motion p_Pa follows displacement_m after {middle:.2} s ({low:.2} to {high:.2} s), \
+                 with an exponent of {:.2} to {:.2} there; {verdict}",
+                r.name, c.corners, -c.slope[1], -c.slope[0]
+            )
+        })
+        .collect()
 }
 
 impl GasSpring {
@@ -131,11 +166,28 @@ impl GasSpring {
                 vec![],
             ));
         }
+        // A time skew is the great impostor of heat transfer over a whole stroke, but not at its corners: where those
+        // are sharp enough to read the delay off, a skew may only be what they show; and what is late but sharp there does
+        // not lag.
+        let clocks: Vec<Clock> = recordings.iter().filter_map(|r| clock(&model, r, noise)).collect();
+        let late_but_sharp = !clocks.is_empty() && clocks.iter().all(|c| c.is_late(interval) && c.sharp > MOSTLY);
+        let delays = (clocks.iter())
+            .map(|c| c.delay_s)
+            .reduce(|a, b| [a[0].min(b[0]), 0.5 * (a[1] + b[1]), a[2].max(b[2])]);
         candidates.extend(
             instrument::faults("p_Pa", spread(1), duration, interval)
                 .into_iter()
                 .map(|mut c| {
                     c.untestable.clone_from(&still);
+                    if c.id == "sensor_lag" && late_but_sharp {
+                        c.parameters =
+                            vec![Parameter::amount("time_constant_s", 0.5 * interval, interval).on_instrument()];
+                    }
+                    if let ("sensor_skew", Some([low, middle, high])) = (c.id, delays) {
+                        let range = (low - 2.0 * interval, high + 2.0 * interval);
+                        let start = if middle.abs() > interval { middle } else { 0.0 };
+                        c.parameters = vec![Parameter::linear("delay_s", start, interval, range).on_instrument()];
+                    }
                     c
                 }),
         );

@@ -1,6 +1,8 @@
 //! What the machinery needs to know of a specimen: what is measured, what may be off, what may be missing, and what a
 //! model with all that predicts. Struts, gas springs and cylinders differ only here.
 
+pub mod balance;
+pub mod corner;
 pub mod cylinder;
 pub mod gas_spring;
 pub mod instrument;

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# the recordings beside the checkout, where there are any: tests/recordings.rs in release
+# the recordings beside the checkout, where there are any: tests/recordings.rs and tests/diagnose_real.rs in release
 . tests/harness/lib.sh
 readonly folder=../shared/recordings
 
@@ -13,4 +13,5 @@ if [ -f tests/recordings.rs ]; then
 else
     skip "recordings" "no tests/recordings.rs yet"
 fi
+libtest "real hardware" cargo test --locked --release --test diagnose_real -- --show-output
 exit 0

@@ -1,0 +1,45 @@
+//! How sure a fitted number is where the model is not the whole truth.
+//!
+//! Residuals that stay after a good fit are coloured and differ from move to move, so that one part of the recordings
+//! wants another value than the next, by more than the scatter within either admits. Leaving each part out in turn and
+//! fitting again (jackknife: Quenouille, Biometrika 43, 1956; Efron & Stein, Ann. Statist. 9(3), 1981) counts that in. Two recordings are no
+//! sample: made to differ in one condition, neither may determine alone what both do; then their blocks are left out instead.
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use crate::error::DiagnoseError;
+use crate::fit::{Effort, Fit, fit};
+use crate::problem::{Block, Problem};
+
+/// Standard deviation of every coordinate: the larger of the sandwich's from blocks and, where fits cost milliseconds,
+/// the jackknife's over three recordings or more, over blocks of two, over the halves of an only one.
+///
+/// # Errors
+/// The wish to stop.
+pub fn deviations(problem: &Problem<'_>, best: &Fit) -> Result<DVector<f64>, DiagnoseError> {
+    let within = best.deviations();
+    if !problem.specimen.is_cheap() {
+        return Ok(within);
+    }
+    let recordings = problem.specimen.recordings();
+    let (groups, part): (usize, fn(&Block) -> usize) = if recordings > 2 {
+        (recordings, |b| b.recording)
+    } else {
+        (problem.folds, |b| b.fold)
+    };
+    let left_out: Vec<DVector<f64>> = (0..groups)
+        .into_par_iter()
+        .map(|g| {
+            let rest = problem.keeping(|b| part(b) != g);
+            let point = fit(&rest, best.point.clone(), Effort::FULL)?.point;
+            Ok(DVector::from_vec(point.z))
+        })
+        .collect::<Result<_, DiagnoseError>>()?;
+    let mean = left_out.iter().sum::<DVector<f64>>() / groups as f64;
+    let weight = (groups as f64 - 1.0) / groups as f64;
+    let squares = (left_out.iter()).fold(DVector::zeros(mean.len()), |sum: DVector<f64>, z| {
+        sum + (z - &mean).map(|d| weight * d * d)
+    });
+    Ok(within.zip_map(&squares, |a, b| a.max(b.sqrt())))
+}

@@ -6,10 +6,11 @@ use rayon::prelude::*;
 use crate::campaign::Campaign;
 use crate::error::DiagnoseError;
 use crate::fit::Fit;
-use crate::locate::{Location, Relation, locate, relations};
+use crate::locate::{Location, Reach, Relation, locate, reaches, relations};
 use crate::problem::{Point, Problem};
 use crate::select::{Chosen, Report, Selection, select};
 use crate::specimen::Series;
+use crate::whiteness::{Whiteness, whiteness};
 
 /// Noise ratios of one channel.
 #[derive(Debug, Clone)]
@@ -74,6 +75,8 @@ pub struct Diagnosis {
     pub locations: Vec<Location>,
     /// Relations between measured neighbours, tested without simulation.
     pub relations: Vec<Relation>,
+    /// What changing one relation of the model alone explains.
+    pub reaches: Vec<Reach>,
     /// Per channel.
     pub channels: Vec<ChannelFigures>,
     /// Calibration: key, deviation, interval, in units of the tolerance's standard deviation.
@@ -82,8 +85,14 @@ pub struct Diagnosis {
     pub correlated: Vec<(String, String, f64)>,
     /// Residuals of the calibrated and the improved model, in noise units.
     pub residuals: (Vec<Series>, Vec<Series>),
+    /// Held-out residuals of the recalibrated and of the improved model.
+    pub held_out: (Vec<Series>, Vec<Series>),
+    /// Whether the held-out residuals of the improved model are noise, per channel.
+    pub whiteness: Vec<Whiteness>,
     /// Recordings simulated.
     pub simulated: usize,
+    /// The model file as given, in the form of the improved one.
+    pub given_toml: String,
     /// The improved model file.
     pub model_toml: String,
 }
@@ -133,13 +142,20 @@ impl Diagnosis {
         for chosen in selection.chosen.iter().filter(|c| c.ambiguous) {
             if let Some((rival, ..)) = chosen.rival {
                 let pair = [all[chosen.candidate].id.to_owned(), all[rival].id.to_owned()];
-                next.push(crate::experiment::separate(&all[chosen.candidate], &all[rival]));
+                next.push(crate::experiment::separate(
+                    problem.specimen.kind(),
+                    &all[chosen.candidate],
+                    &all[rival],
+                ));
                 if pair[0] != pair[1] && !ambiguous.contains(&pair) {
                     ambiguous.push(pair);
                 }
             }
         }
         let locations = locate(problem, &selection, &calibrated, &improved)?;
+        if let Some(left) = locations.iter().find(|l| l.candidate.is_none()) {
+            next.push(crate::experiment::isolate(problem.specimen, left));
+        }
         let calibration_count = problem.specimen.calibration().len();
         let calibration = (estimates.iter().take(calibration_count).cloned())
             .zip(selection.best.point.z.iter().copied())
@@ -149,9 +165,16 @@ impl Diagnosis {
             .specimen
             .model_toml(&hypothesis)
             .map_err(DiagnoseError::Output)?;
+        let given_toml = problem
+            .specimen
+            .model_toml(&problem.hypothesis(&problem.nominal()))
+            .map_err(DiagnoseError::Output)?;
         let _ = campaign;
         Ok(Self {
             relations: relations(problem.specimen),
+            reaches: reaches(problem.specimen, &selection),
+            whiteness: whiteness(problem.specimen, &held_out_after),
+            held_out: (held_out_before, held_out_after),
             effects,
             ambiguous,
             next_experiment: (!next.is_empty()).then(|| next.join(" ")),
@@ -161,6 +184,7 @@ impl Diagnosis {
             correlated,
             residuals: (calibrated, improved),
             simulated: problem.simulated(),
+            given_toml,
             model_toml,
             selection,
         })

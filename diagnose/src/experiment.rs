@@ -1,36 +1,117 @@
-//! What to record when two effects cannot be told apart: the excitation in which they differ most.
+//! What to record when two effects cannot be told apart, or when something is left that nothing explains: the excitation
+//! in which they differ most, with amplitude, speed and valve state.
 
-use crate::specimen::Candidate;
+use crate::locate::Location;
+use crate::specimen::{Candidate, Specimen};
 
 /// One sentence: amplitude, speed, valve state.
 #[must_use]
-pub fn separate(a: &Candidate, b: &Candidate) -> String {
+pub fn separate(kind: &str, a: &Candidate, b: &Candidate) -> String {
+    let how = if kind.contains("strut") {
+        strut(a, b)
+    } else {
+        other(a, b)
+    };
+    format!("To separate {} from {}: {how}.", a.name(), b.name())
+}
+
+fn strut(a: &Candidate, b: &Candidate) -> &'static str {
     let is = |x: &str, y: &str| (a.id == x && b.id == y) || (a.id == y && b.id == x);
     let any = |x: &str| a.id == x || b.id == x;
-    let how = if is("oil_compressibility", "mount_compliance") {
-        "sine of 5 mm at 0.5 m/s with all valves closed, once at the static position and once held at 60 mm of jounce: \
-         the mount stays as stiff, the oil column shortens"
+    if is("oil_compressibility", "mount_compliance") {
+        "sines of 5 mm at 0.5 m/s with all valves closed, once about the static position and once about 60 mm of jounce: the mount \
+         stays as stiff, the oil column shortens"
     } else if is("oil_compressibility", "entrained_air") {
-        "slow sawtooth from -80 mm to 60 mm, valve 3 closed: air shows below 1 MPa only"
+        "a sawtooth from -80 mm to 60 mm at 5 mm/s, valve 3 closed, valves 1 and 2 open: air shows below 1 MPa only"
     } else if is("seal_friction", "side_load_friction") {
-        "the same slow triangle of 10 mm at 5 mm/s about -60, 0 and 60 mm: side-load friction follows the force, the seal's does not"
+        "the same triangle of 10 mm at 5 mm/s about -60, 0 and 60 mm, all valves open: side-load friction follows the force, the \
+         seal's does not"
     } else if is("seal_friction", "accumulator_piston_friction") {
-        "triangle of 10 mm at 5 mm/s with p1 and p2 recorded: the seal's hysteresis is in the force only, the piston's between p1 and p2"
-    } else if is("gas_heat_transfer", "sensor_skew") {
-        "a step of 50 mm within 0.2 s held for 30 s, valves open: heat relaxes over seconds, a late sensor does not"
+        "a triangle of 10 mm at 5 mm/s, all valves open, force, p1 and p2 recorded: the seal's hysteresis is in the force only, the \
+         piston's in p1 and p2 too"
+    } else if any("gas_heat_transfer") {
+        "steps of 50 mm at 0.3 m/s held for 30 s, valves 1 and 2 open, once with valve 3 open and once closed: heat relaxes over \
+         seconds, friction and a late instrument do not, a leak goes on until the pressures are equal"
     } else if is("real_gas", "gas_charge_error") {
-        "slow sawtooth over the whole travel with valve 3 closed, up to 12 MPa: the real gas departs with pressure, the charge does not"
+        "a sawtooth over the whole travel at 5 mm/s up to 12 MPa, valve 3 closed, valve 1 open: the real gas departs with pressure, \
+         the charge does not"
+    } else if any("valve_transition") || any("valve_delay") {
+        "steps of each valve at pressure differences of 0.2, 2 and 6 MPa (30 mm at 0.02, 0.1 and 0.3 m/s before the edge), sampled at \
+         1 kHz or faster"
+    } else if any("line_resistance") || any("damper_leakage") || any("damping_fade") {
+        "sines of 25 mm at 0.05, 0.2 and 0.8 m/s, valves 1 and 2 closed, valve 3 open, each for 60 s: leakage shows at low, resistance \
+         at high speed, fade over time"
+    } else if any("sensor_lag") || any("sensor_skew") || any("sensor_gain") {
+        "both columns from one calibrated reference: a ramp of 50 mm at 0.5 m/s with all valves open for the time, three held levels \
+         20 mm apart for the gain"
+    } else {
+        "triangles of 20 and 80 mm, each at 5 mm/s and at 0.5 m/s, in all four states of valves 1 and 3, valve 2 open"
+    }
+}
+
+fn other(a: &Candidate, b: &Candidate) -> &'static str {
+    if a.instrument || b.instrument {
+        "the same stroke at a tenth and at twice the speed (no valves): what is late by a time grows with speed, what is physics need not"
     } else if a.place == "main-seal" && b.place == "main-seal" {
         "strokes of full travel at a tenth and at ten times the speed, each at the lowest and the highest pressure: viscous \
          friction follows the speed, a seal's does not, and what grows with pressure does so at every speed"
-    } else if any("line_resistance") || any("damper_leakage") || any("damping_fade") {
-        "sines of 25 mm at 0.05, 0.2 and 0.8 m/s, valves 1 and 2 closed, each for 60 s: leakage shows at low, resistance at high speed, fade over time"
-    } else if any("valve_transition") || any("valve_delay") {
-        "valve steps at pressure differences of 0.2, 2 and 6 MPa, sampled at 1 kHz or faster"
-    } else if any("sensor_lag") || any("sensor_skew") || any("sensor_gain") {
-        "the two columns on one calibrated reference: a ramp of 0.5 m/s for the time, three held levels for the gain"
     } else {
-        "slow (5 mm/s) and fast (0.5 m/s) triangles of 20 and 80 mm in all four states of valves 1 and 3"
-    };
-    format!("To separate {} from {}: {how}.", a.name(), b.name())
+        "steps of a third of the volume at the fastest speed, held until the pressure rests, and the same stroke over 10 minutes"
+    }
+}
+
+/// What to record about a misfit that nothing explains: its own condition, one thing changed at a time.
+#[must_use]
+pub fn isolate(specimen: &dyn Specimen, left: &Location) -> String {
+    let r = left.recording;
+    let place = format!(
+        "What is left unexplained is largest in {} of {}, {:.2} to {:.2} s ({}).",
+        specimen.channels()[left.channel].name,
+        specimen.recording_name(r),
+        left.t_s[0],
+        left.t_s[1],
+        left.condition.text
+    );
+    if left.condition.decays {
+        return format!(
+            "{place} Record the step before it alone, held ten times as long ({:.0} s), in both directions, at once and half the \
+             amplitude and at once and a tenth of the speed{}.",
+            10.0 * (left.t_s[1] - left.t_s[0]),
+            valves(specimen, r, left.t_s).map_or(String::new(), |v| format!(", {v}"))
+        );
+    }
+    let time = specimen.time_s(r);
+    let within: Vec<usize> = (0..time.len())
+        .filter(|&k| time[k] >= left.t_s[0] && time[k] <= left.t_s[1])
+        .collect();
+    let states = specimen.states(r);
+    let series = |name: &str| states.iter().find(|(n, _)| *n == name).map(|(_, v)| v);
+    let mut how = Vec::new();
+    if let Some(x) = series("displacement, m") {
+        let (low, high) = within
+            .iter()
+            .fold((f64::MAX, f64::MIN), |(a, b), &k| (a.min(x[k]), b.max(x[k])));
+        how.push(format!("from {:.0} to {:.0} mm", 1e3 * low, 1e3 * high));
+    }
+    if let Some(v) = series("speed, m/s") {
+        let fastest = within.iter().fold(0.0_f64, |m, &k| m.max(v[k].abs()));
+        let speeds = [0.3, 1.0, 3.0].map(|f| oleo_report::significant(f * fastest, 2));
+        how.push(format!("at {} m/s in turn", speeds.join(", ")));
+    }
+    how.push(valves(specimen, r, left.t_s).unwrap_or_else(|| "everything else as it was".into()));
+    format!("{place} Record that stretch alone: strokes {}, each twice.", how.join(", "))
+}
+
+/// Valves as they are in the middle of a stretch, and the other way round.
+fn valves(specimen: &dyn Specimen, recording: usize, t_s: [f64; 2]) -> Option<String> {
+    let time = specimen.time_s(recording);
+    let middle = time.partition_point(|t| *t < 0.5 * (t_s[0] + t_s[1])).min(time.len() - 1);
+    let valves: Vec<String> = (0..3)
+        .filter_map(|v| {
+            let open = specimen.valve_open(recording, middle, v);
+            let shut = specimen.valve_shut(recording, middle, v);
+            (open || shut).then(|| format!("valve {} {}", v + 1, if open { "open" } else { "closed" }))
+        })
+        .collect();
+    (!valves.is_empty()).then(|| format!("with {}, then each valve the other way round", valves.join(", ")))
 }

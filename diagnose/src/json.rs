@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 
 use crate::campaign::Campaign;
 use crate::diagnosis::{Diagnosis, Estimate};
+use crate::locate::condition::Region;
 use crate::specimen::Specimen;
 
 /// The report as a value. `runtime_s` is the only number that differs from run to run.
@@ -15,8 +16,10 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
         .map(|l| {
             json!({
                 "place": l.place, "share_of_excess": rounded(l.share_of_excess),
-                "where": { "recording": specimen.recording_name(l.recording), "t_s": l.t_s, "condition": l.condition,
-                           "channel": l.channel },
+                "where": {
+                    "recording": specimen.recording_name(l.recording), "t_s": l.t_s, "condition": l.condition.text,
+                    "channel": specimen.channels()[l.channel].name, "region": l.condition.region.as_ref().map(region),
+                },
             })
         })
         .collect();
@@ -30,13 +33,14 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
         })
         .collect();
     let mut channels = Map::new();
-    for c in &diagnosis.channels {
+    for (c, w) in diagnosis.channels.iter().zip(&diagnosis.whiteness) {
         channels.insert(
             c.name.clone(),
             json!({
                 "noise_ratio_before": rounded(c.before), "noise_ratio_after": rounded(c.after),
                 "held_out_before": rounded(c.held_out_before), "held_out_after": rounded(c.held_out_after),
-                "residual_lag_one_correlation": rounded(c.lag_one),
+                "residual_lag_one_correlation": rounded(c.lag_one), "ljung_box": rounded(w.ljung_box),
+                "input_correlation": w.input.as_ref().map(|(input, r)| json!({ "input": input, "value": rounded(*r), "bound99": rounded(w.bound) })),
             }),
         );
     }
@@ -45,6 +49,12 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
         .collect();
     let relations: Vec<Value> = (diagnosis.relations.iter())
         .map(|r| json!({ "relation": r.name, "noise_ratio": r.noise_ratio.map(rounded), "samples": r.samples }))
+        .collect();
+    let reaches: Vec<Value> = (diagnosis.reaches.iter())
+        .map(|r| {
+            json!({ "relation": r.relation, "share_of_excess": rounded(r.share_of_excess),
+                    "by": specimen.candidates()[r.candidate].name() })
+        })
         .collect();
     json!({
         "schema": 1,
@@ -58,6 +68,7 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
         "runtime_s": runtime_s,
         "not_tested": not_tested(specimen),
         "relations": relations,
+        "relations_changed_alone": reaches,
         "calibration": calibration,
         "correlated": diagnosis.correlated.iter().map(|(a, b, r)| json!([a, b, rounded(*r)])).collect::<Vec<_>>(),
         "notes": campaign.notes,
@@ -78,10 +89,14 @@ pub fn rejected(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> Vec<Value> {
     (trials.iter())
         .map(|t| {
             let c = &all[t.candidate];
-            let alone = format!(
-                "alone it brings the held-out noise ratio from {:.3} to {:.3}",
-                selection.noise_ratio.0, t.alone
-            );
+            let alone = if t.alone.is_finite() {
+                format!(
+                    "alone it brings the held-out noise ratio from {:.3} to {:.3}",
+                    selection.noise_ratio.0, t.alone
+                )
+            } else {
+                "alone it could not be fitted to these recordings".to_owned()
+            };
             let why = match t.added {
                 Some(added) => format!(
                     "{alone}; added to the chosen model from {:.3} to {added:.3}",
@@ -109,6 +124,11 @@ pub fn not_tested(specimen: &dyn Specimen) -> Vec<Value> {
                 .map(|why| json!({ "id": c.id, "place": c.place, "why": why }))
         })
         .collect()
+}
+
+fn region(r: &Region) -> Value {
+    json!({ "state": r.state, "from": r.from, "to": r.to, "share_of_misfit": rounded(r.share_of_misfit),
+            "share_of_samples": rounded(r.share_of_samples) })
 }
 
 fn parameters(estimates: &[Estimate]) -> Value {

@@ -30,6 +30,7 @@ pub mod screen;
 pub mod select;
 pub mod specimen;
 pub mod unseen;
+pub mod whiteness;
 
 pub use campaign::{Campaign, KeptBack};
 pub use diagnosis::Diagnosis;

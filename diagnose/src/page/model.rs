@@ -1,0 +1,153 @@
+//! "Model": what was added to the file, what recalibration changed, and the file to copy.
+
+use oleo_report::{Cell, Column, Page, Table, significant};
+
+use super::words;
+use crate::diagnosis::Diagnosis;
+
+pub fn section(page: &mut Page, diagnosis: &Diagnosis) {
+    page.section("The improved model");
+    page.text(
+        "It is model.toml beside this page, in the form of the one given, and runs as it is: oleo predict --model model.toml \
+         RECORDING.csv --out SIM.csv simulates any other recording's inputs with it; oleo rig and oleo hil take it as their strut.",
+    );
+    let changes = changes(&diagnosis.given_toml, &diagnosis.model_toml);
+    // Offsets are calibration; they stand below.
+    let added: Vec<&Change> = (changes.iter())
+        .filter(|c| c.before.is_none() && c.key.starts_with("effects.") && !c.key.contains("sensor_offset"))
+        .collect();
+    if !added.is_empty() {
+        let mut table = Table::new([Column::text("Added to the model"), Column::text("Value")]);
+        for c in added {
+            let value = c.after.parse().map_or(c.after.clone(), |v: f64| significant(v, 5));
+            table.row([c.key.clone(), value]);
+        }
+        page.table(table);
+    }
+    page.code("model.toml, to copy", &diagnosis.model_toml);
+    calibration(page, diagnosis);
+}
+
+fn calibration(page: &mut Page, diagnosis: &Diagnosis) {
+    if diagnosis.calibration.is_empty() {
+        page.text("The model states no tolerances, so nothing was recalibrated.");
+        return;
+    }
+    let most = diagnosis
+        .calibration
+        .iter()
+        .map(|(_, z)| 0.5 * z.abs())
+        .fold(0.0, f64::max);
+    page.text(&format!(
+        "Recalibration is part of every fit and is not physics: the values below were re-estimated within the tolerances that \
+         the model states. The most that was used of any tolerance is {:.0} %.",
+        100.0 * most
+    ));
+    let mut table = Table::new([
+        Column::text("Recalibrated"),
+        Column::number("Change"),
+        Column::text("95 % interval"),
+        Column::text("Unit"),
+        Column::text("Of its tolerance"),
+    ]);
+    for (e, z) in &diagnosis.calibration {
+        let (name, unit) = words::quantity(&e.key);
+        let (value, interval) = words::value_and_interval(e.value, e.ci95);
+        let used = 0.5 * z.abs();
+        let text = format!("{:.0} %", 100.0 * used);
+        table.row([
+            name.into(),
+            value.into(),
+            interval.into(),
+            unit.into(),
+            if used > 1.0 {
+                Cell::warning(format!("{text}, at its limit"))
+            } else {
+                Cell::from(text)
+            },
+        ]);
+    }
+    page.details("Calibration, value by value", table);
+    if !diagnosis.correlated.is_empty() {
+        let mut table = Table::new([
+            Column::text("Estimate"),
+            Column::text("and"),
+            Column::number("Correlation"),
+        ]);
+        for (a, b, r) in &diagnosis.correlated {
+            table.row([a.clone(), b.clone(), significant(*r, 3)]);
+        }
+        let summary = format!(
+            "{} strongly correlated pairs of estimates: only their combination is well determined",
+            table.len()
+        );
+        page.details(&summary, table);
+    }
+}
+
+/// A value that differs between two model files.
+#[derive(Debug, PartialEq)]
+struct Change {
+    key: String,
+    before: Option<String>,
+    after: String,
+}
+
+/// Keys of `after` that `before` lacks or has with another value. Files that cannot be read have no changes.
+fn changes(before: &str, after: &str) -> Vec<Change> {
+    let (Ok(before), Ok(after)) = (before.parse::<toml::Table>(), after.parse::<toml::Table>()) else {
+        return Vec::new();
+    };
+    let mut out = Vec::new();
+    compare(
+        "",
+        Some(&toml::Value::Table(before)),
+        &toml::Value::Table(after),
+        &mut out,
+    );
+    out
+}
+
+fn compare(key: &str, before: Option<&toml::Value>, after: &toml::Value, out: &mut Vec<Change>) {
+    match after {
+        toml::Value::Table(table) => {
+            for (k, value) in table {
+                let inner = if key.is_empty() {
+                    k.clone()
+                } else {
+                    format!("{key}.{k}")
+                };
+                compare(&inner, before.and_then(|b| b.get(k)), value, out);
+            }
+        }
+        toml::Value::Array(list) if list.iter().any(toml::Value::is_table) => {
+            for (k, value) in list.iter().enumerate() {
+                compare(&format!("{key}[{}]", k + 1), before.and_then(|b| b.get(k)), value, out);
+            }
+        }
+        value if before != Some(value) => out.push(Change {
+            key: key.to_owned(),
+            before: before.map(ToString::to_string),
+            after: value.to_string(),
+        }),
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn additions_and_changes_are_told_apart() {
+        let before = "[cylinder]\nbore_m = 0.05\n[[valve]]\nc = 1.0\n[effects]\n";
+        let after =
+            "[cylinder]\nbore_m = 0.05\n[[valve]]\nc = 2.0\n[effects.oil_compressibility]\nbulk_modulus_Pa = 1.4e9\n";
+        let found = changes(before, after);
+        assert_eq!(found.len(), 2);
+        let key = |k: &str| found.iter().find(|c| c.key == k).expect("a change");
+        assert_eq!(key("effects.oil_compressibility.bulk_modulus_Pa").before, None);
+        assert_eq!(key("valve[1].c").before.as_deref(), Some("1.0"));
+        assert!(changes(before, before).is_empty() && changes("?", "!").is_empty());
+    }
+}

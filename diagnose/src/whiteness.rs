@@ -1,0 +1,95 @@
+//! What is left in the residuals of the improved model: are they white, and do they know anything of the inputs?
+//!
+//! A complete model leaves the sensors' noise: no sample tells of the next (Ljung & Box, Biometrika 65(2), 1978) and none
+//! of what the specimen was made to do (cross-correlation test, Billings & Voon, Int. J. Control 44(3), 1986). With a
+//! hundred thousand samples either test sees correlations far too small to matter, so the part of the residual's variance
+//! that goes with the inputs stands beside them: that is what another term could gain at most.
+
+use crate::specimen::{Series, Specimen};
+
+/// Lags tested.
+pub const LAGS: usize = 20;
+/// Upper 1 % point of chi-square with [`LAGS`] degrees of freedom.
+pub const CHI_SQUARE_99: f64 = 37.57;
+/// Two-sided 1 % point of a normal variable when [`LAGS`] + 1 of them are looked at (Bonferroni).
+const NORMAL_99: f64 = 3.49;
+
+/// One channel's residuals.
+#[derive(Debug, Clone)]
+pub struct Whiteness {
+    /// Autocorrelation at lags 1 to [`LAGS`].
+    pub autocorrelation: Vec<f64>,
+    /// Ljung-Box statistic over them; white residuals stay below [`CHI_SQUARE_99`] 99 times of 100.
+    pub ljung_box: f64,
+    /// The input most correlated with the residual at any lag, and that correlation.
+    pub input: Option<(String, f64)>,
+    /// Size that an independent input's correlation stays below 99 times of 100.
+    pub bound: f64,
+}
+
+/// Every channel; recordings are not joined across their ends.
+#[must_use]
+pub fn whiteness(specimen: &dyn Specimen, residuals: &[Series]) -> Vec<Whiteness> {
+    let count: usize = residuals.iter().map(|r| r[0].len()).sum();
+    let inputs: Vec<Vec<(&'static str, Vec<f64>)>> = (0..residuals.len()).map(|r| inputs(specimen, r)).collect();
+    let mut names: Vec<&'static str> = Vec::new();
+    for (name, _) in inputs.iter().flatten() {
+        if !names.contains(name) {
+            names.push(name);
+        }
+    }
+    (0..specimen.channels().len())
+        .map(|c| {
+            let series: Vec<Vec<f64>> = residuals.iter().map(|r| centred(&r[c])).collect();
+            let square: f64 = series.iter().flatten().map(|v| v * v).sum();
+            let autocorrelation: Vec<f64> = (1..=LAGS)
+                .map(|lag| series.iter().map(|s| lagged(s, s, lag)).sum::<f64>() / square.max(1e-300))
+                .collect();
+            let n = count as f64;
+            let ljung_box = n
+                * (n + 2.0)
+                * (autocorrelation.iter().zip(1..))
+                    .map(|(r, lag)| r * r / (n - f64::from(lag)))
+                    .sum::<f64>();
+            let strongest = (names.iter())
+                .map(|name| {
+                    let of = |r: usize| inputs[r].iter().find(|(n, _)| n == name).map(|(_, v)| v);
+                    let energy: f64 = (0..series.len()).filter_map(of).flatten().map(|v| v * v).sum();
+                    let largest = (0..=LAGS)
+                        .map(|lag| {
+                            let sum: f64 = (0..series.len())
+                                .filter_map(|r| of(r).map(|u| lagged(u, &series[r], lag)))
+                                .sum();
+                            sum / (energy * square).sqrt().max(1e-300)
+                        })
+                        .max_by(|a, b| a.abs().total_cmp(&b.abs()));
+                    ((*name).to_owned(), largest.unwrap_or(0.0))
+                })
+                .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+            Whiteness {
+                autocorrelation,
+                ljung_box,
+                input: strongest,
+                bound: NORMAL_99 / n.sqrt(),
+            }
+        })
+        .collect()
+}
+
+/// What the specimen was made to do: displacement and speed.
+fn inputs(specimen: &dyn Specimen, recording: usize) -> Vec<(&'static str, Vec<f64>)> {
+    (specimen.states(recording).into_iter())
+        .filter(|(name, _)| matches!(*name, "displacement, m" | "speed, m/s"))
+        .map(|(name, values)| (name, centred(&values)))
+        .collect()
+}
+
+fn centred(values: &[f64]) -> Vec<f64> {
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    values.iter().map(|v| v - mean).collect()
+}
+
+/// Sum of `a` with what `b` is `lag` samples later.
+fn lagged(a: &[f64], b: &[f64], lag: usize) -> f64 {
+    a.iter().zip(b.iter().skip(lag)).map(|(a, b)| a * b).sum()
+}

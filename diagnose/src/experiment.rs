@@ -99,13 +99,18 @@ pub fn isolate(specimen: &dyn Specimen, left: &Location) -> String {
         how.push(format!("at {} m/s in turn", speeds.join(", ")));
     }
     how.push(valves(specimen, r, left.t_s).unwrap_or_else(|| "everything else as it was".into()));
-    format!("{place} Record that stretch alone: strokes {}, each twice.", how.join(", "))
+    format!(
+        "{place} Record that stretch alone: strokes {}, each twice.",
+        how.join(", ")
+    )
 }
 
 /// Valves as they are in the middle of a stretch, and the other way round.
 fn valves(specimen: &dyn Specimen, recording: usize, t_s: [f64; 2]) -> Option<String> {
     let time = specimen.time_s(recording);
-    let middle = time.partition_point(|t| *t < 0.5 * (t_s[0] + t_s[1])).min(time.len() - 1);
+    let middle = time
+        .partition_point(|t| *t < 0.5 * (t_s[0] + t_s[1]))
+        .min(time.len() - 1);
     let valves: Vec<String> = (0..3)
         .filter_map(|v| {
             let open = specimen.valve_open(recording, middle, v);

@@ -14,7 +14,7 @@ const GROUPS: usize = 48;
 /// A region needs this much more of the misfit than of the samples to be called one.
 const LEAST_CONCENTRATION: f64 = 0.25;
 /// A state is followed if it explains this part of the misfit's variance.
-const LEAST_FOLLOWING: f64 = 0.4;
+const LEAST_FOLLOWING: f64 = 0.5;
 
 /// A quantity of the recordings, all samples of the campaign in one series; NaN where it is not defined.
 #[derive(Debug, Clone)]
@@ -90,12 +90,9 @@ impl Condition {
         let region = region.filter(|r| r.concentration() > LEAST_CONCENTRATION);
         let follows = follows.filter(|f| f.1 > LEAST_FOLLOWING);
         let text = match (&region, &follows) {
-            (Some(r), _) => r.words(),
-            (None, Some((state, part))) => format!(
-                "over the whole range; follows {} (explains {:.0} % of it)",
-                split(state).0,
-                100.0 * part
-            ),
+            (Some(r), Some((state, part))) => format!("{}; {}", r.words(), follow(state, *part)),
+            (Some(r), None) => r.words(),
+            (None, Some((state, part))) => format!("over the whole range; {}", follow(state, *part)),
             (None, None) => "over the whole range of every recorded state".into(),
         };
         Self {
@@ -139,6 +136,10 @@ impl Region {
             100.0 * self.share_of_samples
         )
     }
+}
+
+fn follow(state: &str, part: f64) -> String {
+    format!("follows {} (explains {:.0} % of it)", split(state).0, 100.0 * part)
 }
 
 /// A value in the unit people use for it.

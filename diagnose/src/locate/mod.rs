@@ -109,8 +109,10 @@ fn places(
         "accumulators" => [("accumulator-1", channel("p2_Pa")), ("accumulator-2", channel("p4_Pa"))],
         "path-1+path-2" => [("path-1", channel("p2_Pa")), ("path-2", channel("p4_Pa"))],
         place => {
-            let own = place.strip_prefix("sensor:").and_then(channel);
-            let channels = own.map_or_else(|| (0..specimen.channels().len()).collect(), |c| vec![c]);
+            let mut channels: Vec<usize> = nearest(place).iter().filter_map(|c| channel(c)).collect();
+            if channels.is_empty() {
+                channels = (0..specimen.channels().len()).collect();
+            }
             return vec![(place.to_owned(), channels, 1.0)];
         }
     };
@@ -129,6 +131,19 @@ fn places(
             ((*place).to_owned(), c.iter().copied().collect(), part)
         })
         .collect()
+}
+
+/// The instruments of a strut next to a place; none where all are as near.
+fn nearest(place: &str) -> Vec<&str> {
+    match place {
+        "main-seal" | "end-stop" => vec!["force_N"],
+        "main-chamber" => vec!["p1_Pa"],
+        "accumulator-1" => vec!["p2_Pa"],
+        "accumulator-2" => vec!["p4_Pa"],
+        "path-1" => vec!["p1_Pa", "p2_Pa"],
+        "path-2" | "valve-3" => vec!["p3_Pa", "p4_Pa"],
+        _ => place.strip_prefix("sensor:").into_iter().collect(),
+    }
 }
 
 /// Squared misfit a sample that goes with the effect.
@@ -173,8 +188,10 @@ fn strongest(
     let time = specimen.time_s(recording);
     let mut t_s = [time[from], time[to]];
 
-    // A decay while nothing moves says more than any stretch of a state.
-    let decays = (0..without.len()).filter_map(|r| {
+    // A decay while nothing moves says more than any stretch of a state. What is left unexplained (`with` is nothing) is a
+    // mixture, of which one hold tells little.
+    let named = with.iter().flatten().flatten().any(|v| *v != 0.0);
+    let decays = (0..if named { without.len() } else { 0 }).filter_map(|r| {
         let speed = speed(specimen, r)?;
         Some((r, decay::largest(specimen.time_s(r), &speed, &difference(r))?))
     });

@@ -40,7 +40,7 @@ fn effect(page: &mut Page, e: &Effect) {
         return;
     }
     page.text(&format!(
-        "{} {} [{}]. {}. Source: {}.",
+        "{} {} ({}): {}. Source: {}.",
         words::sentence(known.name),
         words::at(&e.place),
         name(e),

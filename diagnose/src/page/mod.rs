@@ -37,10 +37,15 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
     if !diagnosis.effects.is_empty() {
         page.outcome(in_brief(diagnosis));
     }
-    page.text(
+    let inputs = match specimen.kind() {
+        "gas spring" => "displacement and the first pressure",
+        "cylinder" => "displacement and the pressures",
+        _ => "displacement and switching signals",
+    };
+    page.text(&format!(
         "Noise ratio: RMS of recording minus simulation over the sensor's noise. 1 is perfect. Held out: judged on stretches \
-         that had no say in the fit. The model is simulated freely: it gets displacement and switching signals and nothing else.",
-    );
+         that had no say in the fit. The model is simulated freely: it gets {inputs}, and nothing else that was measured."
+    ));
     place::section(&mut page, campaign, diagnosis);
     cause::section(&mut page, campaign, diagnosis);
     model::section(&mut page, diagnosis);

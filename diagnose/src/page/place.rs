@@ -277,8 +277,13 @@ fn over_state(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, l
         ));
     } else if let Some((_, part)) = &condition.follows {
         curves.caption(&format!(
-            "The mean over {quantity} explains {:.0} % of what the effect changes.",
-            100.0 * part
+            "The mean over {quantity} explains {:.0} % of what {}.",
+            100.0 * part,
+            if location.candidate.is_some() {
+                "the effect changes"
+            } else {
+                "is left"
+            }
         ));
     }
     page.figure(curves);

@@ -20,6 +20,29 @@ pub struct Segment {
     pub to_m_s: f64,
 }
 
+impl Segment {
+    /// The part of an interval of `duration_s` in which the motion from `from_m` happens: when it begins and how long it takes.
+    ///
+    /// Where the motion begins or ends at rest and its other speed would carry it farther than it goes, it has begun or
+    /// ended within the interval: at constant acceleration, which takes twice the way over the speed. (A cubic over the
+    /// whole interval would overshoot and come back, and a seal's friction with it.)
+    #[must_use]
+    pub fn moves_within(&self, from_m: f64, duration_s: f64) -> (f64, f64) {
+        let rise = self.to_m - from_m;
+        let takes = |speed: f64| {
+            let time = 2.0 * rise / speed;
+            (time > 0.0 && time < duration_s).then_some(time)
+        };
+        if self.to_m_s == 0.0 {
+            takes(self.from_m_s).map_or((0.0, duration_s), |time| (0.0, time))
+        } else if self.from_m_s == 0.0 {
+            takes(self.to_m_s).map_or((0.0, duration_s), |time| (duration_s - time, time))
+        } else {
+            (0.0, duration_s)
+        }
+    }
+}
+
 /// A displacement history that a strut can be driven with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
@@ -261,6 +284,21 @@ pub fn smooth_displacement(displacement_m: &[f64], interval_s: f64, noise_m: f64
         value[from..to].fill(mean);
         left[from + 1..to].fill(0.0);
         right[from..to - 1].fill(0.0);
+        // A move whose speed would carry it farther than the hold ended, or began, between two samples.
+        if from >= 1 && left[from - 1] / (mean - value[from - 1]) > 2.0 {
+            (right[from - 1], left[from]) = (left[from - 1], 0.0);
+        }
+        if to < n && right[to] / (value[to] - mean) > 2.0 {
+            (left[to], right[to - 1]) = (right[to], 0.0);
+        }
+        // A move ends where the hold is, not beyond it: coming back by the noise (10 um) would turn a seal's friction
+        // by tens of newtons, and it would stay so for the whole hold.
+        if from >= 2 && (value[from - 2] - mean) * (value[from - 1] - mean) < 0.0 {
+            (value[from - 1], right[from - 1], left[from]) = (mean, 0.0, 0.0);
+        }
+        if to + 1 < n && (value[to + 1] - mean) * (value[to] - mean) < 0.0 {
+            (value[to], left[to], right[to - 1]) = (mean, 0.0, 0.0);
+        }
     }
     let segments = (1..n)
         .map(|i| Segment {
@@ -278,14 +316,20 @@ pub fn smooth_displacement(displacement_m: &[f64], interval_s: f64, noise_m: f64
 /// Shortest stretch that is called a hold, samples.
 const SHORTEST_HOLD: usize = 16;
 
-/// Stretches `from..to` in which the displacement does not change but for its noise.
+/// Stretches `from..to` in which the displacement does not change but for its noise, in order, apart from each other.
 fn holds(x: &[f64], noise: f64) -> Vec<(usize, usize)> {
-    let mut found = Vec::new();
+    let mut found: Vec<(usize, usize)> = Vec::new();
     let mut from = 0;
     while from + SHORTEST_HOLD <= x.len() {
         let mut sum = 0.0;
         let mut to = from;
-        while to < x.len() && (to < from + 4 || (x[to] - sum / (to - from) as f64).abs() <= 4.0 * noise) {
+        while to < x.len() {
+            let mean = sum / (to - from) as f64;
+            let still = |k: usize, quantile: f64| x.get(k).is_some_and(|v| (v - mean).abs() <= quantile * noise);
+            // One sample far off between two that are not is noise, once in sixteen thousand.
+            if to >= from + 4 && !still(to, 4.0) && !still(to + 1, 3.0) {
+                break;
+            }
             sum += x[to];
             to += 1;
         }
@@ -300,6 +344,11 @@ fn holds(x: &[f64], noise: f64) -> Vec<(usize, usize)> {
         let trend = noise * (n * (n * n - 1.0) / 12.0).sqrt();
         let quiet = square <= noise * noise * largest_chi_square(n - 1.0) && slope.abs() <= 3.0 * trend;
         if to - from >= SHORTEST_HOLD && quiet {
+            // The search goes in strides: the hold began where its first sample is.
+            let before = found.last().map_or(0, |(_, to)| *to);
+            while from > before && (x[from - 1] - mean).abs() <= 3.0 * noise {
+                from -= 1;
+            }
             found.push((from, to));
             from = to;
         } else {
@@ -389,5 +438,54 @@ mod tests {
             "{:?}",
             motion.segments[at + 1]
         );
+    }
+
+    /// A move that stops and starts between two samples, as a machine with a limit to its acceleration does.
+    #[test]
+    fn a_move_ends_where_the_hold_is_and_never_turns_back() {
+        let (dt, speed, rounding) = (0.02, 0.1, 0.01);
+        // Ramp from rest at 0.507 s to rest at 1.013 s, rounded over 10 ms at either end.
+        let truth = |t: f64| {
+            let ramp = |since: f64| {
+                let s = since.clamp(0.0, rounding);
+                0.5 * speed * s * s / rounding + speed * (since - rounding).max(0.0)
+            };
+            ramp(t - 0.507) - ramp(t - 1.003)
+        };
+        let x = noisy(truth, 100, dt);
+        let motion = smooth_displacement(&x, dt, NOISE);
+        let (mut at, mut back, mut farthest) = (motion.start_m, 0.0, 0.0_f64);
+        for s in &motion.segments {
+            back += (at - s.to_m).max(0.0);
+            let (begins, takes) = s.moves_within(at, dt);
+            // The cubic of the part that moves, as the strut follows it.
+            let (a, b, rise) = (s.from_m_s * takes, s.to_m_s * takes, s.to_m - at);
+            for k in 1..=10 {
+                let u = f64::from(k) / 10.0;
+                farthest = farthest.max(at + u * (a + u * (3.0 * rise - 2.0 * a - b + u * (a + b - 2.0 * rise))));
+            }
+            assert!(begins >= 0.0 && begins + takes <= dt * (1.0 + 1e-12));
+            at = s.to_m;
+        }
+        assert!(
+            back < 1e-7 && farthest < at + 1e-7,
+            "back {back}, beyond {}",
+            farthest - at
+        );
+        assert!((at - truth(2.0)).abs() < 3.0 * NOISE / 45.0_f64.sqrt(), "{at}");
+    }
+
+    #[test]
+    fn a_segment_from_or_to_rest_moves_at_constant_acceleration_within_its_interval() {
+        let s = |from_m_s, to_m_s| Segment {
+            to_m: 1e-3,
+            from_m_s,
+            to_m_s,
+        };
+        assert_eq!(s(0.2, 0.0).moves_within(0.0, 0.02), (0.0, 0.01));
+        assert_eq!(s(0.0, 0.2).moves_within(0.0, 0.02), (0.01, 0.01));
+        for whole in [s(0.08, 0.0), s(0.0, 0.08), s(-0.2, 0.0), s(0.2, 0.2), s(0.0, 0.0)] {
+            assert_eq!(whole.moves_within(0.0, 0.02), (0.0, 0.02), "{whole:?}");
+        }
     }
 }

@@ -79,7 +79,16 @@ pub fn replay(model: &StrutModel, inputs: &Inputs) -> Result<Prediction, ModelEr
     }
     for (i, s) in motion.segments.iter().enumerate() {
         let dt = inputs.time_s[i + 1] - inputs.time_s[i];
-        keep(strut.advance_with_speeds(s.to_m, s.from_m_s, s.to_m_s, dt, inputs.signals[i]));
+        let (signals, at) = (inputs.signals[i], strut.displacement_m());
+        let (begins, takes) = s.moves_within(at, dt);
+        if begins > 0.0 {
+            strut.advance(at, begins, signals);
+        }
+        let mut output = strut.advance_with_speeds(s.to_m, s.from_m_s, s.to_m_s, takes, signals);
+        if begins + takes < dt {
+            output = strut.advance(s.to_m, dt - (begins + takes), signals);
+        }
+        keep(output);
     }
     sensor::record(effects, "force_N", &inputs.time_s, &mut out.force_n);
     for (column, signal) in sensor::COLUMNS[2..].iter().zip(&mut out.pressure_pa) {

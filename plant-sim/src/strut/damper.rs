@@ -31,10 +31,16 @@ impl DamperTable {
 /// A piecewise linear, strictly increasing characteristic, linear beyond its ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pack {
-    /// Inner break points of the argument: segment `i` holds from `breaks[i - 1]` to `breaks[i]`.
-    breaks: Box<[f64]>,
-    /// `(value at argument 0 of the segment's line, slope)`, one more than there are breaks.
-    lines: Box<[(f64, f64)]>,
+    lines: Box<[Line]>,
+}
+
+/// `value + slope * argument` for arguments above `from` and up to `to`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Line {
+    from: f64,
+    to: f64,
+    value: f64,
+    slope: f64,
 }
 
 impl Pack {
@@ -47,31 +53,54 @@ impl Pack {
     /// The line through points `(x, y)`, at least two, `x` strictly increasing (the model checks both).
     #[must_use]
     pub fn through(x: &[f64], y: &[f64]) -> Self {
-        let lines = x.windows(2).zip(y.windows(2)).map(|(x, y)| {
-            let slope = (y[1] - y[0]) / (x[1] - x[0]);
-            (y[0] - slope * x[0], slope)
-        });
-        let inner = if x.len() > 2 { &x[1..x.len() - 1] } else { &[] };
-        Self {
-            breaks: inner.into(),
-            lines: lines.collect(),
+        let mut lines: Box<[Line]> = x
+            .windows(2)
+            .zip(y.windows(2))
+            .map(|(x, y)| {
+                let slope = (y[1] - y[0]) / (x[1] - x[0]);
+                Line {
+                    from: x[0],
+                    to: x[1],
+                    value: y[0] - slope * x[0],
+                    slope,
+                }
+            })
+            .collect();
+        if let [first, ..] = &mut lines[..] {
+            first.from = f64::NEG_INFINITY;
         }
+        if let [.., last] = &mut lines[..] {
+            last.to = f64::INFINITY;
+        }
+        Self { lines }
     }
 
     /// Flow and its derivative at a pressure drop. `segment` remembers the last segment: successive calls are near each
     /// other, so the search is usually over before it begins. The result does not depend on it.
-    #[inline]
+    #[inline(always)]
     pub fn flow(&self, drop_pa: f64, segment: &mut usize) -> (f64, f64) {
-        let mut i = (*segment).min(self.breaks.len());
-        while i < self.breaks.len() && drop_pa > self.breaks[i] {
-            i += 1;
-        }
-        while i > 0 && drop_pa <= self.breaks[i - 1] {
-            i -= 1;
-        }
-        *segment = i;
-        let (intercept, slope) = self.lines[i];
-        (intercept + slope * drop_pa, slope)
+        let line = match self.lines.get(*segment) {
+            Some(line) if drop_pa > line.from && drop_pa <= line.to => line,
+            _ => {
+                *segment = self.search(drop_pa);
+                &self.lines[*segment]
+            }
+        };
+        (line.value + line.slope * drop_pa, line.slope)
+    }
+
+    /// Whether a drop lies on the segment that [`Pack::flow`] remembered.
+    #[inline(always)]
+    pub(super) fn on_segment(&self, drop_pa: f64, segment: usize) -> bool {
+        self.lines
+            .get(segment)
+            .is_some_and(|line| drop_pa > line.from && drop_pa <= line.to)
+    }
+
+    #[cold]
+    fn search(&self, drop_pa: f64) -> usize {
+        let inner = self.lines.len() - 1;
+        self.lines[..inner].partition_point(|line| line.to < drop_pa)
     }
 }
 

@@ -27,8 +27,8 @@ pub struct GasState {
 pub struct Gas {
     mass_kg: f64,
     ambient_k: f64,
-    /// Thermal time constant, s; none: isothermal.
-    time_constant_s: Option<f64>,
+    /// Inverse of the thermal time constant, 1/s; none: isothermal.
+    cooling_rate_1_s: Option<f64>,
     real: Option<Nitrogen>,
     gas_constant: f64,
     inverse_heat_capacity: f64,
@@ -54,7 +54,7 @@ impl Gas {
         Self {
             mass_kg,
             ambient_k,
-            time_constant_s,
+            cooling_rate_1_s: time_constant_s.map(|tau| 1.0 / tau),
             gas_constant: real.as_ref().map_or(NITROGEN_R_J_KG_K, Nitrogen::gas_constant),
             inverse_heat_capacity: 1.0 / (mass_kg * NITROGEN_CV_J_KG_K),
             real,
@@ -96,7 +96,12 @@ impl Gas {
     #[inline(always)]
     pub fn refresh(&self, real: &mut Departure, base: GasState, duration_s: f64, flow: f64) {
         if self.real.is_some() {
-            let volume = (base.volume_m3 - duration_s * flow).max(self.least_volume_m3);
+            let free = base.volume_m3 - duration_s * flow;
+            let volume = if free > self.least_volume_m3 {
+                free
+            } else {
+                self.least_volume_m3
+            };
             let density = self.mass_kg / volume;
             if (density - real.density).abs() > 2e-2 * density || (base.temperature_k - real.temperature_k).abs() > 4.0
             {
@@ -129,19 +134,25 @@ impl Gas {
     pub fn implicit(&self, base: GasState, duration_s: f64, flow: f64, real: &Departure) -> GasStep {
         let free = base.volume_m3 - duration_s * flow;
         // Below the least volume the pressure goes on rising linearly, so that a hopeless state (everything squeezed
-        // out) still has a solution instead of a division by zero.
-        let volume_m3 = free.max(self.least_volume_m3);
+        // out) still has a solution instead of a division by zero. Comparisons, not `f64::max`, which costs four times
+        // as much for its care of NaN.
+        let volume_m3 = if free > self.least_volume_m3 {
+            free
+        } else {
+            self.least_volume_m3
+        };
         let excess_volume = volume_m3 - free;
         let inverse_volume = 1.0 / volume_m3;
         let density = self.mass_kg * inverse_volume;
         // (dp/dT) at constant volume, Pa/K.
         let heating = density * (self.gas_constant + density * real.by_temperature);
-        let (temperature_k, warming) = match self.time_constant_s {
+        let (temperature_k, warming) = match self.cooling_rate_1_s {
             None => (self.ambient_k, 0.0),
-            Some(tau) => {
+            Some(rate) => {
                 let k = duration_s * heating * self.inverse_heat_capacity;
-                let s = duration_s / tau;
-                let inverse = 1.0 / (1.0 + s - k * flow).max(0.05);
+                let s = duration_s * rate;
+                let divisor = 1.0 + s - k * flow;
+                let inverse = 1.0 / if divisor > 0.05 { divisor } else { 0.05 };
                 let t = (base.temperature_k + s * self.ambient_k) * inverse;
                 (t, t * k * base.volume_m3 * inverse_volume * inverse)
             }

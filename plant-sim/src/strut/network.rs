@@ -11,7 +11,7 @@ use super::friction::advance_friction;
 use super::gas::{Gas, GasState};
 use super::model::{ATMOSPHERE_PA, ModelError, StrutModel};
 use super::nitrogen::Nitrogen;
-use super::solve::{Guess, Parameters, Path, Stage, Store, law_at};
+use super::solve::{Guess, Moment, Parameters, Path, Store, law_at};
 use super::stops::stop_force_n;
 use super::valve::ValveMotion;
 
@@ -68,7 +68,6 @@ pub struct Strut {
     store: Store,
     guess: Guess,
     pressure: [f64; 4],
-    flow: [f64; 2],
     valves: [ValveMotion; 3],
 }
 
@@ -136,14 +135,8 @@ impl Strut {
             friction_n: 0.0,
             static_pa,
             store,
-            guess: Guess {
-                drop: [0.0; 2],
-                flow: [0.0; 2],
-                segment: [0; 2],
-                real: Default::default(),
-            },
+            guess: Guess::default(),
             pressure: [rest_pa; 4],
-            flow: [0.0; 2],
             valves: signals.map(ValveMotion::at_rest),
         })
     }
@@ -176,7 +169,7 @@ impl Strut {
                 (a + s * (2.0 * c2 + 3.0 * s * c3)) / duration_s,
             )
         };
-        let fast = from_m_s.abs().max(to_m_s.abs()) > SLOW_M_S || (to_m_s - from_m_s).abs() > SLOW_M_S;
+        let fast = from_m_s.abs() > SLOW_M_S || to_m_s.abs() > SLOW_M_S || (to_m_s - from_m_s).abs() > SLOW_M_S;
         let mut done = 0.0;
         loop {
             let now = start + done;
@@ -190,7 +183,11 @@ impl Strut {
             // Equal steps to the next kink or the end; a sliver shorter than a microsecond is not worth a step.
             let until = (kink - now).min(left);
             let until = if left - until < 1e-6 { left } else { until.max(1e-6) };
-            let h = until / (until / limit).ceil().max(1.0);
+            let h = if until <= limit {
+                until
+            } else {
+                until / (until / limit).ceil()
+            };
             let (s0, s1) = (done / duration_s, (done + h) / duration_s);
             let ends = s1 > 1.0 - 1e-9;
             let middle = at(s0 + GAMMA * (s1 - s0));
@@ -242,17 +239,25 @@ impl Strut {
                 self.valves[2].opening(t),
             ]
         };
-        let mut guess = self.guess;
-        let (r1, r2) = (middle.1 + owed, end.1 + owed);
-        let first = p.stage(&self.store, hg, middle.0 - bent, r1, opening(now + hg), &mut guess);
+        let mut at = Moment {
+            h: hg,
+            since: hg,
+            displacement_m: middle.0 - bent,
+            speed_m_s: middle.1 + owed,
+            opening: opening(now + hg),
+        };
+        self.told_m += h * (1.0 - GAMMA) * at.speed_m_s;
+        let first = p.stage(&self.store, &at, &mut self.guess);
         let base = self.store.blend(&first.store, (1.0 - GAMMA) / GAMMA);
+        at.since = h - hg;
+        at.displacement_m = end.0 - bent;
+        at.speed_m_s = end.1 + owed;
         // Sampled a nanosecond before the end: an opening that steps there belongs to the next step.
-        let last: Stage = p.stage(&base, hg, end.0 - bent, r2, opening(now + h - 1e-9), &mut guess);
-        self.told_m += h * ((1.0 - GAMMA) * r1 + GAMMA * r2);
+        at.opening = opening(now + h - 1e-9);
+        self.told_m += hg * at.speed_m_s;
+        let last = p.stage(&base, &at, &mut self.guess);
         self.store = last.store;
-        self.guess = guess;
         self.pressure = last.pressure;
-        self.flow = last.flow;
         if self.cooling_time_s.is_finite() {
             let kept = 1.0 / (1.0 + h / self.cooling_time_s);
             self.store.heat = self.store.heat.map(|e| e * kept);
@@ -310,7 +315,7 @@ impl Strut {
     /// Flows into path 1 and 2, m3/s.
     #[must_use]
     pub fn flow_m3_s(&self) -> [f64; 2] {
-        self.flow
+        self.guess.flow
     }
 
     /// Gas states of accumulators 1 and 2.
@@ -407,6 +412,7 @@ fn parameters(model: &StrutModel) -> Parameters {
         mount_compliance: area_m2 * area_m2 * flexibility,
         mount_flexibility: flexibility,
         volume_law: law_at(&e.unlisted, LawPlace::MainChamber),
+        has_unlisted: !e.unlisted.is_empty(),
         paths: [path(0), path(1)],
         valve3_coefficient: model.valve[2].flow_coefficient,
         valve3_leak: e.valve3_leakage.as_ref().map_or(0.0, |l| l.flow_coefficient),

@@ -8,8 +8,9 @@
 #[must_use]
 pub fn unit_flow(drop_pa: f64, transition_pa: f64) -> (f64, f64) {
     let a = drop_pa.abs() + transition_pa;
-    let root = a.sqrt();
-    (drop_pa / root, (0.5 * drop_pa.abs() + transition_pa) / (a * root))
+    // One division for both: 1 / a^(3/2).
+    let steep = 1.0 / (a * a.sqrt());
+    (drop_pa * a * steep, (0.5 * drop_pa.abs() + transition_pa) * steep)
 }
 
 /// The pressure drop that drives `flow / coefficient = q`, and its derivative by `q`: the root of
@@ -17,16 +18,10 @@ pub fn unit_flow(drop_pa: f64, transition_pa: f64) -> (f64, f64) {
 #[inline]
 #[must_use]
 pub fn unit_drop(q: f64, transition_pa: f64) -> (f64, f64) {
-    let q2 = q * q;
-    let root = (q2 * q2 + 4.0 * q2 * transition_pa).sqrt();
-    let drop = 0.5 * (q2 + root);
-    // d(dp)/dq of the relation above; at q = 0 its limit is sqrt(p_t).
-    let slope = if root > 0.0 {
-        q.abs() * (1.0 + (q2 + 2.0 * transition_pa) / root)
-    } else {
-        transition_pa.sqrt()
-    };
-    (drop.copysign(q), slope)
+    // |dp| = q (q + r) / 2 with r = sqrt(q^2 + 4 p_t), whose derivative by q is q / r; at q = 0 the slope is sqrt(p_t).
+    let size = q.abs();
+    let root = (q * q + 4.0 * transition_pa).sqrt();
+    (0.5 * q * (size + root), size + 0.5 * (root + q * q / root))
 }
 
 #[cfg(test)]

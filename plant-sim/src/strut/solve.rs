@@ -10,7 +10,8 @@
 //!
 //! Residuals: continuity of the main chamber, `A x' - C dp1/dt - Q1 - Q2 = 0`, and the loop of path 2,
 //! `p1 - d2 - R2 Q2 - I dQ2/dt - d3 - p4 = 0`. Both rise or fall monotonically in both unknowns (resistances, springs
-//! and masses only), so Newton's method with a bounded step finds the one solution; two or three rounds from the last one.
+//! and masses only), so Newton's method with a bounded step finds the one solution: one round in four stages of five, since
+//! the start is predicted ([`Guess`]) and the last step is taken linearly as soon as its square does not matter.
 
 use super::damper::Pack;
 use super::effects::{EntrainedAir, UnlistedLaw};
@@ -48,6 +49,8 @@ pub(super) struct Parameters {
     /// Inverse of the mount's stiffness, m/N.
     pub mount_flexibility: f64,
     pub volume_law: Option<Pack>,
+    /// Some path or the chamber has a law without a name, read from a table.
+    pub has_unlisted: bool,
     pub paths: [Path; 2],
     pub valve3_coefficient: f64,
     pub valve3_leak: f64,
@@ -90,13 +93,35 @@ impl Store {
     }
 }
 
-/// Unknowns and what is worth remembering from one solve to the next.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// When and where a stage ends.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moment {
+    /// Length of the stage, s.
+    pub h: f64,
+    /// Time since the end of the stage solved before, s.
+    pub since: f64,
+    pub displacement_m: f64,
+    pub speed_m_s: f64,
+    pub opening: [f64; 3],
+}
+
+/// The last solution and how it moves: what the next solve starts from. The result does not depend on it beyond the
+/// solver's tolerance.
+///
+/// Drops follow the piston's flow within a millisecond, so they are predicted by the last Jacobian's answer to the change of
+/// that flow, which is known; what the flow does not explain (gas and chamber filling) goes on at its last rate.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Guess {
     pub drop: [f64; 2],
     pub flow: [f64; 2],
-    pub segment: [usize; 2],
-    pub real: [Departure; 2],
+    segment: [usize; 2],
+    real: [Departure; 2],
+    /// Flow that the piston supplied, m3/s.
+    supply: f64,
+    /// Derivative of the drops by it, Pa s/m3.
+    gain: [f64; 2],
+    /// Their rate beside it, Pa/s.
+    drift: [f64; 2],
 }
 
 /// Result of a stage.
@@ -104,7 +129,6 @@ pub(super) struct Guess {
 pub(super) struct Stage {
     pub store: Store,
     pub pressure: [f64; 4],
-    pub flow: [f64; 2],
 }
 
 /// What one path answers to a trial drop.
@@ -146,45 +170,52 @@ struct GivenWay {
     held_slope: f64,
 }
 
-/// A Newton step of at most this much is taken without another look, Pa: all quantities follow it linearly, volumes
-/// included, and what that neglects in the drop is about step^2 / transition pressure, 5 Pa.
-const LAST_STEP_PA: f64 = 300.0;
-/// And one longer than this is not trusted, Pa.
+/// What a Newton step that is taken without another look may neglect in a pressure drop, Pa. All quantities follow the step
+/// linearly, volumes included, so nothing is lost; the error is that of the curved laws, about `step^2 / (2 (|d| + p_t))`
+/// for an orifice and `step^2 / p` for gas and bubbles.
+const NEGLECTED_PA: f64 = 5.0;
+/// The same where only a kink of a table is in question: the step across it.
+const ACROSS_KINK_PA: f64 = 50.0;
+/// And where the table is a law without a name, whose kinks are not looked for.
+const UNLISTED_STEP_PA: f64 = 300.0;
+/// A Newton step longer than this is not trusted, Pa.
 const LONGEST_STEP_PA: f64 = 2e6;
+/// No state has been seen that needs more than a third of this many rounds.
+const MOST_ROUNDS: u32 = 40;
 
 /// Where one path starts from in a stage.
-struct Setting {
+struct Setting<'a> {
     h: f64,
     gas: GasState,
     shear: f64,
-    heat: f64,
-    real: Departure,
+    fade: f64,
+    valve: f64,
+    transition: f64,
+    real: &'a Departure,
 }
 
 impl Path {
     #[inline(always)]
-    fn setting(&self, base: &Store, i: usize, h: f64, guess: &mut Guess) -> Setting {
-        let gas = base.gas[i];
-        self.gas.refresh(&mut guess.real[i], gas, h, guess.flow[i]);
+    fn setting<'a>(&self, base: &Store, i: usize, at: &Moment, transition: f64, real: &'a Departure) -> Setting<'a> {
         Setting {
-            h,
-            gas,
+            h: at.h,
+            gas: base.gas[i],
             shear: base.shear[i],
-            heat: base.heat[i],
-            real: guess.real[i],
+            fade: 1.0 + self.fade_per_j * base.heat[i],
+            valve: at.opening[i] * self.valve_coefficient + self.leak_coefficient,
+            transition,
+            real,
         }
     }
 
     #[inline(always)]
-    fn branch(&self, at: &Setting, opening: f64, transition: f64, drop: f64, segment: &mut usize) -> Branch {
-        let fade = 1.0 + self.fade_per_j * at.heat;
-        let (mut flow, mut flow_slope) = self.pack.flow(drop * fade, segment);
-        flow_slope *= fade;
-        let coefficient = opening * self.valve_coefficient + self.leak_coefficient;
-        if coefficient > 0.0 {
-            let (unit, slope) = unit_flow(drop, transition);
-            flow += coefficient * unit;
-            flow_slope += coefficient * slope;
+    fn branch(&self, at: &Setting, drop: f64, segment: &mut usize) -> Branch {
+        let (mut flow, mut flow_slope) = self.pack.flow(drop * at.fade, segment);
+        flow_slope *= at.fade;
+        if at.valve > 0.0 {
+            let (unit, slope) = unit_flow(drop, at.transition);
+            flow += at.valve * unit;
+            flow_slope += at.valve * slope;
         }
         if let Some(law) = &self.parallel_law {
             let (q, s) = law.flow(drop, &mut 0);
@@ -194,10 +225,19 @@ impl Path {
         self.behind(at, flow, flow_slope)
     }
 
+    /// Whether a step from `drop` may be taken linearly as far as pack, orifice and piston seal go.
+    #[inline(always)]
+    fn is_straight(&self, at: &Setting, branch: &Branch, drop: f64, step: f64, segment: usize) -> bool {
+        let curved = step * step <= 2.0 * NEGLECTED_PA * (at.transition + drop.abs());
+        let kink = step.abs() > ACROSS_KINK_PA && !self.pack.on_segment((drop + step) * at.fade, segment);
+        let sheared = self.piston_friction_pa * branch.shear_slope * branch.flow_slope * step;
+        curved && !kink && sheared * sheared <= NEGLECTED_PA * self.piston_friction_pa
+    }
+
     /// The part of the branch that follows from its flow.
     #[inline(always)]
     fn behind(&self, at: &Setting, flow: f64, flow_slope: f64) -> Branch {
-        let step = self.gas.implicit(at.gas, at.h, flow, &at.real);
+        let step = self.gas.implicit(at.gas, at.h, flow, at.real);
         let (mut oil, mut oil_slope) = (step.pressure_pa - ATMOSPHERE_PA, step.pressure_by_flow);
         let (mut shear, mut shear_slope) = (at.shear, 0.0);
         if self.piston_friction_pa > 0.0 {
@@ -239,7 +279,7 @@ impl Parameters {
             // exp(y) - 1 of the density at constant bulk modulus, y at most a few per cent: to y^4/24, 1e-8.
             let oil = self.oil_volume_m3 - self.area_m2 * displacement_m;
             let y = over * self.inverse_bulk_modulus;
-            volume += oil * y * (1.0 + y * (0.5 + y / 6.0));
+            volume += oil * y * (1.0 + y * (0.5 + y * (1.0 / 6.0)));
             slope += oil * self.inverse_bulk_modulus * (1.0 + y * (1.0 + 0.5 * y));
         }
         if let Some(air) = self.air.as_ref().filter(|_| self.conserves_oil) {
@@ -280,84 +320,127 @@ impl Parameters {
         }
     }
 
-    /// Solve one stage of length `h` that ends at strut displacement `displacement_m` with speed `speed_m_s`.
-    pub fn stage(
-        &self,
-        base: &Store,
-        h: f64,
-        displacement_m: f64,
-        speed_m_s: f64,
-        opening: [f64; 3],
-        guess: &mut Guess,
-    ) -> Stage {
-        let supply = self.area_m2 * speed_m_s;
-        let c3 = opening[2] * self.valve3_coefficient + self.valve3_leak;
-        let connected = c3 > 0.0;
-        let inertia = self.inertance / h;
-        let [mut d1, mut d2] = guess.drop;
-        if !connected {
-            d2 = 0.0;
+    /// Solve one stage from `base`.
+    pub fn stage(&self, base: &Store, at: &Moment, guess: &mut Guess) -> Stage {
+        let c3 = at.opening[2] * self.valve3_coefficient + self.valve3_leak;
+        if c3 > 0.0 {
+            self.solve::<true>(base, at, 1.0 / c3, guess)
+        } else {
+            self.solve::<false>(base, at, 0.0, guess)
         }
-        let first = self.paths[0].setting(base, 0, h, guess);
-        let second = self.paths[1].setting(base, 1, h, guess);
+    }
+
+    /// `CONNECTED`: valve 3 lets oil through; `inverse_c3` is the inverse of its flow coefficient as far as it is open.
+    fn solve<const CONNECTED: bool>(&self, base: &Store, at: &Moment, inverse_c3: f64, guess: &mut Guess) -> Stage {
+        let supply = self.area_m2 * at.speed_m_s;
+        let [path1, path2] = &self.paths;
+        let Guess { segment, real, .. } = guess;
+        path1.gas.refresh(&mut real[0], base.gas[0], at.h, guess.flow[0]);
+        path2.gas.refresh(&mut real[1], base.gas[1], at.h, guess.flow[1]);
+        let first = path1.setting(base, 0, at, self.transition_pa, &real[0]);
+        let second = path2.setting(base, 1, at, self.transition_pa, &real[1]);
+        let inverse_h = 1.0 / at.h;
+        let inertia = self.inertance * inverse_h;
+
+        // What the change of supply explains, and what it does not.
+        let change = supply - guess.supply;
+        let explained = |i: usize| guess.drop[i] + bounded(guess.gain[i] * change);
+        let explained = [explained(0), if CONNECTED { explained(1) } else { 0.0 }];
+        let mut d1 = explained[0] + bounded(guess.drift[0] * at.since);
+        let mut d2 = if CONNECTED {
+            explained[1] + bounded(guess.drift[1] * at.since)
+        } else {
+            0.0
+        };
         let mut round = 0;
         loop {
-            let one = self.paths[0].branch(&first, opening[0], self.transition_pa, d1, &mut guess.segment[0]);
+            let one = path1.branch(&first, d1, &mut segment[0]);
             let p1 = one.oil + one.line + d1;
             let p1_slope = 1.0 + (one.oil_slope + one.line_slope) * one.flow_slope;
-            let given = self.given_way(base, p1, displacement_m);
-            let (stored, c) = (given.volume / h, given.slope / h);
-            let (step1, step2, two, d3, d3_slope);
-            if connected {
-                let b = self.paths[1].branch(&second, opening[1], self.transition_pa, d2, &mut guess.segment[1]);
-                let (unit, unit_slope) = unit_drop(b.flow / c3, self.transition_pa);
-                let continuity = supply - stored - one.flow - b.flow;
-                let mesh = p1 - d2 - b.line - inertia * (b.flow - base.q2) - unit - b.oil;
-                let c_d1 = -c * p1_slope - one.flow_slope;
-                let c_d2 = -b.flow_slope;
-                let m_d2 = -1.0 - (b.line_slope + inertia + unit_slope / c3 + b.oil_slope) * b.flow_slope;
-                let determinant = c_d1 * m_d2 - c_d2 * p1_slope;
-                step1 = (c_d2 * mesh - m_d2 * continuity) / determinant;
-                step2 = (p1_slope * continuity - c_d1 * mesh) / determinant;
-                (two, d3, d3_slope) = (b, unit, unit_slope / c3);
+            let given = self.given_way(base, p1, at.displacement_m);
+            let (stored, c) = (given.volume * inverse_h, given.slope * inverse_h);
+            let two = if CONNECTED {
+                path2.branch(&second, d2, &mut segment[1])
             } else {
-                let b = self.paths[1].behind(&second, 0.0, 0.0);
-                step1 = (supply - stored - one.flow) / (c * p1_slope + one.flow_slope);
+                path2.behind(&second, 0.0, 0.0)
+            };
+            let (d3, d3_slope, step1, step2, gain);
+            if CONNECTED {
+                let (drop, slope) = unit_drop(two.flow * inverse_c3, self.transition_pa);
+                (d3, d3_slope) = (drop, slope * inverse_c3);
+                let continuity = supply - stored - one.flow - two.flow;
+                let mesh = p1 - d2 - two.line - inertia * (two.flow - base.q2) - d3 - two.oil;
+                let c_d1 = -c * p1_slope - one.flow_slope;
+                let m_d2 = -1.0 - (two.line_slope + inertia + d3_slope + two.oil_slope) * two.flow_slope;
+                let inverse = 1.0 / (c_d1 * m_d2 + two.flow_slope * p1_slope);
+                gain = [-m_d2 * inverse, p1_slope * inverse];
+                step1 = gain[0] * continuity - two.flow_slope * inverse * mesh;
+                step2 = gain[1] * continuity - c_d1 * inverse * mesh;
+            } else {
+                (d3, d3_slope) = (0.0, 0.0);
+                gain = [1.0 / (c * p1_slope + one.flow_slope), 0.0];
+                step1 = gain[0] * (supply - stored - one.flow);
                 step2 = 0.0;
-                (two, d3, d3_slope) = (b, 0.0, 0.0);
             }
             round += 1;
-            // Kinks of the tables can make full Newton steps cycle between two lines: after eight rounds the steps are
-            // halved, which monotone residuals cannot resist.
-            if (step1.abs() < LAST_STEP_PA && step2.abs() < LAST_STEP_PA) || round == 40 {
-                let (p1, one) = (p1 + p1_slope * step1, one.moved(step1, h));
-                let (d3, two) = (d3 + d3_slope * two.flow_slope * step2, two.moved(step2, h));
+            let p1_step = p1_slope * step1;
+            let d3_step = d3_slope * two.flow_slope * step2;
+            let least = if p1 + ATMOSPHERE_PA > LEAST_BUBBLE_PA {
+                p1 + ATMOSPHERE_PA
+            } else {
+                LEAST_BUBBLE_PA
+            };
+            let straight = p1_step * p1_step <= NEGLECTED_PA * least
+                && path1.is_straight(&first, &one, d1, step1, segment[0])
+                && (!CONNECTED
+                    || (path2.is_straight(&second, &two, d2, step2, segment[1])
+                        && d3_step * d3_step <= 2.0 * NEGLECTED_PA * (self.transition_pa + d3.abs())))
+                && (!self.has_unlisted || step1.abs().max(step2.abs()) <= UNLISTED_STEP_PA);
+            if straight || round == MOST_ROUNDS {
+                let (p1, one) = (p1 + p1_step, one.moved(step1, at.h));
+                let (d3, two) = (d3 + d3_step, two.moved(step2, at.h));
                 guess.drop = [d1 + step1, d2 + step2];
+                guess.drift = [0, 1].map(|i| (guess.drop[i] - explained[i]) / at.since);
                 guess.flow = [one.flow, two.flow];
+                (guess.supply, guess.gain) = (supply, gain);
                 let mut heat = base.heat;
                 for (i, q) in guess.flow.iter().enumerate() {
                     if self.paths[i].fade_per_j > 0.0 {
-                        heat[i] += h * guess.drop[i] * q;
+                        heat[i] += at.h * guess.drop[i] * q;
                     }
                 }
                 return Stage {
                     store: Store {
                         p1,
-                        held: given.held + given.held_slope * p1_slope * step1,
+                        held: given.held + given.held_slope * p1_step,
                         gas: [one.gas, two.gas],
                         q2: two.flow,
                         shear: [one.shear, two.shear],
                         heat,
                     },
-                    pressure: [p1, one.oil, if connected { two.oil + d3 } else { p1 }, two.oil],
-                    flow: guess.flow,
+                    pressure: [p1, one.oil, if CONNECTED { two.oil + d3 } else { p1 }, two.oil],
                 };
             }
-            // Near vacuum the chamber is soft on one side and hard on the other; an unbounded step leaps the gap.
+            // Near vacuum the chamber is soft on one side and hard on the other; an unbounded step leaps the gap. Kinks of
+            // the tables can make full Newton steps cycle between two lines: after eight rounds the steps are halved, which
+            // monotone residuals cannot resist.
             let relax = if round < 8 { 1.0 } else { 0.5 };
-            d1 += relax * step1.clamp(-LONGEST_STEP_PA, LONGEST_STEP_PA);
-            d2 += relax * step2.clamp(-LONGEST_STEP_PA, LONGEST_STEP_PA);
+            d1 += relax * bounded(step1);
+            d2 += relax * bounded(step2);
         }
+    }
+}
+
+/// A change of a drop that is trusted.
+#[inline(always)]
+#[expect(clippy::manual_clamp, reason = "clamp's care of NaN costs three times as much")]
+fn bounded(step: f64) -> f64 {
+    if step > LONGEST_STEP_PA {
+        LONGEST_STEP_PA
+    } else if step < -LONGEST_STEP_PA {
+        -LONGEST_STEP_PA
+    } else {
+        step
     }
 }
 
@@ -371,13 +454,22 @@ const LEAST_BUBBLE_PA: f64 = 2e3;
 #[inline]
 fn bubbles(air: &EntrainedAir, gauge_pa: f64) -> (f64, f64) {
     let absolute = gauge_pa + ATMOSPHERE_PA;
-    let held = absolute.max(LEAST_BUBBLE_PA);
-    let ratio = ATMOSPHERE_PA / held;
+    let held = if absolute > LEAST_BUBBLE_PA {
+        absolute
+    } else {
+        LEAST_BUBBLE_PA
+    };
+    let inverse = 1.0 / held;
+    let ratio = ATMOSPHERE_PA * inverse;
     let n = air.polytropic_exponent;
     // Isothermal bubbles, the usual choice, need no power function.
-    let power = if n == 1.0 { ratio } else { libm::pow(ratio, 1.0 / n) };
+    let (power, thinner) = if n == 1.0 {
+        (ratio, inverse)
+    } else {
+        (libm::pow(ratio, 1.0 / n), inverse / n)
+    };
     let volume = air.volume_fraction * power;
-    let thinning = volume / (n * held);
+    let thinning = volume * thinner;
     (volume + thinning * (held - absolute), thinning)
 }
 

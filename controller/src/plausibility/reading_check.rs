@@ -48,6 +48,22 @@ impl ReadingCheck {
 
     /// One tick; what is wrong, if the reading is to be replaced.
     pub fn step(&mut self, reading: Reading, message_lost: bool, limits: &Limits) -> FaultCode {
+        // The usual tick: nothing was wrong lately, so the last sample was good, and nothing is wrong now.
+        if self.bad == 0
+            && let Some(value) = reading.value()
+            && value >= limits.least
+            && value <= limits.most
+            && (value - self.last).abs() <= limits.step
+        {
+            self.last = value;
+            return FaultCode::None;
+        }
+        self.doubt(reading, message_lost, limits)
+    }
+
+    /// The whole check, for a reading that was or may be wrong.
+    #[inline(never)]
+    fn doubt(&mut self, reading: Reading, message_lost: bool, limits: &Limits) -> FaultCode {
         let in_range = reading.value().filter(|&v| v >= limits.least && v <= limits.most);
         // The longer ago the last good sample, the further the value may have gone.
         let reach = limits.step * (f32::from(self.age) + 1.0);

@@ -65,6 +65,8 @@ struct CornerWindow {
 pub struct Stuck {
     ticks: u16,
     corners: [CornerWindow; CORNERS],
+    /// Any reading of any corner is found stuck: spares the usual tick the look.
+    any: bool,
 }
 
 impl Default for Stuck {
@@ -79,6 +81,7 @@ impl Default for Stuck {
         Self {
             ticks: 0,
             corners: [corner; CORNERS],
+            any: false,
         }
     }
 }
@@ -109,6 +112,9 @@ impl Stuck {
         if self.ticks >= WINDOW_TICKS {
             self.ticks = 0;
             self.end_of_window();
+        }
+        if !self.any {
+            return;
         }
         for (window, verdict) in self.corners.iter().zip(verdicts) {
             if window.displacement_stuck {
@@ -154,6 +160,7 @@ impl Stuck {
             window.pressure = [Span::EMPTY; 4];
             window.spring_open = true;
         }
+        self.any = (self.corners.iter()).any(|w| w.displacement_stuck || w.pressure_stuck.contains(&true));
     }
 }
 

@@ -120,3 +120,51 @@ fn valves(specimen: &dyn Specimen, recording: usize, t_s: [f64; 2]) -> Option<St
         .collect();
     (!valves.is_empty()).then(|| format!("with {}, then each valve the other way round", valves.join(", ")))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_proposal_for_a_strut_has_amplitude_speed_and_valve_state() {
+        let candidate = |id: &'static str, instrument| Candidate {
+            id,
+            place: "somewhere".into(),
+            label: String::new(),
+            parameters: vec![],
+            starts: vec![],
+            instrument,
+            group: "",
+            untestable: None,
+        };
+        let ids = [
+            "oil_compressibility",
+            "entrained_air",
+            "gas_heat_transfer",
+            "real_gas",
+            "gas_charge_error",
+            "seal_friction",
+            "side_load_friction",
+            "accumulator_piston_friction",
+            "damper_leakage",
+            "line_resistance",
+            "valve_delay",
+            "valve_transition",
+            "mount_compliance",
+            "sensor_lag",
+            "sensor_gain",
+            "unlisted",
+        ];
+        for a in ids {
+            for b in ids {
+                let make = |id: &'static str| candidate(id, id.starts_with("sensor"));
+                let text = separate("two-stage hydropneumatic strut", &make(a), &make(b));
+                for needed in [" mm", " m/s", "valve"] {
+                    // Slow triangles are given in mm/s.
+                    let there = text.contains(needed) || (needed == " m/s" && text.contains(" mm/s"));
+                    assert!(there, "{needed}: {text}");
+                }
+            }
+        }
+    }
+}

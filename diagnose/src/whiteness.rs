@@ -30,54 +30,56 @@ pub struct Whiteness {
 /// Every channel; recordings are not joined across their ends.
 #[must_use]
 pub fn whiteness(specimen: &dyn Specimen, residuals: &[Series]) -> Vec<Whiteness> {
-    let count: usize = residuals.iter().map(|r| r[0].len()).sum();
-    let inputs: Vec<Vec<(&'static str, Vec<f64>)>> = (0..residuals.len()).map(|r| inputs(specimen, r)).collect();
+    let inputs: Vec<Vec<Input>> = (0..residuals.len()).map(|r| inputs(specimen, r)).collect();
+    (0..specimen.channels().len())
+        .map(|c| tested(&residuals.iter().map(|r| centred(&r[c])).collect::<Vec<_>>(), &inputs))
+        .collect()
+}
+
+/// Name with unit, and the series less its mean.
+type Input = (&'static str, Vec<f64>);
+
+/// One channel: its centred residuals and the centred inputs, recording by recording.
+fn tested(series: &[Vec<f64>], inputs: &[Vec<Input>]) -> Whiteness {
+    let n = series.iter().map(Vec::len).sum::<usize>() as f64;
+    let square: f64 = series.iter().flatten().map(|v| v * v).sum();
+    let autocorrelation: Vec<f64> = (1..=LAGS)
+        .map(|lag| series.iter().map(|s| lagged(s, s, lag)).sum::<f64>() / square.max(1e-300))
+        .collect();
+    let sum: f64 = (autocorrelation.iter().zip(1..))
+        .map(|(r, lag)| r * r / (n - f64::from(lag)))
+        .sum();
     let mut names: Vec<&'static str> = Vec::new();
     for (name, _) in inputs.iter().flatten() {
         if !names.contains(name) {
             names.push(name);
         }
     }
-    (0..specimen.channels().len())
-        .map(|c| {
-            let series: Vec<Vec<f64>> = residuals.iter().map(|r| centred(&r[c])).collect();
-            let square: f64 = series.iter().flatten().map(|v| v * v).sum();
-            let autocorrelation: Vec<f64> = (1..=LAGS)
-                .map(|lag| series.iter().map(|s| lagged(s, s, lag)).sum::<f64>() / square.max(1e-300))
-                .collect();
-            let n = count as f64;
-            let ljung_box = n
-                * (n + 2.0)
-                * (autocorrelation.iter().zip(1..))
-                    .map(|(r, lag)| r * r / (n - f64::from(lag)))
-                    .sum::<f64>();
-            let strongest = (names.iter())
-                .map(|name| {
-                    let of = |r: usize| inputs[r].iter().find(|(n, _)| n == name).map(|(_, v)| v);
-                    let energy: f64 = (0..series.len()).filter_map(of).flatten().map(|v| v * v).sum();
-                    let largest = (0..=LAGS)
-                        .map(|lag| {
-                            let sum: f64 = (0..series.len())
-                                .filter_map(|r| of(r).map(|u| lagged(u, &series[r], lag)))
-                                .sum();
-                            sum / (energy * square).sqrt().max(1e-300)
-                        })
-                        .max_by(|a, b| a.abs().total_cmp(&b.abs()));
-                    ((*name).to_owned(), largest.unwrap_or(0.0))
-                })
-                .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-            Whiteness {
-                autocorrelation,
-                ljung_box,
-                input: strongest,
-                bound: NORMAL_99 / n.sqrt(),
-            }
+    let strongest = (names.iter())
+        .map(|name| {
+            let of = |r: usize| inputs[r].iter().find(|(n, _)| n == name).map(|(_, v)| v);
+            let energy: f64 = (0..series.len()).filter_map(of).flatten().map(|v| v * v).sum();
+            let scale = (energy * square).sqrt().max(1e-300);
+            let at = |lag: usize| {
+                let sum: f64 = (0..series.len())
+                    .filter_map(|r| of(r).map(|u| lagged(u, &series[r], lag)))
+                    .sum();
+                sum / scale
+            };
+            let largest = (0..=LAGS).map(at).max_by(|a, b| a.abs().total_cmp(&b.abs()));
+            ((*name).to_owned(), largest.unwrap_or(0.0))
         })
-        .collect()
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    Whiteness {
+        autocorrelation,
+        ljung_box: n * (n + 2.0) * sum,
+        input: strongest,
+        bound: NORMAL_99 / n.sqrt(),
+    }
 }
 
 /// What the specimen was made to do: displacement and speed.
-fn inputs(specimen: &dyn Specimen, recording: usize) -> Vec<(&'static str, Vec<f64>)> {
+fn inputs(specimen: &dyn Specimen, recording: usize) -> Vec<Input> {
     (specimen.states(recording).into_iter())
         .filter(|(name, _)| matches!(*name, "displacement, m" | "speed, m/s"))
         .map(|(name, values)| (name, centred(&values)))
@@ -92,4 +94,59 @@ fn centred(values: &[f64]) -> Vec<f64> {
 /// Sum of `a` with what `b` is `lag` samples later.
 fn lagged(a: &[f64], b: &[f64], lag: usize) -> f64 {
     a.iter().zip(b.iter().skip(lag)).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{RngExt, SeedableRng};
+
+    const SAMPLES: usize = 20_000;
+
+    fn noise(seed: u64) -> Vec<f64> {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+        centred(
+            &(0..SAMPLES)
+                .map(|_| random.random_range(-1.0..1.0))
+                .collect::<Vec<f64>>(),
+        )
+    }
+
+    fn speed() -> Vec<f64> {
+        centred(&(0..SAMPLES).map(|k| libm::sin(0.01 * k as f64)).collect::<Vec<f64>>())
+    }
+
+    #[test]
+    fn noise_is_white_and_independent() {
+        let w = tested(
+            &[noise(1), noise(2)],
+            &[vec![("speed, m/s", speed())], vec![("speed, m/s", speed())]],
+        );
+        assert!(w.ljung_box < CHI_SQUARE_99, "{}", w.ljung_box);
+        assert!(w.input.is_some_and(|(_, r)| r.abs() < w.bound));
+    }
+
+    #[test]
+    fn a_slow_error_is_not_white() {
+        let mut slow = noise(3);
+        for k in 1..SAMPLES {
+            slow[k] += 0.1 * slow[k - 1];
+        }
+        let w = tested(&[slow], &[vec![]]);
+        assert!((w.autocorrelation[0] - 0.1).abs() < 0.03, "{}", w.autocorrelation[0]);
+        assert!(w.ljung_box > CHI_SQUARE_99 && w.input.is_none());
+    }
+
+    #[test]
+    fn what_an_input_leaves_is_found_at_its_size() {
+        let residual: Vec<f64> = noise(4).iter().zip(speed()).map(|(n, v)| n + 0.1 * v).collect();
+        let w = tested(&[residual], &[vec![("speed, m/s", speed())]]);
+        let (name, r) = w.input.expect("an input");
+        // 0.1 sine in uniform noise of variance 1/3.
+        let expected = (0.005 / (0.005 + 1.0 / 3.0_f64)).sqrt();
+        assert!(
+            name == "speed, m/s" && (r / expected - 1.0).abs() < 0.15 && r > w.bound,
+            "{r} {expected}"
+        );
+    }
 }

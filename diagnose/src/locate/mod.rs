@@ -39,6 +39,8 @@ pub struct Location {
 const LEAST_EXCESS: f64 = 0.03;
 /// A decay of this part of the largest misfit is what the misfit is about.
 const LEAST_DECAY: f64 = 0.25;
+/// A region that holds this much more of the misfit than of the samples says more than a decay.
+const SHARP: f64 = 0.8;
 
 /// Locations of every effect found, and of what is left unexplained; the largest share first.
 ///
@@ -199,15 +201,21 @@ fn strongest(
     if let Some((r, found)) = decays.max_by(|a, b| a.1.size.total_cmp(&b.1.size))
         && found.size > LEAST_DECAY * largest
     {
-        let time = specimen.time_s(r);
-        recording = r;
-        t_s = [time[found.samples.0], time[found.samples.1]];
-        condition.text = format!(
-            "after a step, decays with {} s",
-            oleo_report::significant(found.time_constant_s, 2)
-        );
+        let constant = oleo_report::significant(found.time_constant_s, 2);
         condition.decays = true;
-        condition.region = None;
+        let sharp = (condition.region.as_ref()).is_some_and(|region| region.concentration() > SHARP);
+        if sharp {
+            condition.text += &format!("; decays with {constant} s while nothing moves");
+        } else {
+            let time = specimen.time_s(r);
+            recording = r;
+            t_s = [time[found.samples.0], time[found.samples.1]];
+            let region = condition
+                .region
+                .as_ref()
+                .map_or(String::new(), |r| format!("; {}", r.words()));
+            condition.text = format!("after a step, decays with {constant} s{region}");
+        }
     }
     Location {
         place: String::new(),

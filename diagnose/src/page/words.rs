@@ -40,7 +40,7 @@ pub fn words(id: &str, label: &str) -> Words {
             "definition of the recordings",
         ),
         "seal_friction" => (
-            "friction of the rod seal",
+            "seal friction",
             "dF/dx = k (1 - sgn(v) F/g), g = F_c + (F_s - F_c) exp(-(v/v_s)^2): Coulomb force F_c, breakaway force F_s, Stribeck speed v_s",
             "Dahl 1968; Canudas de Wit et al., IEEE TAC 40(3), 1995",
         ),
@@ -75,22 +75,22 @@ pub fn words(id: &str, label: &str) -> Words {
             "Theron & Els, final report 2002, figures 24 and 25",
         ),
         "valve_transition" => (
-            "gradual opening of the valves",
+            "gradual valve opening",
             "opening is the straight line through 5 % at the initial delay and 95 % at the total response time, not a step",
             "Theron & Els, final report 2002, section 3.6",
         ),
         "valve3_leakage" => (
-            "leakage through the closed valve 3",
+            "leakage through the closed valve",
             "Q = c dp / sqrt(|dp| + p_t) while the valve is closed",
             "definition of the recordings",
         ),
         "bump_stop" => (
-            "contact with the end stops",
+            "contact with a stop",
             "F = k d + c d^3, d the travel beyond the clearance",
             "progressive rubber buffer",
         ),
         "mount_compliance" => (
-            "a compliant mount",
+            "compliance",
             "x_strut = x - (F - F_static)/k: the strut moves less than the actuator",
             "rubber bush in series",
         ),
@@ -222,7 +222,11 @@ pub fn quantity(key: &str) -> (String, String) {
     } else {
         unit
     };
-    (format!("{}{suffix}", name.replace('_', " ")), unit.to_owned())
+    let name = name
+        .replace('_', " ")
+        .replace("coulomb", "Coulomb")
+        .replace("stribeck", "Stribeck");
+    (format!("{name}{suffix}"), unit.to_owned())
 }
 
 /// A value with as many digits as its interval gives meaning to.
@@ -258,10 +262,10 @@ mod tests {
             ("bulk_modulus_Pa", "bulk modulus", "Pa"),
             ("rate_1_s", "rate", "1/s"),
             ("pressure_1_Pa", "pressure 1", "Pa"),
-            ("stribeck_speed_m_s", "stribeck speed", "m/s"),
+            ("stribeck_speed_m_s", "Stribeck speed", "m/s"),
             ("p1_Pa offset", "p1 offset", "Pa"),
             ("static_gas_volume_1", "static gas volume 1", "relative"),
-            ("breakaway_over_coulomb", "breakaway over coulomb", ""),
+            ("breakaway_over_coulomb", "breakaway over Coulomb", ""),
             ("drift_Pa_s", "drift", "Pa/s"),
         ] {
             assert_eq!(quantity(key), (name.to_owned(), unit.to_owned()), "{key}");

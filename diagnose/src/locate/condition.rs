@@ -124,6 +124,7 @@ impl Region {
                 format!("near the end of travel in rebound, below {to}")
             }
             ("time since a switching edge", (true, _)) => format!("at a switching edge, up to {to} after it"),
+            ("size of the speed", (false, true)) => format!("at speeds above {from}"),
             ("size of the speed", (true, _)) => format!("near zero speed, up to {to}"),
             (_, (true, true)) => format!("everywhere in {quantity}"),
             (_, (true, false)) => format!("at {quantity} below {to}"),

@@ -93,7 +93,7 @@ pub fn headline(all: &[Candidate], diagnosis: &Diagnosis) -> String {
     }
     for chosen in diagnosis.selection.chosen.iter().filter(|c| c.ambiguous) {
         if let Some((rival, ..)) = chosen.rival {
-            let said = |c: &Candidate| format!("{} {}", words::words(c.id, &c.label).name, words::at(&c.place));
+            let said = |c: &Candidate| format!("{} {}", words::called(c.id, &c.label), words::at(&c.place));
             text += &format!(
                 " The recordings cannot tell {} from {}; what to record to separate them is said below.",
                 said(&all[chosen.candidate]),
@@ -108,7 +108,7 @@ pub fn headline(all: &[Candidate], diagnosis: &Diagnosis) -> String {
 fn phrases(diagnosis: &Diagnosis) -> Vec<String> {
     let mut out: Vec<(String, String)> = Vec::new();
     for e in diagnosis.effects.iter().filter(|e| e.chosen.is_some()) {
-        let name = words::words(&e.id, &e.label).name.to_owned();
+        let name = words::called(&e.id, &e.label);
         let place = words::at(&e.place);
         match out.iter_mut().find(|(known, _)| *known == name) {
             Some((_, places)) => *places += &format!(" and {place}"),
@@ -150,10 +150,10 @@ fn in_brief(diagnosis: &Diagnosis) -> Table {
         table.row([
             format!("{} ({})", words::words(&e.id, &e.label).name, name(e)),
             place.trim_start_matches("in ").trim_start_matches("at ").to_owned(),
-            if large.is_empty() {
-                "it has no size: it is there or not".into()
-            } else {
-                large.join("; ")
+            match points(e) {
+                Some(n) => format!("a law of {n} points, drawn under What"),
+                None if large.is_empty() => "it has no size: it is there or not".into(),
+                None => large.join("; "),
             },
             format!("{:.2}", e.confidence),
             format!("{:.2}", e.held_out.0),
@@ -161,6 +161,11 @@ fn in_brief(diagnosis: &Diagnosis) -> Table {
         ]);
     }
     table
+}
+
+/// Points of a law given as a table; its increments are no numbers to read.
+fn points(effect: &Effect) -> Option<usize> {
+    Some(effect.law.as_ref()?.get("argument")?.as_array()?.len())
 }
 
 fn name(effect: &Effect) -> String {
@@ -221,7 +226,7 @@ pub fn effects_table(diagnosis: &Diagnosis) -> Table {
             name(e),
             e.place.clone(),
             format!("{:.2}", e.confidence),
-            numbers.join("; "),
+            points(e).map_or_else(|| numbers.join("; "), |n| format!("a law of {n} points")),
             format!("{:.2}", e.held_out.0),
             format!("{:.2}", e.held_out.1),
         ]);

@@ -137,6 +137,16 @@ fn unlisted(label: &str) -> Words {
     }
 }
 
+/// The name; a law that has none is called after what it relates.
+#[must_use]
+pub fn called(id: &str, label: &str) -> String {
+    if id == "unlisted" && label.contains(" over ") {
+        format!("a {label}, which has no name in the vocabulary,")
+    } else {
+        words(id, label).name.to_owned()
+    }
+}
+
 /// "in accumulator 1": a place after an effect's name.
 #[must_use]
 pub fn at(place: &str) -> String {

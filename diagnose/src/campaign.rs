@@ -238,7 +238,7 @@ fn read_all(
                 notes.extend(recording.notes.iter().map(|n| format!("{}: {n}", recording.name)));
                 recordings.push(recording);
             }
-            Err(e @ DiagnoseError::File { .. }) => {
+            Err(e @ DiagnoseError::TooShort { .. }) => {
                 notes.push(format!("left out: {e}"));
                 last = Some(e);
             }

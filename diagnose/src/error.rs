@@ -13,6 +13,14 @@ pub enum DiagnoseError {
         /// What is wrong and what to do.
         what: String,
     },
+    /// A recording is too short to conclude anything from; others of its campaign may do.
+    #[error("{}: {what}", path.display())]
+    TooShort {
+        /// The recording.
+        path: PathBuf,
+        /// How short and what to do.
+        what: String,
+    },
     /// A line of a file is wrong.
     #[error("{}, line {line}: {what}", path.display())]
     Line {

@@ -2,7 +2,8 @@
 //!
 //! Everything that could silently spoil a diagnosis is caught here: a column in another unit, time that stands still,
 //! a value that is not a number. What can be used soundly is used and said in a note: a recording with a hole is cut at
-//! the hole, because nobody knows the state after it; one with more samples than needed is thinned while it is read.
+//! the hole, because nobody knows the state after it; one with more samples than needed is thinned while it is read, so
+//! that memory stays bounded whatever its length.
 
 use std::path::Path;
 
@@ -12,6 +13,11 @@ use crate::error::DiagnoseError;
 pub const MAX_SAMPLES: usize = 200_000;
 /// Fewest samples from which anything can be concluded.
 pub const MIN_SAMPLES: usize = 50;
+/// Longest sampling interval that thinning may make, s: of a recording with switching signals, whose edges must stay
+/// where they were, and of any other. What is longer still is used from its start.
+const MAX_THINNED_INTERVAL_S: (f64, f64) = (0.005, 0.05);
+/// Rows at the start of a file by which its sampling interval is judged.
+const FIRST_ROWS: usize = 64;
 /// A step this many times the usual one is a hole.
 const GAP_RATIO: f64 = 4.5;
 
@@ -104,17 +110,44 @@ fn median_interval(time_s: &[f64]) -> f64 {
 /// One line naming file, line and remedy, for a missing column, another unit, text that is no number, NaN, time that
 /// does not increase, a switch that is neither 0 nor 1, or too few samples.
 pub fn read(path: &Path, specs: &[ColumnSpec], gaps: GapPolicy) -> Result<Recording, DiagnoseError> {
-    let file = std::fs::File::open(path).map_err(|e| DiagnoseError::file(path, e.to_string()))?;
+    let open = || std::fs::File::open(path).map_err(|e| DiagnoseError::file(path, e.to_string()));
+    let rows = count_lines(open()?).map_err(|e| DiagnoseError::file(path, e.to_string()))?;
+    parse(open()?, rows, path, specs, gaps)
+}
+
+/// Lines of a file, read in pieces.
+fn count_lines(mut file: std::fs::File) -> std::io::Result<usize> {
+    let mut piece = vec![0; 1 << 16];
+    let mut lines = 0;
+    loop {
+        match std::io::Read::read(&mut file, &mut piece)? {
+            0 => return Ok(lines),
+            n => lines += piece[..n].iter().filter(|&&b| b == b'\n').count(),
+        }
+    }
+}
+
+/// Reads one recording from anything. `rows` is about how many there are; `path` names the recording and is not opened.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(
+    source: impl std::io::Read,
+    rows: usize,
+    path: &Path,
+    specs: &[ColumnSpec],
+    gaps: GapPolicy,
+) -> Result<Recording, DiagnoseError> {
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
-        .from_reader(std::io::BufReader::with_capacity(1 << 20, file));
+        .from_reader(std::io::BufReader::with_capacity(1 << 20, source));
     let header = reader.headers().map_err(|e| csv_error(path, &e))?.clone();
     let time_at = position(path, &header, "time_s")?;
     let at: Vec<usize> = specs
         .iter()
         .map(|s| position(path, &header, &s.name))
         .collect::<Result<_, _>>()?;
-    let mut thinner = Thinner::new(specs);
+    let mut thinner = Thinner::new(specs, rows);
     let mut row = csv::StringRecord::new();
     let mut last_time = f64::NEG_INFINITY;
     let mut values = vec![0.0; specs.len()];
@@ -155,7 +188,9 @@ pub fn read(path: &Path, specs: &[ColumnSpec], gaps: GapPolicy) -> Result<Record
                 )));
             }
         }
-        thinner.push(time, &values);
+        if thinner.push(time, &values) == Room::Full {
+            break;
+        }
     }
     let name = path
         .file_stem()
@@ -165,14 +200,14 @@ pub fn read(path: &Path, specs: &[ColumnSpec], gaps: GapPolicy) -> Result<Record
         cut_at_gap(&mut recording);
     }
     if recording.len() < MIN_SAMPLES {
-        return Err(DiagnoseError::file(
-            path,
-            format!(
-                "{} usable samples, at least {MIN_SAMPLES} are needed{}; record longer or leave the file out",
-                recording.len(),
-                recording.notes.first().map_or(String::new(), |n| format!(" ({n})"))
+        let why = recording.notes.first().map_or(String::new(), |n| format!(" ({n})"));
+        return Err(DiagnoseError::TooShort {
+            path: path.to_path_buf(),
+            what: format!(
+                "{} usable samples{why}, at least {MIN_SAMPLES} are needed; record longer or leave the file out",
+                recording.len()
             ),
-        ));
+        });
     }
     Ok(recording)
 }
@@ -218,84 +253,118 @@ fn position(path: &Path, header: &csv::StringRecord, name: &str) -> Result<usize
     })
 }
 
-/// Keeps at most [`MAX_SAMPLES`] by taking one of `stride` rows, doubling `stride` when full. Nothing is lost that the
-/// comparison needs: the model is compared at the kept instants, and its input is the mean around each.
+/// Keeps at most [`MAX_SAMPLES`]: the middle one of every `stride` rows, an odd number, so that the mean of an input over
+/// them is the input at the kept instant. Nothing is lost that the comparison needs: the model is compared at the kept
+/// instants.
 struct Thinner {
     kinds: Vec<ColumnKind>,
+    rows: usize,
     stride: usize,
-    seen: usize,
+    /// Rows of the group begun, then the first rows of the file until the interval is known.
+    within: usize,
+    first: Vec<(f64, Vec<f64>)>,
+    settled: bool,
     time_s: Vec<f64>,
     columns: Vec<Vec<f64>>,
     sums: Vec<f64>,
+    middle: (f64, Vec<f64>),
+    full: bool,
+}
+
+/// Whether more rows are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Room {
+    Left,
+    Full,
 }
 
 impl Thinner {
-    fn new(specs: &[ColumnSpec]) -> Self {
+    fn new(specs: &[ColumnSpec], rows: usize) -> Self {
         Self {
             kinds: specs.iter().map(|s| s.kind).collect(),
+            rows,
             stride: 1,
-            seen: 0,
+            within: 0,
+            first: Vec::new(),
+            settled: rows <= MAX_SAMPLES,
             time_s: Vec::new(),
             columns: vec![Vec::new(); specs.len()],
             sums: vec![0.0; specs.len()],
+            middle: (0.0, Vec::new()),
+            full: false,
         }
     }
 
-    fn push(&mut self, time: f64, values: &[f64]) {
-        if self.stride == 1 {
-            self.time_s.push(time);
-            self.columns.iter_mut().zip(values).for_each(|(c, &v)| c.push(v));
-            if self.time_s.len() > MAX_SAMPLES {
-                self.halve();
+    fn push(&mut self, time: f64, values: &[f64]) -> Room {
+        if self.settled {
+            self.keep(time, values);
+        } else {
+            self.first.push((time, values.to_vec()));
+            if self.first.len() == FIRST_ROWS {
+                self.settle();
             }
+        }
+        if self.time_s.len() >= MAX_SAMPLES {
+            self.full = true;
+            return Room::Full;
+        }
+        Room::Left
+    }
+
+    /// Chooses the stride by the interval of the first rows.
+    fn settle(&mut self) {
+        self.settled = true;
+        let times: Vec<f64> = self.first.iter().map(|(t, _)| *t).collect();
+        let longest = if self.kinds.contains(&ColumnKind::Switch) {
+            MAX_THINNED_INTERVAL_S.0
+        } else {
+            MAX_THINNED_INTERVAL_S.1
+        };
+        let allowed = (longest / median_interval(&times).max(1e-9)) as usize;
+        let wanted = self.rows.div_ceil(MAX_SAMPLES);
+        self.stride = wanted.min(allowed).max(1) | 1;
+        if self.stride > allowed.max(1) {
+            self.stride -= 2;
+        }
+        for (time, values) in std::mem::take(&mut self.first) {
+            self.keep(time, &values);
+        }
+    }
+
+    fn keep(&mut self, time: f64, values: &[f64]) {
+        self.sums.iter_mut().zip(values).for_each(|(s, &v)| *s += v);
+        if self.within == self.stride / 2 {
+            self.middle = (time, values.to_vec());
+        }
+        self.within += 1;
+        if self.within < self.stride {
             return;
         }
-        // Groups of `stride` rows; the kept instant is the middle row, so the mean of an input is centred on it.
-        let within = self.seen % self.stride;
-        if within == 0 {
-            self.sums.fill(0.0);
+        self.time_s.push(self.middle.0);
+        for (((column, kind), sum), middle) in
+            (self.columns.iter_mut().zip(&self.kinds).zip(&self.sums)).zip(&self.middle.1)
+        {
+            column.push(match kind {
+                ColumnKind::Input => sum / self.stride as f64,
+                ColumnKind::Output | ColumnKind::Switch => *middle,
+            });
         }
-        self.sums.iter_mut().zip(values).for_each(|(s, &v)| *s += v);
-        if within == self.stride / 2 {
-            self.time_s.push(time);
-            self.columns.iter_mut().zip(values).for_each(|(c, &v)| c.push(v));
-        }
-        if within + 1 == self.stride {
-            for ((column, kind), sum) in self.columns.iter_mut().zip(&self.kinds).zip(&self.sums) {
-                if *kind == ColumnKind::Input {
-                    *column.last_mut().expect("the middle row was kept") = sum / self.stride as f64;
-                }
-            }
-        }
-        self.seen += 1;
-        if self.time_s.len() > MAX_SAMPLES {
-            self.halve();
-        }
+        self.within = 0;
+        self.sums.fill(0.0);
     }
 
-    fn halve(&mut self) {
-        let pairs = self.time_s.len() / 2;
-        for (column, kind) in self.columns.iter_mut().zip(&self.kinds) {
-            for k in 0..pairs {
-                column[k] = match kind {
-                    ColumnKind::Input => 0.5 * (column[2 * k] + column[2 * k + 1]),
-                    ColumnKind::Output | ColumnKind::Switch => column[2 * k + 1],
-                };
-            }
-            column.truncate(pairs);
+    fn finish(mut self, name: String) -> Recording {
+        if !self.settled {
+            self.settle();
         }
-        for k in 0..pairs {
-            self.time_s[k] = self.time_s[2 * k + 1];
-        }
-        self.time_s.truncate(pairs);
-        self.stride *= 2;
-        self.seen = 0;
-    }
-
-    fn finish(self, name: String) -> Recording {
         let mut notes = Vec::new();
         if self.stride > 1 {
             notes.push(format!("one of {} samples was used", self.stride));
+        }
+        if let (true, Some(last)) = (self.full, self.time_s.last()) {
+            notes.push(format!(
+                "only the first {MAX_SAMPLES} of these were used, to {last} s; record less or slower to use all"
+            ));
         }
         Recording {
             name,
@@ -320,5 +389,81 @@ fn cut_at_gap(recording: &mut Recording) {
         recording.notes.push(format!(
             "hole from {from} s to {to} s: the {lost} samples after it were not used"
         ));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fmt::Write as _;
+
+    fn specs() -> Vec<ColumnSpec> {
+        let spec = |name: &str, kind| ColumnSpec {
+            name: name.into(),
+            kind,
+        };
+        vec![
+            spec("displacement_m", ColumnKind::Input),
+            spec("p_Pa", ColumnKind::Output),
+        ]
+    }
+
+    fn parsed(text: &str, rows: usize) -> Result<Recording, DiagnoseError> {
+        parse(text.as_bytes(), rows, Path::new("a.csv"), &specs(), GapPolicy::Cut)
+    }
+
+    #[test]
+    fn thinned_columns_stay_in_step() {
+        let mut text = "time_s,displacement_m,p_Pa\n".to_owned();
+        for k in 0..500_000 {
+            let t = f64::from(k) * 1e-4;
+            let _ = writeln!(text, "{t:.4},{},{}", 0.1 * t, 2.0 * t);
+        }
+        let r = parsed(&text, 500_000).expect("valid");
+        assert!(r.len() <= MAX_SAMPLES && r.len() > MAX_SAMPLES / 2, "{}", r.len());
+        for k in 0..r.len() {
+            assert!((r.columns[0][k] - 0.1 * r.time_s[k]).abs() < 1e-9, "input at {k}");
+            assert!((r.columns[1][k] - 2.0 * r.time_s[k]).abs() < 1e-9, "output at {k}");
+        }
+        assert!(r.notes[0].contains("one of 3 samples"), "{:?}", r.notes);
+    }
+
+    #[test]
+    fn what_cannot_be_thinned_is_cut() {
+        let mut text = "time_s,displacement_m,p_Pa\n".to_owned();
+        for k in 0..300_000 {
+            let _ = writeln!(text, "{},0,1", f64::from(k) * 0.04);
+        }
+        let r = parsed(&text, 300_000).expect("valid");
+        assert_eq!(r.len(), MAX_SAMPLES);
+        assert!((r.interval_s() - 0.04).abs() < 1e-9);
+        assert!(r.notes[0].contains("only the first"), "{:?}", r.notes);
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_bytes_make_it_panic(bytes in proptest::collection::vec(proptest::prelude::any::<u8>(), 0..400)) {
+            if let Err(e) = parse(&bytes[..], 7, Path::new("a.csv"), &specs(), GapPolicy::Cut) {
+                proptest::prop_assert!(!e.to_string().contains('\n'), "{e}");
+            }
+        }
+
+        #[test]
+        fn no_table_makes_it_panic(
+            rows in proptest::collection::vec(("[-0-9.eEinfNa ]{0,8}", "[-0-9.e]{0,6}", "[-0-9.e,\"]{0,6}"), 0..80),
+            expected in 0_usize..400_000,
+        ) {
+            let mut text = "time_s,displacement_m,p_Pa\n".to_owned();
+            for (t, x, p) in rows {
+                let _ = writeln!(text, "{t},{x},{p}");
+            }
+            match parsed(&text, expected) {
+                Ok(r) => {
+                    proptest::prop_assert!(r.time_s.windows(2).all(|w| w[1] > w[0]));
+                    proptest::prop_assert!(r.columns.iter().flatten().all(|v| v.is_finite()));
+                }
+                Err(e) => proptest::prop_assert!(!e.to_string().contains('\n'), "{e}"),
+            }
+        }
     }
 }

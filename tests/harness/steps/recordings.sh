@@ -3,6 +3,8 @@
 . tests/harness/lib.sh
 readonly folder=../shared/recordings
 
+libtest "bad recordings" cargo test --locked --release --test diagnose_bad_recordings -- --show-output
+
 if [ ! -d $folder ]; then
     skip "recordings" "no folder $folder beside this checkout"
     exit 0

@@ -48,13 +48,19 @@ impl Noise {
     }
 }
 
+/// Triangle of period 1 between -1 and 1, from 0 up.
+fn triangle(cycles: f64) -> f64 {
+    let part = (cycles + 0.25).fract();
+    1.0 - 4.0 * (part - 0.5).abs()
+}
+
 /// A recording of the gas spring: strokes with holds, `amplitude` in m.
 fn spring(samples: usize, interval_s: f64, amplitude_m: f64) -> String {
     let text = format!("{SPRING}[effects.gas_heat_transfer]\ntime_constant_s = {TAU_S}\n");
     let model = GasSpringModel::from_toml(&text, "spring").expect("valid");
     let time: Vec<f64> = (0..samples).map(|k| k as f64 * interval_s).collect();
     let x: Vec<f64> = (time.iter())
-        .map(|t| amplitude_m * (1.5 * (t * std::f64::consts::TAU / 23.0).sin()).clamp(-1.0, 1.0))
+        .map(|t| amplitude_m * (1.5 * triangle(t / 23.0)).clamp(-1.0, 1.0))
         .collect();
     let p = model.pressure_pa(&time, &x, 1e6).expect("possible");
     let mut noise = Noise(9);
@@ -80,7 +86,7 @@ fn strut(amplitude_m: f64, signals: [bool; 3]) -> (String, String) {
         model.noise.insert(column.into(), 4e3);
     }
     let time: Vec<f64> = (0..2000).map(|k| f64::from(k) * 0.01).collect();
-    let x: Vec<f64> = time.iter().map(|t| amplitude_m * (1.0 - (t * 3.0).cos())).collect();
+    let x: Vec<f64> = time.iter().map(|t| amplitude_m * triangle(t / 2.0)).collect();
     let inputs = Inputs::from_recording(&time, &x, &vec![signals; time.len()], 0.0);
     let out = replay(&model, &inputs).expect("possible");
     let mut noise = Noise(5);

@@ -145,6 +145,26 @@ fn strut_model() {
 }
 
 #[test]
+fn recording() {
+    let mut proper = "time_s,displacement_m,p_Pa,valve1\n".to_owned();
+    for k in 0..120 {
+        proper += &format!("{:.3},0.0{k},1e6,{}\n", f64::from(k) * 0.01, k % 2);
+    }
+    drive(targets::recording, &[proper.as_bytes()]);
+}
+
+#[test]
+fn specimen_model() {
+    let spring = b"[specimen]\nname = \"a\"\nkind = \"gas spring\"\n[chamber]\narea_m2 = 0.01\nvolume_at_zero_m3 = 0.05\n[gas]\n\
+        species = \"nitrogen\"\nprocess = \"adiabatic\"\ntemperature_K = 293.15\n[effects.gas_heat_transfer]\n\
+        time_constant_s = 6.0\n[effects.sensor_skew]\np_Pa = 0.02\n[effects.sensor_lag]\np_Pa = 0.1\n[noise]\np_Pa = 300.0\n";
+    let cylinder = b"[specimen]\nname = \"a\"\nkind = \"cylinder\"\n[[chamber]]\ncolumn = \"p_Pa\"\narea_m2 = 0.001\n[effects]\n\
+        moving_mass_kg = 3.0\n[effects.seal_friction]\ncoulomb_force_N = 5.0\npresliding_stiffness_N_m = 1e5\n\
+        [effects.side_load_friction]\ncoefficient = 0.02\n[effects.sensor_skew]\np_Pa = 0.02\n[tolerance]\narea = 0.03\n";
+    drive(targets::specimen_model, &[spring, cylinder]);
+}
+
+#[test]
 fn vehicle_parameters() {
     drive(
         targets::vehicle_parameters,

@@ -6,9 +6,11 @@
 
 use oleo_controller::can::{PlantEnd, SENSOR_MESSAGES};
 use oleo_controller::{Configuration, Node};
+use oleo_diagnose::recording::{ColumnKind, ColumnSpec, GapPolicy, parse};
 use oleo_hil::bus::{SlcanDecoder, slcan_encode};
 use oleo_hil::candump::{parse_line, write_line};
 use oleo_plant_sim::road::{Road, crg, profile_from_csv};
+use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, smooth_motion, specimen_name};
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::VehicleParameters;
 use std::path::Path;
@@ -102,6 +104,65 @@ pub fn strut_model(bytes: &[u8]) {
             }
         }
         Err(error) => one_line(&error),
+    }
+}
+
+/// A recording as `oleo diagnose` reads it, in its whole or as if it were one of very many rows. What is accepted is
+/// finite, in order of time, and every column as long as the others.
+pub fn recording(bytes: &[u8]) {
+    let spec = |name: &str, kind| ColumnSpec {
+        name: name.into(),
+        kind,
+    };
+    let columns = [
+        spec("displacement_m", ColumnKind::Input),
+        spec("p_Pa", ColumnKind::Output),
+        spec("valve1", ColumnKind::Switch),
+    ];
+    for (rows, gaps) in [(0, GapPolicy::Cut), (1_000_000, GapPolicy::Keep)] {
+        match parse(bytes, rows, Path::new("any.csv"), &columns, gaps) {
+            Ok(recording) => {
+                assert!(recording.time_s.windows(2).all(|w| w[1] > w[0]));
+                for column in &recording.columns {
+                    assert_eq!(column.len(), recording.len());
+                    assert!(column.iter().all(|v| v.is_finite()));
+                }
+            }
+            Err(error) => one_line(&error),
+        }
+    }
+}
+
+/// The `model.toml` of a gas spring or a cylinder, as `oleo diagnose` and `oleo predict` read it. A model that is
+/// accepted is written and read again as the same, and predicts a recording or says in a line why not.
+pub fn specimen_model(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let line = |message: String| assert!(!message.is_empty() && !message.contains('\n'), "{message}");
+    if let Err(message) = specimen_name(text, "any.toml") {
+        line(message);
+    }
+    let time_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.01).collect();
+    let x: Vec<f64> = time_s.iter().map(|t| 0.1 * t).collect();
+    match GasSpringModel::from_toml(text, "any.toml") {
+        Ok(model) => {
+            let written = model.to_toml().expect("what was read can be written");
+            assert_eq!(GasSpringModel::from_toml(&written, "again.toml"), Ok(model.clone()));
+            match model.pressure_pa(&time_s, &x, 1e6) {
+                Ok(pressure) => assert_eq!(model.shown(&time_s, pressure).len(), time_s.len()),
+                Err(message) => line(message),
+            }
+        }
+        Err(message) => line(message),
+    }
+    match CylinderModel::from_toml(text, "any.toml") {
+        Ok(model) => {
+            let written = model.to_toml().expect("what was read can be written");
+            assert_eq!(CylinderModel::from_toml(&written, "again.toml"), Ok(model.clone()));
+            let pressures = vec![vec![1e5; time_s.len()]; model.chamber.len()];
+            let force = model.force_n(&time_s, &smooth_motion(&time_s, &x, 0.05), &pressures);
+            assert_eq!(model.shown(&time_s, force).len(), time_s.len());
+        }
+        Err(message) => line(message),
     }
 }
 

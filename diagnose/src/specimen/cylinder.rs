@@ -81,6 +81,7 @@ impl Cylinder {
             .noise
             .get("force_N")
             .copied()
+            .filter(|n| *n > 0.0)
             .unwrap_or(DEFAULT_NOISE_PART * force);
         let x_noise = model.noise.get("displacement_m").copied().unwrap_or(0.0);
         let still = (spread(0) < 20.0 * x_noise.max(1e-9))

@@ -44,6 +44,12 @@ pub fn columns() -> Vec<ColumnSpec> {
     ]
 }
 
+/// Standard deviation of the pressure's noise, Pa.
+fn noise_pa(model: &GasSpringModel) -> f64 {
+    let stated = model.noise.get("p_Pa").copied();
+    stated.filter(|n| *n > 0.0).unwrap_or(DEFAULT_NOISE_PA)
+}
+
 /// Corners of the motion in one recording: logarithm of the volume against logarithm of the pressure, whose slope there
 /// is the exponent of the fast process, about that of the adiabat whatever the gas does afterwards.
 fn clock(model: &GasSpringModel, recording: &Recording, noise_pa: f64) -> Option<Clock> {
@@ -57,7 +63,7 @@ fn clock(model: &GasSpringModel, recording: &Recording, noise_pa: f64) -> Option
 /// What the corners of the motion say about the clocks, one line a recording.
 #[must_use]
 pub fn corner_remarks(model: &GasSpringModel, recordings: &[Recording]) -> Vec<String> {
-    let noise = model.noise.get("p_Pa").copied().unwrap_or(DEFAULT_NOISE_PA);
+    let noise = noise_pa(model);
     (recordings.iter())
         .filter_map(|r| clock(model, r, noise).map(|c| (r, c)))
         .map(|(r, c)| {
@@ -111,7 +117,7 @@ impl GasSpring {
                 })
                 .fold(0.0, f64::max)
         };
-        let noise = model.noise.get("p_Pa").copied().unwrap_or(DEFAULT_NOISE_PA);
+        let noise = noise_pa(&model);
         let duration = recordings
             .iter()
             .map(|r| r.time_s[r.len() - 1] - r.time_s[0])

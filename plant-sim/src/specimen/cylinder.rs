@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{SpecimenName, toml_message, within};
+use super::{SpecimenName, instruments, toml_message, within};
 use crate::strut::{Effects, SealFriction, SensorEffect, SideLoadFriction, advance_friction, record_column};
 
 /// A pressure acting on an area.
@@ -146,6 +146,42 @@ impl CylinderModel {
         for chamber in &model.chamber {
             within(source, "chamber.area_m2", chamber.area_m2.abs(), 1e-8, 10.0)?;
         }
+        let e = &model.effects;
+        if let Some(seal) = &e.seal_friction {
+            let (force, stiffness) = (seal.coulomb_force_n, seal.presliding_stiffness_n_m);
+            within(source, "effects.seal_friction.coulomb_force_N", force, 0.0, 1e9)?;
+            within(
+                source,
+                "effects.seal_friction.presliding_stiffness_N_m",
+                stiffness,
+                1e-3,
+                1e15,
+            )?;
+        }
+        if let Some(side) = &e.side_load_friction {
+            within(
+                source,
+                "effects.side_load_friction.coefficient",
+                side.coefficient,
+                0.0,
+                10.0,
+            )?;
+        }
+        for (key, value) in [
+            ("effects.moving_mass_kg", e.moving_mass_kg),
+            ("effects.viscous_friction_N_s_m", e.viscous_friction_n_s_m),
+            ("effects.parallel_stiffness_N_m", e.parallel_stiffness_n_m),
+        ] {
+            within(source, key, value.unwrap_or(0.0), -1e12, 1e12)?;
+        }
+        let faults = [
+            ("sensor_lag", &e.sensor_lag),
+            ("sensor_gain", &e.sensor_gain),
+            ("sensor_drift", &e.sensor_drift),
+            ("sensor_skew", &e.sensor_skew),
+            ("sensor_offset", &e.sensor_offset),
+        ];
+        instruments(source, &model.tolerance, &model.noise, &faults)?;
         Ok(model)
     }
 

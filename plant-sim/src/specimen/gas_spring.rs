@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{SpecimenName, toml_message, within};
+use super::{SpecimenName, instruments, toml_message, within};
 use crate::strut::{Effects, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K, SensorEffect, record_column};
 
 /// The chamber.
@@ -145,6 +145,28 @@ impl GasSpringModel {
                 1e6,
             )?;
         }
+        let (gas, e) = (&model.gas, &model.effects);
+        for (key, value, most) in [
+            (
+                "gas.initial_temperature_difference_K",
+                gas.initial_temperature_difference_k,
+                150.0,
+            ),
+            ("gas.initial_pressure_error", gas.initial_pressure_error, 0.9),
+            ("effects.gas_leak_rate_1_s", e.gas_leak_rate_1_s.unwrap_or(0.0), 1e3),
+        ] {
+            within(source, key, value, -most, most)?;
+        }
+        if let Some(n) = e.polytropic_exponent {
+            within(source, "effects.polytropic_exponent", n, 0.5, 3.0)?;
+        }
+        let faults = [
+            ("sensor_lag", &e.sensor_lag),
+            ("sensor_gain", &e.sensor_gain),
+            ("sensor_drift", &e.sensor_drift),
+            ("sensor_skew", &e.sensor_skew),
+        ];
+        instruments(source, &model.tolerance, &model.noise, &faults)?;
         Ok(model)
     }
 

@@ -8,6 +8,8 @@ mod gas_spring;
 
 use serde::{Deserialize, Serialize};
 
+use crate::strut::SensorEffect;
+
 pub use cylinder::{CylinderChamber, CylinderEffects, CylinderModel, CylinderSeal, SmoothedMotion, smooth_motion};
 pub use gas_spring::{GasHeatTransferTerm, GasProcess, GasSpringEffects, GasSpringGas, GasSpringModel, SpringChamber};
 
@@ -43,6 +45,27 @@ pub(crate) fn toml_message(text: &str, source: &str, error: &toml::de::Error) ->
         "{source}, line {line}: {}",
         error.message().lines().next().unwrap_or("not valid TOML")
     )
+}
+
+/// Checks what a model says of its instruments: tolerances and noise not negative, faults finite.
+pub(crate) fn instruments(
+    source: &str,
+    tolerance: &SensorEffect,
+    noise: &SensorEffect,
+    faults: &[(&str, &Option<SensorEffect>)],
+) -> Result<(), String> {
+    for (key, value) in tolerance {
+        within(source, &format!("tolerance.{key}"), *value, 0.0, 1e12)?;
+    }
+    for (key, value) in noise {
+        within(source, &format!("noise.{key}"), *value, 0.0, 1e12)?;
+    }
+    for (name, fault) in faults {
+        for (key, value) in fault.iter().flatten() {
+            within(source, &format!("effects.{name}.{key}"), *value, -1e12, 1e12)?;
+        }
+    }
+    Ok(())
 }
 
 /// Checks that a number lies in a range.

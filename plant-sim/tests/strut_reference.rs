@@ -47,7 +47,7 @@ fn reference(model: &StrutModel, edge3: f64, dampers: f64) -> Vec<[f64; 4]> {
     let packs = [0, 1].map(|i| Pack::from_table(&model.damper[i]));
     let orifice = |d: f64| d / (d.abs() + model.orifice.transition_pressure_pa).sqrt();
     let gas = move |i: usize, v: f64, t: f64| mr[i] * t / v - ATMOSPHERE_PA;
-    let c = [0, 1, 2].map(|i| model.valve[i].flow_coefficient);
+    let c = [0, 1, 2].map(|i| model.valve[i].total_flow_coefficient());
     let through2 = |d: f64| packs[1].flow(d, &mut 0).0 + dampers * c[1] * orifice(d);
     // p3 between p1 and p4, where what comes through damper 2 goes through valve 3.
     let middle = |p1: f64, p4: f64, u3: f64| {

@@ -204,7 +204,11 @@ fn pack_bypass_leak_and_line_in_steady_flow() {
     close(pack(drop), q, 1e-3);
     let (drop, q) = steady_drop(&model, 0.3, [true, false, false]);
     let orifice = |c: f64, d: f64| c * d / (d.abs() + model.orifice.transition_pressure_pa).sqrt();
-    close(pack(drop) + orifice(model.valve[0].flow_coefficient, drop), q, 1e-3);
+    close(
+        pack(drop) + orifice(model.valve[0].total_flow_coefficient(), drop),
+        q,
+        1e-3,
+    );
     let leak = DamperLeakage {
         flow_coefficient_1: 2e-7,
         flow_coefficient_2: 0.0,
@@ -382,4 +386,82 @@ fn bubbles_that_open_and_close_keep_the_oil() {
         strut.advance(0.0, 0.01, SOFT);
     }
     close(total(strut.gas()), before, 1e-4);
+}
+
+/// Load cell less the pressure's force.
+fn beside_pressure(model: &StrutModel, out: &StrutOutput) -> f64 {
+    out.force_n - model.piston_area_m2() * out.pressure_pa[0]
+}
+
+#[test]
+fn seal_friction_slides_on_the_stribeck_curve_and_turns_with_the_motion() {
+    let mut model = bare();
+    let (coulomb, breakaway, stribeck) = (120.0, 180.0, 4e-3);
+    model.effects.seal_friction = Some(SealFriction {
+        coulomb_force_n: coulomb,
+        breakaway_force_n: breakaway,
+        stribeck_speed_m_s: stribeck,
+        presliding_stiffness_n_m: 2e6,
+    });
+    let mut strut = Strut::at_rest(&model, SOFT).unwrap();
+    // `slowly` moves at 2 mm/s and then waits: the seal keeps what it had.
+    let level = coulomb + (breakaway - coulomb) * libm::exp(-0.25);
+    close(beside_pressure(&model, &slowly(&mut strut, 0.02, SOFT)), level, 1e-3);
+    close(beside_pressure(&model, &slowly(&mut strut, 0.01, SOFT)), -level, 1e-3);
+    let fast = (1..=100)
+        .map(|i| strut.advance(0.01 + 5e-4 * f64::from(i), 1e-3, SOFT))
+        .last()
+        .unwrap();
+    close(beside_pressure(&model, &fast), coulomb, 1e-3);
+}
+
+#[test]
+fn side_load_friction_is_a_share_of_the_strut_force() {
+    let mut model = bare();
+    model.effects.side_load_friction = Some(SideLoadFriction { coefficient: 0.02 });
+    let mut strut = Strut::at_rest(&model, STIFF).unwrap();
+    for (to, sign) in [(0.03, 1.0), (-0.03, -1.0)] {
+        let out = slowly(&mut strut, to, STIFF);
+        let pressure_force = model.piston_area_m2() * out.pressure_pa[0];
+        close(beside_pressure(&model, &out), sign * 0.02 * pressure_force, 1e-2);
+    }
+}
+
+#[test]
+fn stops_are_a_spring_beyond_their_clearance() {
+    let mut model = bare();
+    model.effects.bump_stop = Some(BumpStop {
+        bump_clearance_m: 0.02,
+        rebound_clearance_m: 0.05,
+        stiffness_n_m: 4e4,
+        progression_n_m3: 1e9,
+    });
+    let mut strut = Strut::at_rest(&model, SOFT).unwrap();
+    assert!(beside_pressure(&model, &slowly(&mut strut, 0.019, SOFT)).abs() < 1e-9);
+    close(
+        beside_pressure(&model, &slowly(&mut strut, 0.03, SOFT)),
+        4e4 * 0.01 + 1e9 * 1e-6,
+        1e-9,
+    );
+    close(
+        beside_pressure(&model, &slowly(&mut strut, -0.06, SOFT)),
+        -(4e4 * 0.01 + 1e9 * 1e-6),
+        1e-9,
+    );
+}
+
+#[test]
+fn valves_in_parallel_pass_the_sum_of_their_flows() {
+    let text = StrutModel::defender110(8000.0).to_toml();
+    assert!(text.contains("in_parallel = 2"), "as built: two for each function");
+    let mut two = bare();
+    let mut one = two.clone();
+    for (two, one) in two.valve.iter_mut().zip(&mut one.valve) {
+        (two.in_parallel, one.in_parallel) = (2, 1);
+        one.flow_coefficient = 2.0 * two.flow_coefficient;
+    }
+    assert_eq!(steady_drop(&two, 0.3, STIFF), steady_drop(&one, 0.3, STIFF));
+    two.valve[1].in_parallel = 0;
+    let error = StrutModel::from_toml(&two.to_toml(), "m.toml").unwrap_err().to_string();
+    assert!(error.contains("in_parallel is 0"), "{error}");
 }

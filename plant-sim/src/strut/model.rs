@@ -64,12 +64,35 @@ pub struct Accumulator {
     pub static_gas_volume_m3: f64,
 }
 
-/// One valve (in the prototype two small fast ones in parallel, which are one coefficient).
+/// The valves of one function: bypass of damper 1, bypass of damper 2, or accumulator 2.
+///
+/// The prototype has two small fast ones for each, because no single valve had both the flow and the response (report,
+/// section 3.3). One signal drives both and they are alike, so their flows add: `Q = in_parallel * c * orifice(dp)`. What
+/// differs between the two, or one of them sticking, is not modelled.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Valve {
-    /// Flow coefficient of the open valve, m3/s/sqrt(Pa).
+    /// Flow coefficient of one open valve, m3/s/sqrt(Pa).
     pub flow_coefficient: f64,
+    /// Valves in parallel on one switching signal; 1 where the coefficient is that of the whole function.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub in_parallel: u32,
+}
+
+impl Valve {
+    /// Flow coefficient of all valves of the function together, m3/s/sqrt(Pa).
+    #[must_use]
+    pub fn total_flow_coefficient(&self) -> f64 {
+        f64::from(self.in_parallel) * self.flow_coefficient
+    }
+}
+
+fn one() -> u32 {
+    1
+}
+
+fn is_one(count: &u32) -> bool {
+    *count == 1
 }
 
 /// All orifices.
@@ -215,6 +238,9 @@ impl StrutModel {
         }
         for v in &self.valve {
             positive("flow_coefficient", v.flow_coefficient)?;
+            if v.in_parallel == 0 {
+                return Err(("in_parallel".into(), "is 0: must be 1 or more".into()));
+            }
         }
         for d in &self.damper {
             increasing("flow_m3_s", &d.flow_m3_s)?;

@@ -369,7 +369,7 @@ fn parameters(model: &StrutModel) -> Parameters {
         let volume = model.accumulator[i].static_gas_volume_m3 * (1.0 + charge);
         Path {
             pack: Pack::from_table(&model.damper[i]),
-            valve_coefficient: model.valve[i].flow_coefficient,
+            valve_coefficient: model.valve[i].total_flow_coefficient(),
             leak_coefficient: e
                 .damper_leakage
                 .as_ref()
@@ -414,7 +414,7 @@ fn parameters(model: &StrutModel) -> Parameters {
         volume_law: law_at(&e.unlisted, LawPlace::MainChamber),
         has_unlisted: !e.unlisted.is_empty(),
         paths: [path(0), path(1)],
-        valve3_coefficient: model.valve[2].flow_coefficient,
+        valve3_coefficient: model.valve[2].total_flow_coefficient(),
         valve3_leak: e.valve3_leakage.as_ref().map_or(0.0, |l| l.flow_coefficient),
         inertance: e.line_inertance.as_ref().map_or(0.0, |l| l.inertance_2_kg_m4),
         transition_pa: model.orifice.transition_pressure_pa,

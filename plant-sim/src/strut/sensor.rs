@@ -95,12 +95,23 @@ pub(super) fn undo(effects: &Effects, times_s: &[f64], motion: &Motion) -> Motio
 
 /// Linear interpolation, constant beyond the ends.
 fn interpolate(x: &[f64], y: &[f64], at: f64) -> f64 {
-    let i = x.partition_point(|v| *v <= at);
-    if i == 0 {
+    let (Some(first), Some(last)) = (x.first(), x.last()) else {
+        return 0.0;
+    };
+    if at < *first {
         return y[0];
     }
-    if i == x.len() {
+    if at >= *last {
         return y[x.len() - 1];
+    }
+    // Sampling is nearly even: the place is known to a sample or two, without a search.
+    let guess = (at - first) / (last - first) * (x.len() - 1) as f64;
+    let mut i = (guess as usize).clamp(1, x.len() - 1);
+    while x[i] <= at {
+        i += 1;
+    }
+    while x[i - 1] > at {
+        i -= 1;
     }
     y[i - 1] + (y[i] - y[i - 1]) * ((at - x[i - 1]) / (x[i] - x[i - 1]))
 }
@@ -123,5 +134,76 @@ mod tests {
         let mut other = vec![1.0; 400];
         record(&effects, "p1_Pa", &t, &mut other);
         assert!(other.iter().all(|v| *v == 1.0));
+    }
+
+    fn only(fault: &str, value: f64) -> Effects {
+        let mut effects = Effects::default();
+        let map = Some(BTreeMap::from([
+            ("displacement_m".to_owned(), value),
+            ("p1_Pa".to_owned(), value),
+        ]));
+        match fault {
+            "lag" => effects.sensor_lag = map,
+            "skew" => effects.sensor_skew = map,
+            "gain" => effects.sensor_gain = map,
+            "drift" => effects.sensor_drift = map,
+            "sign" => effects.sensor_sign = map,
+            _ => effects.sensor_offset = map,
+        }
+        effects
+    }
+
+    #[test]
+    fn gain_drift_sign_offset_and_skew_are_what_they_say() {
+        let t: Vec<f64> = (0..400).map(|i| 0.002 * f64::from(i)).collect();
+        let truth = |t: f64| 3.0 + 5.0 * t;
+        for (fault, value, shown) in [
+            ("gain", 0.1, 1.1 * truth(t[300])),
+            ("drift", 2.0, truth(t[300]) + 2.0 * t[300]),
+            ("sign", -1.0, -truth(t[300])),
+            ("offset", 0.5, truth(t[300]) + 0.5),
+            ("skew", 0.013, truth(t[300] - 0.013)),
+            ("skew", -0.013, truth(t[300] + 0.013)),
+        ] {
+            let mut y: Vec<f64> = t.iter().map(|t| truth(*t)).collect();
+            record(&only(fault, value), "p1_Pa", &t, &mut y);
+            assert!((y[300] - shown).abs() < 1e-12, "{fault} {value}: {} {shown}", y[300]);
+        }
+    }
+
+    #[test]
+    fn a_faulty_displacement_is_undone() {
+        // A motion of constant acceleration, which segments hold exactly, as the faulty sensor records it.
+        let t: Vec<f64> = (0..400).map(|i| 0.002 * f64::from(i)).collect();
+        let (a, faults) = (
+            0.8,
+            [
+                ("lag", 0.01),
+                ("skew", 0.006),
+                ("gain", 0.03),
+                ("drift", 1e-3),
+                ("sign", -1.0),
+                ("offset", 2e-4),
+            ],
+        );
+        for (fault, value) in faults {
+            let effects = only(fault, value);
+            let mut shown: Vec<f64> = t.iter().map(|t| 0.5 * a * t * t).collect();
+            record(&effects, "displacement_m", &t, &mut shown);
+            let motion = super::super::input::smooth_displacement(&shown, 0.002, 0.0);
+            let found = undo(&effects, &t, &motion);
+            let (k, truth) = (250, 0.5 * a * t[251] * t[251]);
+            // The lag's answer to a ramp from sample to sample is its answer to the parabola to (a/2) dt tau.
+            assert!(
+                (found.segments[k].to_m - truth).abs() < 2e-5,
+                "{fault}: {} {truth}",
+                found.segments[k].to_m
+            );
+            assert!(
+                (found.segments[k].to_m_s - a * t[251]).abs() < 5e-3,
+                "{fault}: {}",
+                found.segments[k].to_m_s
+            );
+        }
     }
 }

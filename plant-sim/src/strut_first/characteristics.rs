@@ -116,7 +116,7 @@ fn flow_at_drop(model: &StrutModel, level: Damping, drop_pa: f64) -> f64 {
     let bypassed = level == Damping::Low;
     let first = |index: usize, drop: f64| {
         let bypass = if bypassed {
-            orifice(model.valve[index].flow_coefficient, drop)
+            orifice(model.valve[index].total_flow_coefficient(), drop)
         } else {
             0.0
         };
@@ -128,7 +128,7 @@ fn flow_at_drop(model: &StrutModel, level: Damping, drop_pa: f64) -> f64 {
     }
     // Path 2 shares its drop between damper 2 with its bypass and valve 3: find the share at which both pass the same.
     let share = root(
-        |share| first(1, share * drop_pa) - orifice(model.valve[2].flow_coefficient, (1.0 - share) * drop_pa),
+        |share| first(1, share * drop_pa) - orifice(model.valve[2].total_flow_coefficient(), (1.0 - share) * drop_pa),
         drop_pa < 0.0,
     );
     path_1 + first(1, share * drop_pa)

@@ -198,7 +198,7 @@ impl Campaign {
         );
         let mut above = Vec::new();
         for row in &rows {
-            for (channel, ratio) in CHANNELS.iter().zip(row.ratio).filter(|(_, r)| !(*r <= MOST)) {
+            for (channel, ratio) in CHANNELS.iter().zip(row.ratio).filter(|(_, r)| r.is_nan() || *r > MOST) {
                 above.push(format!("{} {} {channel} {ratio:.2}", self.name, row.name));
             }
         }

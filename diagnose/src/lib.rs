@@ -15,6 +15,7 @@
 //! ```
 
 pub mod campaign;
+pub mod confidence;
 pub mod diagnosis;
 pub mod error;
 mod experiment;
@@ -28,6 +29,7 @@ pub mod problem;
 pub mod recording;
 pub mod screen;
 pub mod select;
+pub mod selftest;
 pub mod specimen;
 pub mod unseen;
 pub mod whiteness;

@@ -1,6 +1,8 @@
 //! `oleo diagnose`: from recordings and a model to what the model left out.
 
-use std::path::PathBuf;
+mod self_test;
+
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -13,27 +15,33 @@ use crate::failure::Failure;
 
 /// Find the physics that a model left out: where, what, with which numbers, and how much better the model becomes.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  oleo diagnose campaign --out found\n\n\
+#[command(
+    after_help = "Example:\n  oleo diagnose campaign --out found\n  oleo diagnose --self-test --campaigns 70 --out power\n\n\
     A campaign is a folder with model.toml (what is believed) and recordings (*.csv). Written to DIR: report.json,\n\
     report.html (opens offline) and model.toml, the improved model, which oleo predict, rig and hil run as it is.\n\
     Exit status 0 whatever the verdict.\n\n\
     To see whether the improved model predicts what it was not fitted to, keep something back:\n  \
     oleo diagnose gas-spring --fit-until 0.5 --out found       fits the first half of every recording\n  \
     oleo diagnose cylinder --hold-out 5bar --out found         fits all recordings but 5bar.csv\n\
-    The noise ratios of every model on both parts are printed and are in report.json under kept_back.")]
+    The noise ratios of every model on both parts are printed and are in report.json under kept_back.\n\n\
+    The self-test keeps finished campaigns in DIR/trials.jsonl: an interrupted one goes on there. Another build of oleo\n\
+    wants another DIR."
+)]
 pub struct Args {
     /// Folder with model.toml and the recordings
-    #[arg(value_name = "CAMPAIGN")]
-    campaign: PathBuf,
+    #[arg(value_name = "CAMPAIGN", required_unless_present = "self_test")]
+    campaign: Option<PathBuf>,
     /// Folder to write
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
+    #[arg(long, value_name = "DIR", required_unless_present = "self_test")]
+    out: Option<PathBuf>,
     /// Fit only this first part of every recording (0.05 to 0.95), predict the rest
     #[arg(long, value_name = "PART", value_parser = part)]
     fit_until: Option<f64>,
     /// Recording (file name without .csv) to predict instead of fitting; may be repeated
     #[arg(long, value_name = "NAME")]
     hold_out: Vec<String>,
+    #[command(flatten)]
+    self_test: self_test::Args,
 }
 
 fn part(text: &str) -> Result<f64, String> {
@@ -48,19 +56,22 @@ const STEPS: u64 = 100;
 
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
+    let (Some(folder), Some(destination)) = (&args.campaign, &args.out) else {
+        return self_test::run_self_test(&args.self_test, args.out.as_deref());
+    };
     let begun = Instant::now();
     let kept_back = KeptBack {
         fit_until: args.fit_until,
         recordings: args.hold_out.clone(),
     };
     let (campaign, whole) = if kept_back.is_nothing() {
-        (Campaign::open(&args.campaign)?, None)
+        (Campaign::open(folder)?, None)
     } else {
-        let (campaign, whole) = Campaign::open_in_part(&args.campaign, &kept_back)?;
+        let (campaign, whole) = Campaign::open_in_part(folder, &kept_back)?;
         (campaign, Some(whole))
     };
     // Staged before the work: Ctrl-C from here on removes the folder and ends with nothing half-written.
-    let mut out = OutputDirectory::stage(&args.out)?;
+    let mut out = OutputDirectory::stage(destination)?;
     let stop = AtomicBool::new(false);
     let problem = Problem::new(&*campaign.specimen, &stop);
     let progress = Progress::new(&campaign.name, STEPS);
@@ -73,7 +84,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     drop(progress);
     let runtime_s = begun.elapsed().as_secs_f64();
     let mut report = json::report(&campaign, &diagnosis, runtime_s);
-    let mut page = page::page(&campaign, &diagnosis, &args.command(), runtime_s);
+    let mut page = page::page(&campaign, &diagnosis, &args.command(folder, destination), runtime_s);
     if let Some(unseen) = &unseen {
         report["kept_back"] = unseen.json(&kept_back);
         page.section("Prediction of what was not fitted");
@@ -108,15 +119,15 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
 
 impl Args {
     /// The command line again, for the page.
-    fn command(&self) -> String {
-        let mut line = format!("oleo diagnose {}", self.campaign.display());
+    fn command(&self, folder: &Path, destination: &Path) -> String {
+        let mut line = format!("oleo diagnose {}", folder.display());
         if let Some(part) = self.fit_until {
             line += &format!(" --fit-until {part}");
         }
         for name in &self.hold_out {
             line += &format!(" --hold-out {name}");
         }
-        format!("{line} --out {}", self.out.display())
+        format!("{line} --out {}", destination.display())
     }
 }
 

@@ -1,0 +1,384 @@
+//! What is concealed: every effect of the vocabulary at a drawn place, with an amount that can be scaled, so that power can
+//! be asked for over the size of the effect; and laws that no vocabulary names.
+
+use oleo_plant_sim::strut::{
+    AccumulatorPistonFriction, BumpStop, COLUMNS, DamperLeakage, DampingFade, EntrainedAir, GasChargeError,
+    GasEquation, GasHeatTransfer, LawArgument, LawPlace, LineInertance, LineResistance, MountCompliance,
+    OilCompressibility, OilCount, RealGas, SealFriction, SideLoadFriction, StrutModel, TransitionShape, UnlistedLaw,
+    Valve3Leakage, ValveDelay, ValveTransition,
+};
+use serde::{Deserialize, Serialize};
+
+use super::draw::Draw;
+
+/// The vocabulary, and what has no name in it.
+pub const TERMS: [&str; 23] = [
+    "oil_compressibility",
+    "entrained_air",
+    "gas_heat_transfer",
+    "real_gas",
+    "gas_charge_error",
+    "seal_friction",
+    "side_load_friction",
+    "accumulator_piston_friction",
+    "damper_leakage",
+    "line_resistance",
+    "line_inertance",
+    "valve_delay",
+    "valve_transition",
+    "valve3_leakage",
+    "bump_stop",
+    "mount_compliance",
+    "damping_fade",
+    "sensor_lag",
+    "sensor_gain",
+    "sensor_drift",
+    "sensor_skew",
+    "sensor_sign",
+    "unlisted",
+];
+
+/// A number of the truth, as the report would give it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Truth {
+    /// Id of the vocabulary.
+    pub id: String,
+    /// Place.
+    pub place: String,
+    /// Key with unit, empty for an effect without numbers.
+    pub key: String,
+    /// Value.
+    pub value: f64,
+}
+
+/// A concealed effect whose amount is still open.
+#[derive(Debug, Clone)]
+pub struct Hidden {
+    /// Id of the vocabulary.
+    pub id: &'static str,
+    /// Smallest and largest amount; `None` for what is there or not.
+    pub range: Option<(f64, f64)>,
+    /// Which of several places, and the sign where both are possible.
+    which: usize,
+    sign: f64,
+    /// Uniform numbers that shape the rest.
+    shape: [f64; 4],
+    /// Valve response of the complete model, s, s/MPa, s/MPa2.
+    response: [f64; 3],
+}
+
+impl Hidden {
+    /// Draws place and shape of an effect of a strut whose complete nominal model is given.
+    #[must_use]
+    pub fn draw(id: &'static str, complete: &StrutModel, draw: &mut Draw) -> Self {
+        let c = &complete.valve_timing.response_polynomial_s;
+        let places = match id {
+            "gas_charge_error" | "accumulator_piston_friction" | "damper_leakage" | "line_resistance" => 2,
+            "damping_fade" | "bump_stop" => 3,
+            "unlisted" => LAWS.len(),
+            id if id.starts_with("sensor") => COLUMNS.len(),
+            _ => 1,
+        };
+        let which = draw.index(places);
+        let column = if which == 0 { 0.05 } else { 5e6 };
+        let range = match id {
+            "real_gas" | "valve_transition" | "sensor_sign" => None,
+            "oil_compressibility" => Some((1e-13, 1.0 / 0.8e9)),
+            "entrained_air" => Some((1e-6, 0.04)),
+            // Faster gas is isothermal for all that a strut does (plant-sim: 0.5 to 20 s).
+            "gas_heat_transfer" => Some((0.5, 12.0)),
+            "gas_charge_error" => Some((1e-4, 0.3)),
+            "seal_friction" => Some((0.3, 600.0)),
+            "side_load_friction" => Some((1e-5, 0.08)),
+            "accumulator_piston_friction" => Some((100.0, 5e5)),
+            "damper_leakage" => Some((1e-11, 6e-7)),
+            "line_resistance" => Some((1e4, 3e9)),
+            "line_inertance" => Some((1e3, 2e7)),
+            "valve_delay" => Some((1e-3, 4.0)),
+            "valve3_leakage" => Some((1e-13, 5e-8)),
+            "bump_stop" => Some((100.0, 5e5)),
+            "mount_compliance" => Some((1e-10, 1e-6)),
+            "damping_fade" => Some((1e-8, 3e-4)),
+            "sensor_lag" => Some((1e-6, 0.03)),
+            "sensor_skew" => Some((1e-6, 0.03)),
+            "sensor_gain" => Some((1e-5, 0.2)),
+            "sensor_drift" => Some((1e-6 * column, 0.02 * column)),
+            _ => Some((1e-5, 1.0)),
+        };
+        Self {
+            id,
+            range,
+            which,
+            sign: if draw.uniform() < 0.5 { -1.0 } else { 1.0 },
+            shape: std::array::from_fn(|_| draw.uniform()),
+            response: std::array::from_fn(|k| c.get(k).copied().unwrap_or(0.0)),
+        }
+    }
+
+    /// Column of a faulty instrument.
+    #[must_use]
+    pub fn column(&self) -> Option<&'static str> {
+        self.id.starts_with("sensor").then(|| COLUMNS[self.which])
+    }
+
+    /// Takes the effect out of what is believed, where the complete model has it.
+    pub fn conceal(&self, given: &mut StrutModel) {
+        match self.id {
+            "oil_compressibility" => given.effects.oil_compressibility = None,
+            "gas_heat_transfer" => given.effects.gas_heat_transfer = None,
+            "valve_transition" => given.effects.valve_transition = None,
+            "valve_delay" => given.valve_timing.response_polynomial_s.truncate(1),
+            _ => {}
+        }
+    }
+
+    /// Puts the effect into the true model and says the numbers that should be found; the first is its size.
+    pub fn put(&self, model: &mut StrutModel, amount: f64) -> Vec<Truth> {
+        let effects = &mut model.effects;
+        let shape = |k: usize, low: f64, high: f64| low + (high - low) * self.shape[k];
+        let number = |place: &str, key: &str, value: f64| Truth {
+            id: self.id.into(),
+            place: place.into(),
+            key: key.into(),
+            value,
+        };
+        let i = self.which;
+        let pick = |k: usize| if i == k { amount } else { 0.0 };
+        let accumulator = format!("accumulator-{}", i + 1);
+        let path = format!("path-{}", i + 1);
+        match self.id {
+            "oil_compressibility" => {
+                effects.oil_compressibility = Some(OilCompressibility {
+                    bulk_modulus_pa: 1.0 / amount,
+                    counted_at: OilCount::Chamber,
+                });
+                vec![number("main-chamber", "bulk_modulus_Pa", 1.0 / amount)]
+            }
+            "entrained_air" => {
+                let exponent = shape(0, 1.0, 1.4);
+                effects.entrained_air = Some(EntrainedAir {
+                    volume_fraction: amount,
+                    polytropic_exponent: exponent,
+                });
+                vec![
+                    number("main-chamber", "volume_fraction", amount),
+                    number("main-chamber", "polytropic_exponent", exponent),
+                ]
+            }
+            "gas_heat_transfer" => {
+                let second = amount * shape(0, 1.4, 2.5);
+                effects.gas_heat_transfer = Some(GasHeatTransfer {
+                    time_constant_1_s: amount,
+                    time_constant_2_s: second,
+                });
+                vec![
+                    number("accumulator-1", "time_constant_1_s", amount),
+                    number("accumulator-2", "time_constant_2_s", second),
+                ]
+            }
+            "real_gas" => {
+                effects.real_gas = Some(RealGas {
+                    equation: GasEquation::Reference,
+                });
+                vec![number("both accumulators", "", 0.0)]
+            }
+            "gas_charge_error" => {
+                let error = self.sign * amount;
+                effects.gas_charge_error = Some(GasChargeError {
+                    relative_error_1: self.sign * pick(0),
+                    relative_error_2: self.sign * pick(1),
+                });
+                vec![number(&accumulator, &format!("relative_error_{}", i + 1), error)]
+            }
+            "seal_friction" => {
+                let (ratio, speed) = (shape(0, 1.0, 1.5), shape(1, 0.01, 0.05));
+                effects.seal_friction = Some(SealFriction {
+                    coulomb_force_n: amount,
+                    breakaway_force_n: amount * ratio,
+                    stribeck_speed_m_s: speed,
+                    presliding_stiffness_n_m: 2e6,
+                });
+                vec![
+                    number("main-seal", "coulomb_force_N", amount),
+                    number("main-seal", "breakaway_over_coulomb", ratio),
+                    number("main-seal", "stribeck_speed_m_s", speed),
+                ]
+            }
+            "side_load_friction" => {
+                effects.side_load_friction = Some(SideLoadFriction { coefficient: amount });
+                vec![number("main-seal", "coefficient", amount)]
+            }
+            "accumulator_piston_friction" => {
+                let volume = libm::exp(shape(0, libm::log(1e-7), libm::log(2e-6)));
+                effects.accumulator_piston_friction = Some(AccumulatorPistonFriction {
+                    pressure_1_pa: pick(0),
+                    pressure_2_pa: pick(1),
+                    presliding_volume_m3: volume,
+                });
+                vec![
+                    number(&accumulator, &format!("pressure_{}_Pa", i + 1), amount),
+                    number(&accumulator, "presliding_volume_m3", volume),
+                ]
+            }
+            "damper_leakage" => {
+                effects.damper_leakage = Some(DamperLeakage {
+                    flow_coefficient_1: pick(0),
+                    flow_coefficient_2: pick(1),
+                });
+                vec![number(&path, &format!("flow_coefficient_{}", i + 1), amount)]
+            }
+            "line_resistance" => {
+                effects.line_resistance = Some(LineResistance {
+                    resistance_1_pa_s_m3: pick(0),
+                    resistance_2_pa_s_m3: pick(1),
+                });
+                vec![number(&path, &format!("resistance_{}_Pa_s_m3", i + 1), amount)]
+            }
+            "line_inertance" => {
+                effects.line_inertance = Some(LineInertance {
+                    inertance_2_kg_m4: amount,
+                });
+                vec![number("path-2", "inertance_2_kg_m4", amount)]
+            }
+            "valve_delay" => {
+                let [constant, linear, square] = self.response;
+                let polynomial = [constant, amount * linear, amount * square];
+                effects.valve_delay = Some(ValveDelay {
+                    response_polynomial_s: polynomial,
+                });
+                vec![
+                    number("valve-1..3", "c1_s_MPa", polynomial[1]),
+                    number("valve-1..3", "c0_s", polynomial[0]),
+                    number("valve-1..3", "c2_s_MPa2", polynomial[2]),
+                ]
+            }
+            "valve_transition" => {
+                effects.valve_transition = Some(ValveTransition {
+                    shape: TransitionShape::Linear,
+                });
+                vec![number("valve-1..3", "", 0.0)]
+            }
+            "valve3_leakage" => {
+                effects.valve3_leakage = Some(Valve3Leakage {
+                    flow_coefficient: amount,
+                });
+                vec![number("valve-3", "flow_coefficient", amount)]
+            }
+            "bump_stop" => {
+                // At the jounce end, at the rebound end, or both; all within the travel of the moves.
+                let far = 1.0;
+                let bump = if i == 1 { far } else { shape(0, 0.05, 0.075) };
+                let rebound = if i == 0 { far } else { shape(1, 0.05, 0.075) };
+                let progression = amount * shape(2, 0.0, 4e3);
+                effects.bump_stop = Some(BumpStop {
+                    bump_clearance_m: bump,
+                    rebound_clearance_m: rebound,
+                    stiffness_n_m: amount,
+                    progression_n_m3: progression,
+                });
+                let mut all = vec![number("end-stop", "stiffness_N_m", amount)];
+                if i != 1 {
+                    all.push(number("end-stop", "bump_clearance_m", bump));
+                }
+                if i != 0 {
+                    all.push(number("end-stop", "rebound_clearance_m", rebound));
+                }
+                all.push(number("end-stop", "progression_N_m3", progression));
+                all
+            }
+            "mount_compliance" => {
+                effects.mount_compliance = Some(MountCompliance {
+                    stiffness_n_m: 1.0 / amount,
+                });
+                vec![number("mount", "stiffness_N_m", 1.0 / amount)]
+            }
+            "damping_fade" => {
+                let first = if i == 1 { 0.0 } else { amount };
+                let second = if i == 0 {
+                    0.0
+                } else {
+                    amount * if i == 2 { shape(0, 0.7, 1.4) } else { 1.0 }
+                };
+                let cooling = shape(1, 30.0, 200.0);
+                effects.damping_fade = Some(DampingFade {
+                    fade_1_per_j: first,
+                    fade_2_per_j: second,
+                    cooling_time_s: cooling,
+                });
+                let mut all = Vec::new();
+                if i != 1 {
+                    all.push(number("path-1", "fade_1_per_J", first));
+                }
+                if i != 0 {
+                    all.push(number("path-2", "fade_2_per_J", second));
+                }
+                all.push(number(
+                    if i == 1 { "path-2" } else { "path-1" },
+                    "cooling_time_s",
+                    cooling,
+                ));
+                all
+            }
+            "unlisted" => {
+                let (place, law) = unlisted(i, self.sign, amount, &self.shape);
+                effects.unlisted.push(law);
+                vec![number(place, "", 0.0)]
+            }
+            _ => {
+                let column = COLUMNS[i];
+                let unit = column.rsplit_once('_').map_or("", |(_, unit)| unit);
+                let (map, key, value) = match self.id {
+                    "sensor_lag" => (&mut effects.sensor_lag, "time_constant_s".to_owned(), amount),
+                    "sensor_skew" => (&mut effects.sensor_skew, "delay_s".to_owned(), self.sign * amount),
+                    "sensor_gain" => (
+                        &mut effects.sensor_gain,
+                        "relative_error".to_owned(),
+                        self.sign * amount,
+                    ),
+                    "sensor_drift" => (&mut effects.sensor_drift, format!("drift_{unit}_s"), self.sign * amount),
+                    _ => (&mut effects.sensor_sign, String::new(), -1.0),
+                };
+                map.get_or_insert_default().insert(column.into(), value);
+                vec![number(&format!("sensor:{column}"), &key, value)]
+            }
+        }
+    }
+}
+
+/// Laws of textbook form that the vocabulary does not hold: place, what the table is over, and its form.
+const LAWS: [&str; 4] = [
+    "turbulent line 1",
+    "turbulent line 2",
+    "viscous seal",
+    "air spring of a sealed dust boot",
+];
+
+/// A law in a table of many points, not those that the search uses.
+fn unlisted(which: usize, sign: f64, amount: f64, shape: &[f64; 4]) -> (&'static str, UnlistedLaw) {
+    const POINTS: usize = 61;
+    let (place, at, over, end): (_, _, _, f64) = match which {
+        0 => ("path-1", LawPlace::Path1, LawArgument::Flow, 2e-3),
+        1 => ("path-2", LawPlace::Path2, LawArgument::Flow, 2e-3),
+        2 => ("main-seal", LawPlace::MainSeal, LawArgument::Speed, 1.2),
+        _ => ("main-seal", LawPlace::MainSeal, LawArgument::Displacement, 0.11),
+    };
+    let argument: Vec<f64> = (0..POINTS)
+        .map(|k| end * (2.0 * k as f64 / (POINTS - 1) as f64 - 1.0))
+        .collect();
+    let value = |a: &f64| match which {
+        // Drop over flow squared: 3 MPa at 2 l/s at most.
+        0 | 1 => amount * 3e6 * (a / end) * (a / end).abs(),
+        // Force over speed: 1.5 kN at 1.2 m/s at most, with a drawn curvature.
+        2 => amount * 1.5e3 * (a / end) * libm::pow((a / end).abs(), 0.6 * shape[0]),
+        // Force over displacement.
+        _ => sign * amount * 1e3 * (0.5 * a / end + (a / end) * (a / end) * (a / end)),
+    };
+    let value = argument.iter().map(value).collect();
+    let law = UnlistedLaw {
+        place: at,
+        depends_on: over,
+        argument,
+        value,
+    };
+    (place, law)
+}

@@ -1,0 +1,311 @@
+//! The self-test as tables for a terminal and as a page with pictures.
+
+use oleo_report::{Axis, Column, Curves, Field, FieldStyle, Page, Style, Table, Verdict, significant};
+
+use super::hidden::TERMS;
+use super::plan::SIZES;
+use super::summary::{Rate, Summary};
+
+/// The claim that is tested on complete models.
+const MOST_FALSE_ALARMS: f64 = 0.01;
+
+/// Tables with their titles.
+#[must_use]
+pub fn tables(s: &Summary) -> Vec<(&'static str, Table)> {
+    let mut all = Vec::new();
+    if !s.power.is_empty() {
+        all.push((
+            "Power: found, placed, sized / campaigns, by size in units of noise",
+            power_table(s),
+        ));
+    }
+    if !s.confusion.is_empty() {
+        all.push((
+            "Confusion: what is reported where one effect or none is concealed",
+            confusion_table(s),
+        ));
+    }
+    if s.false_alarms.of + s.pairs_exact.of > 0 {
+        all.push(("Rates", rates_table(s)));
+    }
+    if !s.coverage.is_empty() {
+        all.push((
+            "Coverage of 95 % intervals, effects found at their place",
+            coverage_table(s),
+        ));
+    }
+    if !s.reliability.is_empty() {
+        all.push(("Confidence against frequency", reliability_table(s)));
+    }
+    if let Some(c) = &s.calibration {
+        let mut table = Table::new([Column::text("Evidence"), Column::number("Weight")]);
+        for (name, weight) in c.names.iter().zip(&c.weights) {
+            table.row([(*name).to_owned(), format!("{weight:.3}")]);
+        }
+        all.push(("Weights of evidence that fit these trials", table));
+    }
+    if !s.nameless.is_empty() {
+        all.push(("Terms left out of the search in turn", nameless_table(s)));
+    }
+    if !s.failed.is_empty() {
+        let mut table = Table::new([Column::text("Campaign"), Column::text("No diagnosis because")]);
+        for (name, why) in &s.failed {
+            table.row([name.as_str(), why.as_str()]);
+        }
+        all.push(("Without a diagnosis", table));
+    }
+    all
+}
+
+fn fraction(rate: Rate) -> String {
+    format!("{} / {}", rate.hits, rate.of)
+}
+
+fn with_interval(rate: Rate) -> String {
+    if rate.of == 0 {
+        return "-".into();
+    }
+    let [low, high] = rate.interval();
+    format!("{:.3} [{low:.3}, {high:.3}]", rate.part())
+}
+
+fn power_table(s: &Summary) -> Table {
+    let mut columns = vec![Column::text("Concealed")];
+    columns.extend(SIZES.map(|size| Column::text(&format!("{size}"))));
+    columns.push(Column::number("False beside"));
+    let mut table = Table::new(columns);
+    for term in TERMS {
+        let rows: Vec<_> = s.power.iter().filter(|p| p.term == term).collect();
+        if rows.is_empty() {
+            continue;
+        }
+        let mut cells = vec![term.to_owned()];
+        for size in SIZES {
+            let cell = rows.iter().find(|p| p.size == size).map(|p| {
+                let (f, l, z) = (p.found.hits, p.placed.hits, p.sized.hits);
+                format!("{f} {l} {z} / {}", p.found.of)
+            });
+            cells.push(cell.unwrap_or_default());
+        }
+        let beside = rows.iter().fold(Rate::default(), |sum, p| Rate {
+            hits: sum.hits + p.false_beside.hits,
+            of: sum.of + p.false_beside.of,
+        });
+        cells.push(fraction(beside));
+        table.row(cells);
+    }
+    table
+}
+
+fn confusion_table(s: &Summary) -> Table {
+    let mut table = Table::new([Column::text("Concealed"), Column::text("Reported (campaigns)")]);
+    for (hidden, row) in &s.confusion {
+        let mut reported: Vec<(&String, &usize)> = row.iter().collect();
+        reported.sort_by(|a, b| b.1.cmp(a.1).then(a.0.cmp(b.0)));
+        let text: Vec<String> = reported.iter().map(|(id, n)| format!("{id} {n}")).collect();
+        table.row([hidden.clone(), text.join(", ")]);
+    }
+    table
+}
+
+fn rates_table(s: &Summary) -> Table {
+    let mut table = Table::new([
+        Column::text("Rate"),
+        Column::number("Campaigns"),
+        Column::number("Part [95 %]"),
+    ]);
+    for (name, rate) in [
+        ("complete models with something reported (false alarms)", s.false_alarms),
+        ("two concealed: exactly those two reported", s.pairs_exact),
+        ("two concealed: each of them found", s.pairs_found),
+        ("something modelled: unseen recordings are met better", s.unseen_better),
+        ("size inside its 95 % interval", s.size_coverage),
+    ] {
+        table.row([name.to_owned(), fraction(rate), with_interval(rate)]);
+    }
+    table
+}
+
+fn coverage_table(s: &Summary) -> Table {
+    let mut table = Table::new([
+        Column::text("Effect"),
+        Column::text("Parameter"),
+        Column::number("Covered"),
+        Column::number("Part [95 %]"),
+        Column::number("Unbounded"),
+    ]);
+    for c in s.coverage.iter().filter(|c| !c.key.is_empty()) {
+        table.row([
+            c.term.clone(),
+            c.key.clone(),
+            fraction(c.covered),
+            with_interval(c.covered),
+            c.unbounded.to_string(),
+        ]);
+    }
+    table
+}
+
+fn reliability_table(s: &Summary) -> Table {
+    let mut table = Table::new([
+        Column::text("Confidence"),
+        Column::number("Mean"),
+        Column::number("There"),
+        Column::number("Part [95 %]"),
+    ]);
+    for r in &s.reliability {
+        table.row([
+            format!("{:.1} to {:.1}", r.from, r.to),
+            format!("{:.2}", r.mean),
+            fraction(r.there),
+            with_interval(r.there),
+        ]);
+    }
+    table
+}
+
+fn nameless_table(s: &Summary) -> Table {
+    let mut table = Table::new([
+        Column::text("Left out"),
+        Column::number("Unlisted"),
+        Column::number("At its place"),
+        Column::number("Another name"),
+        Column::number("Unseen before"),
+        Column::number("after"),
+        Column::text("Reported"),
+    ]);
+    for n in &s.nameless {
+        let places: Vec<String> = n.places.iter().map(|(p, count)| format!("{p} {count}")).collect();
+        table.row([
+            n.term.clone(),
+            fraction(n.unlisted),
+            fraction(n.placed),
+            fraction(n.misnamed),
+            significant(n.before, 3),
+            significant(n.after, 3),
+            places.join(", "),
+        ]);
+    }
+    table
+}
+
+/// The page.
+#[must_use]
+pub fn page(s: &Summary, command: &str) -> Page {
+    let mut page = Page::new("Self-test of the diagnosis", command);
+    page.fact("campaigns", &s.trials.to_string());
+    page.fact("seed", &s.seed.to_string());
+    let rate = s.false_alarms;
+    if rate.of > 0 {
+        // Judged by the rate seen; the interval says how much that is worth.
+        let verdict = if rate.part() <= MOST_FALSE_ALARMS {
+            Verdict::Pass
+        } else {
+            Verdict::Fail
+        };
+        let sentence = format!(
+            "False alarms on complete models: {} of {}, {} (at most {MOST_FALSE_ALARMS} is claimed).",
+            rate.hits,
+            rate.of,
+            with_interval(rate)
+        );
+        page.verdict(verdict, &sentence);
+    }
+    let mut tables = tables(s).into_iter();
+    if let Some((title, table)) = tables.next() {
+        page.outcome(table);
+        page.section(title).text(
+            "Sizes are RMS over all channels and samples of what the effect changes, over the noise, after recalibration \
+             within tolerance; each campaign is counted at the nearest size. Found: the name is reported. Placed: at its place \
+             and no other. Sized: its first number within a fifth, or inside its 95 % interval.",
+        );
+        if !s.power.is_empty() {
+            page.figure(power_picture(s));
+        }
+    }
+    for (title, table) in tables {
+        page.section(title).table(table);
+        if title.starts_with("Confusion") {
+            page.figure(confusion_picture(s));
+        }
+        if title.starts_with("Confidence") {
+            page.figure(reliability_picture(s));
+        }
+    }
+    page.section("What this does not show").text(
+        "Recordings here come from the same equations that the search uses, on a finer grid. Whether those equations are \
+         right is tested on recordings of an independent simulator and of real hardware, not here.",
+    );
+    page
+}
+
+/// Part of the campaigns in which each term is found, by size.
+fn power_picture(s: &Summary) -> Field {
+    let part = |term: &str, size: f64| {
+        (s.power.iter().find(|p| p.term == term && p.size == size)).map_or(f64::NAN, |p| p.placed.part())
+    };
+    let z: Vec<Vec<f64>> = TERMS
+        .iter()
+        .map(|t| SIZES.iter().map(|&size| part(t, size)).collect())
+        .collect();
+    let sizes: Vec<String> = SIZES.iter().map(f64::to_string).collect();
+    let columns: Vec<f64> = (0..SIZES.len()).map(|k| k as f64).collect();
+    let rows: Vec<f64> = (0..TERMS.len()).map(|k| k as f64).collect();
+    let axes = [
+        Axis::new("Size", "units of noise").ticks(columns.iter().copied().zip(sizes.iter().map(String::as_str))),
+        Axis::new("", "").ticks(rows.iter().copied().zip(TERMS)),
+        Axis::new("Part", ""),
+    ];
+    let mut field = Field::new("Found at its place", FieldStyle::HeatMap, axes, &columns, &rows, &z);
+    field.caption("Gaps: no campaign had that size.");
+    field
+}
+
+/// Rows concealed, columns reported, as part of the row's campaigns.
+fn confusion_picture(s: &Summary) -> Field {
+    let hidden: Vec<&str> = s.confusion.keys().map(String::as_str).collect();
+    let mut reported: Vec<&str> = s
+        .confusion
+        .values()
+        .flat_map(|r| r.keys().map(String::as_str))
+        .collect();
+    reported.sort_unstable();
+    reported.dedup();
+    let total = |row: &str| {
+        let all: usize = s.power.iter().filter(|p| p.term == row).map(|p| p.found.of).sum();
+        if all > 0 { all } else { s.false_alarms.of.max(1) }
+    };
+    let z: Vec<Vec<f64>> = (hidden.iter())
+        .map(|h| {
+            let of = total(h) as f64;
+            reported
+                .iter()
+                .map(|r| s.confusion[*h].get(*r).map_or(0.0, |n| *n as f64 / of))
+                .collect()
+        })
+        .collect();
+    let x: Vec<f64> = (0..reported.len()).map(|k| k as f64).collect();
+    let y: Vec<f64> = (0..hidden.len()).map(|k| k as f64).collect();
+    let axes = [
+        Axis::new("Reported", "").ticks(x.iter().copied().zip(reported.iter().copied())),
+        Axis::new("Concealed", "").ticks(y.iter().copied().zip(hidden.iter().copied())),
+        Axis::new("Part of campaigns", ""),
+    ];
+    Field::new("Confusion, all sizes", FieldStyle::HeatMap, axes, &x, &y, &z)
+}
+
+fn reliability_picture(s: &Summary) -> Curves {
+    let column = |of: &dyn Fn(&super::summary::Reliability) -> f64| s.reliability.iter().map(of).collect::<Vec<f64>>();
+    let mut curves = Curves::new("Reliability", Axis::new("Confidence reported", "").range(0.45, 1.02));
+    curves
+        .panel(Axis::new("Part that is there", "").range(0.0, 1.05))
+        .series(Style::Dashed, "calibrated", &[0.5, 1.0], &[0.5, 1.0])
+        .points_with_interval(
+            "reports",
+            &column(&|r| r.mean),
+            &column(&|r| r.there.part()),
+            &column(&|r| r.there.interval()[0]),
+            &column(&|r| r.there.interval()[1]),
+        );
+    curves
+}

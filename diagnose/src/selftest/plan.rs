@@ -1,0 +1,173 @@
+//! Which campaigns a self-test is made of, in which order: every term at every size, complete models, and pairs, dealt out
+//! in rounds, so that the first hundred are already a fair sample of the first thousand.
+
+use super::draw::Draw;
+use super::hidden::TERMS;
+
+/// Sizes asked for, in units of noise (RMS over all channels and samples, after recalibration).
+pub const SIZES: [f64; 6] = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0];
+/// Sizes with which terms are left out of the search: large enough that something must be said.
+const NAMELESS_SIZES: [f64; 2] = [3.0, 10.0];
+/// Complete models in a round, where false alarms are counted.
+const COMPLETE_PER_ROUND: usize = 8;
+/// Campaigns with two effects in a round.
+const PAIRS_PER_ROUND: usize = 4;
+/// Name of a campaign in which nothing is concealed.
+pub const COMPLETE: &str = "none";
+/// Name of a campaign in which two effects are.
+pub const PAIR: &str = "pair";
+
+/// What a self-test is to do.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// Seed of all draws.
+    pub seed: u64,
+    /// Campaigns.
+    pub campaigns: usize,
+    /// Terms of the vocabulary, `none` and `pair`; empty for all.
+    pub terms: Vec<String>,
+    /// Leave each concealed term out of the search: what is found must be `unlisted`.
+    pub without_names: bool,
+}
+
+/// One campaign to make and diagnose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Case {
+    /// Its name, which fixes everything drawn in it.
+    pub name: String,
+    /// Effects and wanted sizes.
+    pub hidden: Vec<(&'static str, f64)>,
+    /// Term that the search may not use.
+    pub left_out: Option<&'static str>,
+}
+
+/// A term that is not in the vocabulary.
+#[derive(Debug, thiserror::Error)]
+#[error("--terms {0}: not known; one or more of {known}, {COMPLETE}, {PAIR}, with commas between", known = TERMS.join(", "))]
+pub struct UnknownTerm(String);
+
+impl Plan {
+    /// All cases, in order.
+    ///
+    /// # Errors
+    /// A term that is not known.
+    pub fn cases(&self) -> Result<Vec<Case>, UnknownTerm> {
+        let known = |t: &str| TERMS.contains(&t) || (!self.without_names && (t == COMPLETE || t == PAIR));
+        if let Some(unknown) = self.terms.iter().find(|t| !known(t)) {
+            return Err(UnknownTerm(unknown.clone()));
+        }
+        let wanted = |t: &str| self.terms.is_empty() || self.terms.iter().any(|w| w == t);
+        let mut cases = Vec::with_capacity(self.campaigns);
+        let mut round = 0;
+        while cases.len() < self.campaigns {
+            let before = cases.len();
+            if self.without_names {
+                self.nameless(round, &wanted, &mut cases);
+            } else {
+                self.round(round, &wanted, &mut cases);
+            }
+            if cases.len() == before {
+                break;
+            }
+            round += 1;
+        }
+        cases.truncate(self.campaigns);
+        Ok(cases)
+    }
+
+    fn round(&self, round: usize, wanted: &dyn Fn(&str) -> bool, cases: &mut Vec<Case>) {
+        let seed = self.seed;
+        // Three terms, then a complete model: an interrupted round holds a share of each kind.
+        let mut complete = (0..COMPLETE_PER_ROUND).map(|k| Case {
+            name: format!("{seed}:{COMPLETE}:{round}.{k}"),
+            hidden: vec![],
+            left_out: None,
+        });
+        for (k, term) in TERMS.iter().enumerate() {
+            if wanted(term) {
+                let size = SIZES[(round + k) % SIZES.len()];
+                cases.push(Case {
+                    name: format!("{seed}:{term}:{round}:{size}"),
+                    hidden: vec![(term, size)],
+                    left_out: None,
+                });
+            }
+            if k % 3 == 2 && wanted(COMPLETE) {
+                cases.extend(complete.next());
+            }
+        }
+        if wanted(COMPLETE) {
+            cases.extend(complete);
+        }
+        if wanted(PAIR) {
+            for k in 0..PAIRS_PER_ROUND {
+                let name = format!("{seed}:{PAIR}:{round}.{k}");
+                let mut draw = Draw::named(&name);
+                // Two different terms of one to thirty times the noise.
+                let first = draw.index(TERMS.len());
+                let second = (first + 1 + draw.index(TERMS.len() - 1)) % TERMS.len();
+                let hidden = [first, second].map(|t| (TERMS[t], SIZES[2 + draw.index(4)]));
+                cases.push(Case {
+                    name,
+                    hidden: hidden.to_vec(),
+                    left_out: None,
+                });
+            }
+        }
+    }
+
+    fn nameless(&self, round: usize, wanted: &dyn Fn(&str) -> bool, cases: &mut Vec<Case>) {
+        for (k, term) in TERMS.iter().enumerate().filter(|(_, t)| **t != "unlisted" && wanted(t)) {
+            let size = NAMELESS_SIZES[(round + k) % NAMELESS_SIZES.len()];
+            cases.push(Case {
+                name: format!("{}:without:{term}:{round}:{size}", self.seed),
+                hidden: vec![(term, size)],
+                left_out: Some(term),
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(campaigns: usize, terms: &[&str]) -> Plan {
+        Plan {
+            seed: 1,
+            campaigns,
+            terms: terms.iter().map(|t| (*t).to_owned()).collect(),
+            without_names: false,
+        }
+    }
+
+    #[test]
+    fn names_are_unique_and_a_part_holds_the_same_campaigns() {
+        let all = plan(500, &[]).cases().unwrap();
+        let mut names: Vec<&str> = all.iter().map(|c| c.name.as_str()).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), 500);
+        for case in plan(12, &["seal_friction"]).cases().unwrap() {
+            assert!(all.contains(&case), "{case:?}");
+        }
+    }
+
+    #[test]
+    fn six_rounds_hold_every_term_at_every_size() {
+        let all = plan(6 * (TERMS.len() + COMPLETE_PER_ROUND + PAIRS_PER_ROUND), &[])
+            .cases()
+            .unwrap();
+        for term in TERMS {
+            for size in SIZES {
+                assert!(all.iter().any(|c| c.hidden == [(term, size)]), "{term} {size}");
+            }
+        }
+    }
+
+    #[test]
+    fn an_unknown_term_is_refused_with_those_known() {
+        let error = plan(1, &["seal_fraction"]).cases().unwrap_err().to_string();
+        assert!(error.contains("seal_fraction") && error.contains("seal_friction"));
+    }
+}

@@ -1,0 +1,424 @@
+//! Trials put into tables: power, confusion, coverage, calibration of confidence, false alarms.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::calibrate::{Calibration, calibrate};
+use super::hidden::TERMS;
+use super::plan::{COMPLETE, SIZES};
+use super::trial::{Trial, covers};
+
+/// A part of a number of trials.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Rate {
+    /// Times it was so.
+    pub hits: usize,
+    /// Times it could have been.
+    pub of: usize,
+}
+
+impl Rate {
+    fn count(&mut self, hit: bool) {
+        self.of += 1;
+        self.hits += usize::from(hit);
+    }
+
+    /// The part, not a number where nothing was tried.
+    #[must_use]
+    pub fn part(self) -> f64 {
+        self.hits as f64 / self.of as f64
+    }
+
+    /// 95 % score interval (Wilson, J. Amer. Statist. Assoc. 22, 1927).
+    #[must_use]
+    pub fn interval(self) -> [f64; 2] {
+        const Z: f64 = 1.959_964;
+        let (n, p) = (self.of as f64, self.part());
+        if self.of == 0 {
+            return [0.0, 1.0];
+        }
+        let middle = p + Z * Z / (2.0 * n);
+        let half = Z * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
+        let below = 1.0 + Z * Z / n;
+        // Exact at the ends, where rounding would leave a trace.
+        let low = if self.hits == 0 { 0.0 } else { (middle - half) / below };
+        let high = if self.hits == self.of {
+            1.0
+        } else {
+            (middle + half) / below
+        };
+        [low, high]
+    }
+}
+
+/// What became of one term at one size.
+#[derive(Debug, Clone, Serialize)]
+pub struct Power {
+    /// Id of the vocabulary.
+    pub term: String,
+    /// Size on the grid nearest to that reached, in units of noise.
+    pub size: f64,
+    /// Reported at all.
+    pub found: Rate,
+    /// Reported at its place and no other.
+    pub placed: Rate,
+    /// Placed, and its size within a fifth or within its interval.
+    pub sized: Rate,
+    /// Something that is not there reported as well or instead.
+    pub false_beside: Rate,
+}
+
+/// How often intervals hold the truth.
+#[derive(Debug, Clone, Serialize)]
+pub struct Coverage {
+    /// Id.
+    pub term: String,
+    /// Parameter, its place left out.
+    pub key: String,
+    /// Bounded intervals that hold it.
+    pub covered: Rate,
+    /// Intervals that end nowhere.
+    pub unbounded: usize,
+}
+
+/// Reported effects of about one confidence.
+#[derive(Debug, Clone, Serialize)]
+pub struct Reliability {
+    /// Range of confidence.
+    pub from: f64,
+    /// As [`Self::from`].
+    pub to: f64,
+    /// Mean confidence reported.
+    pub mean: f64,
+    /// How many are there, at their place.
+    pub there: Rate,
+}
+
+/// What was said of a term that the search was not allowed.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Nameless {
+    /// The term.
+    pub term: String,
+    /// `unlisted` reported.
+    pub unlisted: Rate,
+    /// With a law at the place of the effect.
+    pub placed: Rate,
+    /// Another name reported instead or beside.
+    pub misnamed: Rate,
+    /// Median noise ratio on unseen recordings, recalibrated model.
+    pub before: f64,
+    /// The same with what was reported.
+    pub after: f64,
+    /// Places reported, with counts.
+    pub places: BTreeMap<String, usize>,
+}
+
+/// All tables of a self-test.
+#[derive(Debug, Clone, Serialize)]
+pub struct Summary {
+    /// Seed of all draws.
+    pub seed: u64,
+    /// Trials.
+    pub trials: usize,
+    /// Name and reason of trials without a diagnosis.
+    pub failed: Vec<(String, String)>,
+    /// Complete models with something reported.
+    pub false_alarms: Rate,
+    /// The same, 95 % interval.
+    pub false_alarm_interval: [f64; 2],
+    /// By term and size, one effect concealed.
+    pub power: Vec<Power>,
+    /// Concealed to reported to count; one effect concealed or none.
+    pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
+    /// Two concealed: exactly those two reported.
+    pub pairs_exact: Rate,
+    /// Two concealed: effects found.
+    pub pairs_found: Rate,
+    /// Intervals, by parameter.
+    pub coverage: Vec<Coverage>,
+    /// Intervals of the sizes (the first number of each effect).
+    pub size_coverage: Rate,
+    /// Calibration of confidence.
+    pub reliability: Vec<Reliability>,
+    /// Weights of evidence that would make confidence right.
+    pub calibration: Option<Calibration>,
+    /// Terms left out of the search.
+    pub nameless: Vec<Nameless>,
+    /// Unseen recordings of campaigns in which something was found: the model with it is better.
+    pub unseen_better: Rate,
+}
+
+/// Edges of confidence in the table.
+const CONFIDENCE: [f64; 6] = [0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
+/// Said where nothing is reported.
+const NOTHING: &str = "(nothing)";
+
+impl Summary {
+    /// Makes the tables. Trials without names and with them may be mixed; each table takes what belongs to it.
+    #[must_use]
+    pub fn of(seed: u64, trials: &[Trial]) -> Self {
+        let failed = trials
+            .iter()
+            .filter_map(|t| t.failed.clone().map(|why| (t.name.clone(), why)))
+            .collect();
+        let sound: Vec<&Trial> = trials.iter().filter(|t| t.failed.is_none()).collect();
+        let named: Vec<&Trial> = sound.iter().copied().filter(|t| t.left_out.is_none()).collect();
+        let mut false_alarms = Rate::default();
+        let (mut pairs_exact, mut pairs_found, mut unseen_better) = (Rate::default(), Rate::default(), Rate::default());
+        for t in &named {
+            match t.hidden.len() {
+                0 => false_alarms.count(!t.reported.is_empty()),
+                1 => {}
+                _ => {
+                    let mut ids = t.hidden_ids();
+                    let mut reported: Vec<&str> = t.reported.iter().map(|r| r.id.as_str()).collect();
+                    for list in [&mut ids, &mut reported] {
+                        list.sort_unstable();
+                        list.dedup();
+                    }
+                    pairs_exact.count(ids == reported);
+                    ids.iter().for_each(|id| pairs_found.count(t.found(id)));
+                }
+            }
+            if t.reported.iter().any(|r| r.gain.is_some()) {
+                unseen_better.count(t.unseen.1 < t.unseen.0);
+            }
+        }
+        let (coverage, size_coverage) = coverage(&named);
+        Self {
+            seed,
+            trials: trials.len(),
+            failed,
+            false_alarms,
+            false_alarm_interval: false_alarms.interval(),
+            power: power(&named),
+            confusion: confusion(&named),
+            pairs_exact,
+            pairs_found,
+            coverage,
+            size_coverage,
+            reliability: reliability(&named),
+            calibration: calibrate(&named),
+            nameless: nameless(&sound),
+            unseen_better,
+        }
+    }
+}
+
+/// The grid's size nearest in the logarithm.
+fn nearest_size(size: f64) -> f64 {
+    let distance = |s: f64| (libm::log(s.max(1e-9)) - libm::log(size.max(1e-9))).abs();
+    SIZES
+        .into_iter()
+        .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+        .unwrap_or(1.0)
+}
+
+fn power(trials: &[&Trial]) -> Vec<Power> {
+    let mut all = Vec::new();
+    for term in TERMS {
+        for size in SIZES {
+            let mut row = Power {
+                term: term.to_owned(),
+                size,
+                found: Rate::default(),
+                placed: Rate::default(),
+                sized: Rate::default(),
+                false_beside: Rate::default(),
+            };
+            for t in trials {
+                if t.hidden.len() == 1 && t.hidden[0].0 == term && nearest_size(t.hidden[0].2) == size {
+                    row.found.count(t.found(term));
+                    row.placed.count(t.placed(term));
+                    row.sized.count(t.sized(term));
+                    row.false_beside.count(t.reported.iter().any(|r| r.id != term));
+                }
+            }
+            if row.found.of > 0 {
+                all.push(row);
+            }
+        }
+    }
+    all
+}
+
+fn confusion(trials: &[&Trial]) -> BTreeMap<String, BTreeMap<String, usize>> {
+    let mut all: BTreeMap<String, BTreeMap<String, usize>> = BTreeMap::new();
+    for t in trials.iter().filter(|t| t.hidden.len() < 2) {
+        let row = all
+            .entry(t.hidden.first().map_or(COMPLETE, |h| h.0.as_str()).to_owned())
+            .or_default();
+        let mut ids: Vec<&str> = t.reported.iter().map(|r| r.id.as_str()).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        if ids.is_empty() {
+            ids.push(NOTHING);
+        }
+        for id in ids {
+            *row.entry(id.to_owned()).or_default() += 1;
+        }
+    }
+    all
+}
+
+fn coverage(trials: &[&Trial]) -> (Vec<Coverage>, Rate) {
+    let mut all: BTreeMap<(String, String), Coverage> = BTreeMap::new();
+    let mut sizes = Rate::default();
+    for t in trials {
+        for (k, truth) in t.truth.iter().enumerate() {
+            let Some(number) = t.estimate(truth) else { continue };
+            let key = truth.key.replace("_1_", "_i_").replace("_2_", "_i_");
+            let key = key
+                .strip_suffix("_1")
+                .or(key.strip_suffix("_2"))
+                .map_or(key.clone(), |k| format!("{k}_i"));
+            let row = all.entry((truth.id.clone(), key.clone())).or_insert_with(|| Coverage {
+                term: truth.id.clone(),
+                key,
+                covered: Rate::default(),
+                unbounded: 0,
+            });
+            match covers(number, truth.value) {
+                Some(covered) => {
+                    row.covered.count(covered);
+                    if k == 0 || t.truth[k - 1].id != truth.id {
+                        sizes.count(covered);
+                    }
+                }
+                None => row.unbounded += 1,
+            }
+        }
+    }
+    (all.into_values().collect(), sizes)
+}
+
+fn reliability(trials: &[&Trial]) -> Vec<Reliability> {
+    (CONFIDENCE.windows(2))
+        .filter_map(|edges| {
+            let last = edges[1] >= 1.0;
+            let inside = |c: f64| c >= edges[0] && (c < edges[1] || last);
+            let (mut there, mut sum) = (Rate::default(), 0.0);
+            for t in trials {
+                for r in t.reported.iter().filter(|r| inside(r.confidence)) {
+                    there.count(t.there(r));
+                    sum += r.confidence;
+                }
+            }
+            (there.of > 0).then(|| Reliability {
+                from: edges[0],
+                to: edges[1],
+                mean: sum / there.of as f64,
+                there,
+            })
+        })
+        .collect()
+}
+
+fn nameless(trials: &[&Trial]) -> Vec<Nameless> {
+    let median = |mut values: Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values.get(values.len() / 2).copied().unwrap_or(0.0)
+    };
+    TERMS
+        .iter()
+        .filter_map(|term| {
+            let own: Vec<&&Trial> = trials.iter().filter(|t| t.left_out.as_deref() == Some(*term)).collect();
+            if own.is_empty() {
+                return None;
+            }
+            let mut row = Nameless {
+                term: (*term).to_owned(),
+                before: median(own.iter().map(|t| t.unseen.0).collect()),
+                after: median(own.iter().map(|t| t.unseen.1).collect()),
+                ..Nameless::default()
+            };
+            for t in own {
+                let at = |place: &str| t.truth.iter().any(|truth| truth.place == place);
+                row.unlisted.count(t.found("unlisted"));
+                row.placed
+                    .count(t.reported.iter().any(|r| r.id == "unlisted" && at(&r.place)));
+                row.misnamed.count(t.reported.iter().any(|r| r.id != "unlisted"));
+                for r in &t.reported {
+                    *row.places.entry(format!("{}@{}", r.id, r.place)).or_default() += 1;
+                }
+            }
+            Some(row)
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::hidden::Truth;
+    use super::super::trial::{Number, Reported};
+    use super::*;
+
+    fn trial(hidden: &str, value: f64, reported: &str, interval: (f64, f64)) -> Trial {
+        let truth = Truth {
+            id: hidden.into(),
+            place: "main-seal".into(),
+            key: "coefficient".into(),
+            value,
+        };
+        Trial {
+            name: String::new(),
+            hidden: vec![(hidden.into(), 1.0, 1.1)],
+            truth: vec![truth],
+            left_out: None,
+            reported: vec![Reported {
+                id: reported.into(),
+                place: "main-seal".into(),
+                confidence: 0.95,
+                gain: Some((100.0, 10.0)),
+                lead: Some((50.0, 10.0)),
+                rival: None,
+                ambiguous: false,
+                numbers: vec![Number {
+                    key: "coefficient".into(),
+                    value: 0.5 * (interval.0 + interval.1),
+                    low: Some(interval.0),
+                    high: Some(interval.1),
+                }],
+            }],
+            residuals: 1000,
+            noise_ratio: (1.2, 1.0),
+            unseen: (1.2, 1.0),
+            incomplete: false,
+            failed: None,
+        }
+    }
+
+    #[test]
+    fn a_hit_a_wrong_size_and_a_wrong_name_are_told_apart() {
+        let term = "side_load_friction";
+        let s = Summary::of(
+            1,
+            &[
+                trial(term, 0.02, term, (0.019, 0.022)),
+                trial(term, 0.02, term, (0.03, 0.04)),
+                trial(term, 0.02, "seal_friction", (0.0, 1.0)),
+            ],
+        );
+        let row = &s.power[0];
+        assert_eq!(
+            (row.found.hits, row.placed.hits, row.sized.hits, row.false_beside.hits),
+            (2, 2, 1, 1)
+        );
+        assert_eq!(s.confusion[term]["seal_friction"], 1);
+        assert_eq!(s.size_coverage, Rate { hits: 1, of: 2 });
+        assert_eq!(s.reliability[0].there, Rate { hits: 2, of: 3 });
+    }
+
+    #[test]
+    fn wilson_intervals_are_those_of_the_books() {
+        // Newcombe, Statist. Med. 17, 1998, table I: 81 of 263, and 0 of 20.
+        let [low, high] = Rate { hits: 81, of: 263 }.interval();
+        assert!(
+            (low - 0.2553).abs() < 1e-4 && (high - 0.3662).abs() < 1e-4,
+            "{low} {high}"
+        );
+        let [low, high] = Rate { hits: 0, of: 20 }.interval();
+        assert!(low == 0.0 && (high - 0.1611).abs() < 1e-4, "{high}");
+    }
+}

@@ -1,0 +1,261 @@
+//! One campaign diagnosed, and what a table needs to know of it: what was concealed, what was reported, how far off.
+
+use std::sync::atomic::AtomicBool;
+
+use oleo_plant_sim::strut::StrutModel;
+use serde::{Deserialize, Serialize};
+
+use super::generate::generate;
+use super::hidden::Truth;
+use super::plan::Case;
+use crate::campaign::Campaign;
+use crate::diagnosis::{Diagnosis, Effect};
+use crate::error::DiagnoseError;
+use crate::problem::Problem;
+use crate::recording::Recording;
+use crate::specimen::strut::TwoStageStrut;
+use crate::specimen::{Hypothesis, Specimen};
+
+/// A fitted number of a reported effect.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Number {
+    /// Key with unit.
+    pub key: String,
+    /// Value.
+    pub value: f64,
+    /// 95 % interval; `None` where the recordings do not bound it.
+    pub low: Option<f64>,
+    /// As [`Self::low`].
+    pub high: Option<f64>,
+}
+
+/// A reported effect with the evidence its confidence came from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Reported {
+    /// Id of the vocabulary or `unlisted`.
+    pub id: String,
+    /// Place.
+    pub place: String,
+    /// Confidence as reported.
+    pub confidence: f64,
+    /// Held-out gain in cost and its standard error; `None` for what is seen but not modelled.
+    pub gain: Option<(f64, f64)>,
+    /// Lead in cost over the strongest rival, and its standard error.
+    pub lead: Option<(f64, f64)>,
+    /// The strongest rival.
+    pub rival: Option<String>,
+    /// True if the report calls the two ambiguous.
+    pub ambiguous: bool,
+    /// Its numbers.
+    pub numbers: Vec<Number>,
+}
+
+/// The outcome of one campaign.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// Name of the case.
+    pub name: String,
+    /// Ids concealed, with the size wanted and the size reached, in units of noise.
+    pub hidden: Vec<(String, f64, f64)>,
+    /// The numbers concealed.
+    pub truth: Vec<Truth>,
+    /// Term that the search was not allowed.
+    pub left_out: Option<String>,
+    /// What was reported.
+    pub reported: Vec<Reported>,
+    /// Number of residuals.
+    pub residuals: usize,
+    /// Held-out noise ratio of the calibrated and of the improved model.
+    pub noise_ratio: (f64, f64),
+    /// The same on recordings that the diagnosis never saw.
+    pub unseen: (f64, f64),
+    /// True if the report says that something remains.
+    pub incomplete: bool,
+    /// Why there is no diagnosis, where there is none.
+    pub failed: Option<String>,
+}
+
+/// Makes the campaign and diagnoses it.
+///
+/// # Errors
+/// The wish to stop; anything else that goes wrong is part of the outcome.
+pub fn run(case: &Case, stop: &AtomicBool) -> Result<Trial, DiagnoseError> {
+    let mut trial = Trial {
+        name: case.name.clone(),
+        hidden: case
+            .hidden
+            .iter()
+            .map(|(id, size)| ((*id).to_owned(), *size, 0.0))
+            .collect(),
+        truth: vec![],
+        left_out: case.left_out.map(str::to_owned),
+        reported: vec![],
+        residuals: 0,
+        noise_ratio: (0.0, 0.0),
+        unseen: (0.0, 0.0),
+        incomplete: false,
+        failed: None,
+    };
+    match diagnose(case, stop, &mut trial) {
+        Ok(()) => {}
+        Err(DiagnoseError::Interrupted) => return Err(DiagnoseError::Interrupted),
+        Err(error) => trial.failed = Some(error.to_string()),
+    }
+    Ok(trial)
+}
+
+fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), DiagnoseError> {
+    let generated = generate(&case.name, &case.hidden)?;
+    trial.truth = generated.truth;
+    for (hidden, size) in trial.hidden.iter_mut().zip(generated.sizes) {
+        // JSON knows no infinity: an effect that stops the simulation is as large as can be said.
+        hidden.2 = size.min(1e9);
+    }
+    let mut strut = TwoStageStrut::new(generated.given, generated.recordings).map_err(DiagnoseError::Model)?;
+    if let Some(id) = case.left_out {
+        strut.leave_out(id);
+    }
+    let campaign = Campaign {
+        folder: std::path::PathBuf::new(),
+        name: case.name.clone(),
+        specimen: Box::new(strut),
+        notes: vec![],
+    };
+    let problem = Problem::new(&*campaign.specimen, stop);
+    let diagnosis = Diagnosis::of(&campaign, &problem, &|_, _| {})?;
+    trial.residuals = problem.count();
+    trial.noise_ratio = diagnosis.selection.noise_ratio;
+    trial.incomplete = diagnosis.selection.incomplete;
+    trial.reported = diagnosis.effects.iter().map(|e| reported(&campaign, e)).collect();
+    let calibrated = problem.hypothesis(&diagnosis.selection.calibrated.point);
+    let before = campaign
+        .specimen
+        .model_toml(&calibrated)
+        .map_err(DiagnoseError::Output)?;
+    trial.unseen = (
+        noise_ratio(&before, &generated.unseen)?,
+        noise_ratio(&diagnosis.model_toml, &generated.unseen)?,
+    );
+    Ok(())
+}
+
+fn reported(campaign: &Campaign, effect: &Effect) -> Reported {
+    let all = campaign.specimen.candidates();
+    let chosen = effect.chosen.as_ref();
+    let rival = chosen.and_then(|c| c.rival);
+    let bound = |v: f64| v.is_finite().then_some(v);
+    Reported {
+        id: effect.id.clone(),
+        place: effect.place.clone(),
+        confidence: effect.confidence,
+        gain: chosen.map(|c| (c.gain, c.gain_error)),
+        lead: rival.map(|(_, lead, error)| (lead, error)),
+        rival: rival.map(|(k, ..)| all[k].name()),
+        ambiguous: chosen.is_some_and(|c| c.ambiguous),
+        numbers: (effect.parameters.iter())
+            .map(|p| Number {
+                key: p.key.clone(),
+                value: if p.value.is_finite() { p.value } else { f64::MAX },
+                low: bound(p.ci95[0].min(p.ci95[1])),
+                high: bound(p.ci95[0].max(p.ci95[1])),
+            })
+            .collect(),
+    }
+}
+
+/// Noise ratio of a model file on recordings.
+fn noise_ratio(model_toml: &str, recordings: &[Recording]) -> Result<f64, DiagnoseError> {
+    let model = StrutModel::from_toml(model_toml, "improved model").map_err(|e| DiagnoseError::Model(e.to_string()))?;
+    let strut = TwoStageStrut::new(model, recordings.to_vec()).map_err(DiagnoseError::Model)?;
+    let as_given = Hypothesis {
+        calibration: vec![0.0; strut.calibration().len()],
+        effects: vec![],
+    };
+    let (mut sum, mut count) = (0.0, 0);
+    for (r, recording) in recordings.iter().enumerate() {
+        let simulated = strut.simulate(&as_given, r).map_err(|what| DiagnoseError::Simulation {
+            recording: recording.name.clone(),
+            what,
+        })?;
+        let shown = strut.observe(&as_given, r, &simulated);
+        for (c, channel) in strut.channels().iter().enumerate() {
+            let measured = strut.measured(r, c);
+            sum += (measured.iter().zip(&shown[c]))
+                .map(|(m, s)| ((m - s) / channel.noise) * ((m - s) / channel.noise))
+                .sum::<f64>();
+            count += measured.len();
+        }
+    }
+    Ok((sum / count.max(1) as f64).sqrt().min(1e9))
+}
+
+impl Trial {
+    /// Ids concealed.
+    pub fn hidden_ids(&self) -> Vec<&str> {
+        self.hidden.iter().map(|(id, ..)| id.as_str()).collect()
+    }
+
+    /// Whether an id is reported.
+    #[must_use]
+    pub fn found(&self, id: &str) -> bool {
+        self.reported.iter().any(|r| r.id == id)
+    }
+
+    /// Whether an id is reported at every one of its places and nowhere else.
+    #[must_use]
+    pub fn placed(&self, id: &str) -> bool {
+        let mut true_places: Vec<&str> = self
+            .truth
+            .iter()
+            .filter(|t| t.id == id)
+            .map(|t| t.place.as_str())
+            .collect();
+        let mut places: Vec<&str> = self
+            .reported
+            .iter()
+            .filter(|r| r.id == id)
+            .map(|r| r.place.as_str())
+            .collect();
+        for list in [&mut true_places, &mut places] {
+            list.sort_unstable();
+            list.dedup();
+        }
+        !places.is_empty() && places == true_places
+    }
+
+    /// The reported number that answers a true one.
+    #[must_use]
+    pub fn estimate(&self, truth: &Truth) -> Option<&Number> {
+        (self.reported.iter())
+            .filter(|r| r.id == truth.id && r.place == truth.place)
+            .flat_map(|r| &r.numbers)
+            .find(|n| n.key == truth.key)
+    }
+
+    /// Whether an id is placed and its size (the first number concealed) is within a fifth or within its interval; what
+    /// has no numbers is sized where it is placed.
+    #[must_use]
+    pub fn sized(&self, id: &str) -> bool {
+        let Some(size) = self.truth.iter().find(|t| t.id == id) else {
+            return false;
+        };
+        let near =
+            |n: &Number| (n.value - size.value).abs() <= 0.2 * size.value.abs() || covers(n, size.value) == Some(true);
+        self.placed(id) && (size.key.is_empty() || self.estimate(size).is_some_and(near))
+    }
+
+    /// Whether a reported effect is there, at its place.
+    #[must_use]
+    pub fn there(&self, reported: &Reported) -> bool {
+        self.truth
+            .iter()
+            .any(|t| t.id == reported.id && t.place == reported.place)
+    }
+}
+
+/// Whether a bounded interval holds the true value.
+#[must_use]
+pub fn covers(number: &Number, truth: f64) -> Option<bool> {
+    let (low, high) = (number.low?, number.high?);
+    Some(low <= truth && truth <= high)
+}

@@ -1,0 +1,113 @@
+//! `oleo diagnose --self-test`: how good the diagnosis is on campaigns whose answers are known.
+
+use std::process::ExitCode;
+use std::sync::atomic::AtomicBool;
+
+use oleo_diagnose::selftest::{Ledger, Plan, Summary, page, records, run, save, tables};
+use oleo_report::{OutputDirectory, Progress};
+
+use crate::failure::Failure;
+
+/// What only the self-test takes.
+#[derive(clap::Args)]
+pub struct Args {
+    /// Diagnose simulated campaigns with concealed effects, and report power, confusion, coverage and false alarms
+    #[arg(long, conflicts_with = "campaign", help_heading = "Self-test")]
+    pub self_test: bool,
+    /// Number of simulated campaigns [default: 70, two rounds of all terms]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 70,
+        requires = "self_test",
+        help_heading = "Self-test",
+        hide_default_value = true
+    )]
+    campaigns: usize,
+    /// Seed of everything drawn
+    #[arg(
+        long,
+        value_name = "S",
+        default_value_t = 1,
+        requires = "self_test",
+        help_heading = "Self-test"
+    )]
+    seed: u64,
+    /// Only these: terms of the vocabulary, none (complete models), pair (two effects), with commas between
+    #[arg(
+        long,
+        value_name = "A,B",
+        value_delimiter = ',',
+        requires = "self_test",
+        help_heading = "Self-test"
+    )]
+    terms: Vec<String>,
+    /// Leave each concealed term out of the search: it must be found as unlisted
+    #[arg(long, requires = "self_test", help_heading = "Self-test")]
+    without_names: bool,
+    /// Write the campaigns as folders of recordings with their answers into DIR, and diagnose none
+    #[arg(long, requires_all = ["self_test", "out"], help_heading = "Self-test")]
+    save: bool,
+    /// Campaigns at a time, one thread each [default: all cores]
+    #[arg(long, value_name = "N", requires = "self_test", help_heading = "Self-test")]
+    threads: Option<usize>,
+}
+
+/// Runs the self-test; finished campaigns are kept in the folder, where another run goes on.
+pub fn run_self_test(args: &Args, out: Option<&std::path::Path>) -> Result<ExitCode, Failure> {
+    let plan = Plan {
+        seed: args.seed,
+        campaigns: args.campaigns,
+        terms: args.terms.clone(),
+        without_names: args.without_names,
+    };
+    let cases = plan.cases()?;
+    if cases.is_empty() {
+        return Err(Failure::new("--campaigns 0: give a number of campaigns above 0"));
+    }
+    if let (true, Some(folder)) = (args.save, out) {
+        std::fs::create_dir_all(folder)
+            .map_err(|error| Failure::new(format!("{}: cannot make the folder: {error}", folder.display())))?;
+        cases.iter().try_for_each(|case| save(case, folder))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let (ledger, staged) = match out {
+        None => (Ledger::in_memory(), None),
+        Some(folder) => {
+            // Staged once to be told of a folder that cannot be, and again when it is there.
+            drop(OutputDirectory::stage(folder)?);
+            std::fs::create_dir_all(folder)
+                .map_err(|error| Failure::new(format!("{}: cannot make the folder: {error}", folder.display())))?;
+            (
+                Ledger::open(&folder.join("trials.jsonl"))?,
+                Some(OutputDirectory::stage(folder)?),
+            )
+        }
+    };
+    let threads = match args.threads {
+        Some(0) => return Err(Failure::new("--threads 0: give a number above 0")),
+        Some(threads) => threads,
+        None => std::thread::available_parallelism().map_or(1, usize::from),
+    };
+    let progress = Progress::new("self-test", cases.len() as u64);
+    let trials = run(&cases, &ledger, threads, &AtomicBool::new(false), &|| progress.add(1))?;
+    drop(progress);
+    let summary = Summary::of(plan.seed, &trials);
+    if let Some(mut out) = staged {
+        let arguments: Vec<String> = std::env::args().skip(1).collect();
+        out.csv_records("trials.csv", records::trials(&trials))?;
+        out.csv_records("power.csv", records::power(&summary))?;
+        out.csv_records("confusion.csv", records::confusion(&summary))?;
+        out.csv_records("coverage.csv", records::coverage(&summary))?;
+        out.json("summary.json", &summary)?;
+        out.page(&page(&summary, &format!("oleo {}", arguments.join(" "))))?;
+        out.commit()?;
+    }
+    let mut text = format!("{} campaigns, seed {}\n", summary.trials, summary.seed);
+    for (title, table) in tables(&summary) {
+        text += &format!("\n{title}\n{table}\n");
+    }
+    // A closed standard output (`| head`) is no failure of the test.
+    let _ = std::io::Write::write_all(&mut std::io::stdout(), text.as_bytes());
+    Ok(ExitCode::SUCCESS)
+}

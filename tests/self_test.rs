@@ -1,0 +1,121 @@
+//! `oleo diagnose --self-test` as a user meets it: the same tables on any number of threads, going on where it stopped, one
+//! clear line on bad input.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn oleo(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_oleo"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .expect("the program starts")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[test]
+fn a_self_test_goes_on_where_it_stopped_and_is_the_same_on_any_number_of_threads() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let common = ["diagnose", "--self-test", "--terms", "none", "--seed", "7"];
+    let with = |more: &[&str]| oleo(folder.path(), &[&common[..], more].concat());
+    let first = with(&["--campaigns", "1", "--out", "a", "--threads", "1"]);
+    assert!(first.status.success(), "{}", text(&first.stderr));
+    let both = with(&["--campaigns", "2", "--out", "a", "--threads", "2"]);
+    assert!(both.status.success(), "{}", text(&both.stderr));
+    let anew = with(&["--campaigns", "2", "--out", "b", "--threads", "1"]);
+    assert_eq!(text(&both.stdout), text(&anew.stdout));
+    for name in [
+        "summary.json",
+        "power.csv",
+        "confusion.csv",
+        "coverage.csv",
+        "trials.csv",
+    ] {
+        let of = |out: &str| std::fs::read_to_string(folder.path().join(out).join(name)).expect(name);
+        assert_eq!(of("a"), of("b"), "{name}");
+    }
+    assert!(folder.path().join("a/report.html").exists());
+    // Three lines: what wrote it, and two campaigns, none made twice.
+    let ledger = std::fs::read_to_string(folder.path().join("a/trials.jsonl")).expect("a ledger");
+    assert_eq!(ledger.lines().count(), 3);
+    let summary: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(folder.path().join("a/summary.json")).expect("a summary"))
+            .expect("JSON");
+    assert_eq!(summary["false_alarms"], serde_json::json!({ "hits": 0, "of": 2 }));
+}
+
+#[test]
+fn a_saved_campaign_is_one_like_any_other() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let saved = oleo(
+        folder.path(),
+        &[
+            "diagnose",
+            "--self-test",
+            "--terms",
+            "sensor_gain",
+            "--campaigns",
+            "1",
+            "--save",
+            "--out",
+            "saved",
+        ],
+    );
+    assert!(saved.status.success(), "{}", text(&saved.stderr));
+    let campaign = std::fs::read_dir(folder.path().join("saved"))
+        .expect("a folder")
+        .next()
+        .expect("a campaign")
+        .expect("a campaign")
+        .path();
+    let answer = std::fs::read_to_string(campaign.join("answer.json")).expect("an answer");
+    assert!(answer.contains("sensor_gain"));
+    let predicted = oleo(
+        folder.path(),
+        &[
+            "predict",
+            "--model",
+            &campaign.join("model.toml").to_string_lossy(),
+            &campaign.join("sine_low_soft.csv").to_string_lossy(),
+            "--out",
+            "simulated.csv",
+        ],
+    );
+    assert!(predicted.status.success(), "{}", text(&predicted.stderr));
+}
+
+#[test]
+fn bad_arguments_are_one_line_that_says_what_to_do() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (arguments, says) in [
+        (&["--self-test", "--terms", "seal_fraction"][..], "seal_friction"),
+        (&["--self-test", "--campaigns", "0"], "above 0"),
+        (&["--self-test", "--threads", "0"], "above 0"),
+        (&["--self-test", "--out", "no/such/folder"], "no/such"),
+        (&["--self-test", "campaign", "--out", "x"], "--self-test"),
+        (&["--campaigns", "3", "--out", "x"], "--self-test"),
+        (&["--out", "x"], "CAMPAIGN"),
+    ] {
+        let run = oleo(folder.path(), &[&["diagnose"], arguments].concat());
+        let message = text(&run.stderr);
+        assert_eq!(run.status.code(), Some(2), "{arguments:?}: {message}");
+        assert!(
+            message.trim_end().lines().count() == 1 && message.contains(says),
+            "{arguments:?}: {message}"
+        );
+    }
+    std::fs::write(folder.path().join("trials.jsonl"), "{\"oleo_self_test\":0}\n").expect("a file");
+    let run = oleo(
+        folder.path(),
+        &["diagnose", "--self-test", "--campaigns", "1", "--out", "."],
+    );
+    assert_eq!(run.status.code(), Some(2));
+    assert!(
+        text(&run.stderr).contains("another --out folder"),
+        "{}",
+        text(&run.stderr)
+    );
+}

@@ -61,7 +61,7 @@ pub fn generate(name: &str, wanted: &[(&'static str, f64)]) -> Result<Generated,
     for (h, _) in &hidden {
         h.conceal(&mut given);
     }
-    let blank = seen.iter().map(|m| blank_recording(m)).collect();
+    let blank = seen.iter().map(blank_recording).collect();
     let scaffold = TwoStageStrut::new(given.clone(), blank).map_err(DiagnoseError::Model)?;
     let deviations: Vec<f64> = scaffold
         .calibration()

@@ -1,5 +1,10 @@
 //! How sure a report is of an effect: the evidence for it, weighed so that of the effects reported at 0.9 nine in ten are
 //! there.
+//!
+//! Most of a wrong name's plausibility is a rival that does as well, so what counts is the lead over the strongest rival in
+//! the effect's place: in standard errors over the blocks, and as a part of what the effect gains at all. (More kinds of
+//! evidence, such as the gain a residual, the noise left, or whether the law has a name, predicted worse on trials that
+//! were left out of the fit.)
 
 /// What speaks for or against a reported effect.
 #[derive(Debug, Clone, Copy)]
@@ -8,38 +13,33 @@ pub struct Evidence {
     pub gain: (f64, f64),
     /// Lead in held-out cost over the strongest rival in its place, and its standard error; `None` without a rival.
     pub lead: Option<(f64, f64)>,
-    /// Number of residuals.
-    pub residuals: usize,
-    /// Held-out noise ratio of the model with it.
-    pub noise_ratio: f64,
-    /// True for a law without a name.
-    pub nameless: bool,
 }
 
 /// Names of [`Evidence::measures`].
-pub const EVIDENCE: [&str; 6] = [
-    "constant",
-    "lead over the rival, standard errors",
-    "lead over gain",
-    "gain a residual",
-    "noise left",
-    "no name",
-];
+pub const EVIDENCE: [&str; 3] = ["constant", "lead over the rival, standard errors", "lead over gain"];
+
+/// Fitted by `oleo diagnose --self-test --seed 1 --campaigns 80`, table "Weights of evidence": 75 reports, 71 of them
+/// there. Logarithmic score, each report left out of its fit: -0.14 (-0.17 without these weights).
+const WEIGHTS: [f64; EVIDENCE.len()] = [1.15, 2.25, 2.82];
+/// Nothing is reported as surer than the self-test can show, or as less likely than this.
+const RANGE: (f64, f64) = (0.05, 0.99);
 
 impl Evidence {
-    /// The evidence as numbers of order one, logarithmic where it spans decades.
+    /// The evidence as numbers of order one; standard errors logarithmic beyond one.
     #[must_use]
     pub fn measures(&self) -> [f64; EVIDENCE.len()] {
-        let gain = self.gain.0.max(1.0);
         let (lead, error) = self.lead.unwrap_or(self.gain);
         [
             1.0,
             libm::asinh(lead / error.max(1.0)) - 1.0,
-            (lead / gain).clamp(-1.0, 1.0),
-            libm::log(gain / self.residuals.max(1) as f64).clamp(-7.0, 7.0) / 3.0,
-            libm::log(self.noise_ratio.clamp(1.0, 20.0)),
-            f64::from(u8::from(self.nameless)),
+            (lead / self.gain.0.max(1.0)).clamp(-1.0, 1.0),
         ]
+    }
+
+    /// Chance that the effect is there, at its place.
+    #[must_use]
+    pub fn confidence(&self) -> f64 {
+        weighed(&self.measures(), &WEIGHTS).clamp(RANGE.0, RANGE.1)
     }
 }
 
@@ -48,4 +48,23 @@ impl Evidence {
 pub fn weighed(measures: &[f64], weights: &[f64]) -> f64 {
     let sum: f64 = measures.iter().zip(weights).map(|(m, w)| m * w).sum();
     1.0 / (1.0 + libm::exp(-sum))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clear_lead_is_sure_and_a_tie_is_not() {
+        let at = |lead: f64, error: f64| {
+            Evidence {
+                gain: (1000.0, 300.0),
+                lead: Some((lead, error)),
+            }
+            .confidence()
+        };
+        assert!(at(900.0, 100.0) > 0.95);
+        assert!(at(1.0, 10.0) < 0.6);
+        assert!(at(-200.0, 100.0) < at(0.0, 100.0) && at(0.0, 100.0) < at(300.0, 100.0));
+    }
 }

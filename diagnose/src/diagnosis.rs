@@ -4,6 +4,7 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 
 use crate::campaign::Campaign;
+use crate::confidence::Evidence;
 use crate::error::DiagnoseError;
 use crate::fit::Fit;
 use crate::locate::{Location, Reach, Relation, locate, reaches, relations};
@@ -51,7 +52,7 @@ pub struct Effect {
     pub label: String,
     /// Index of the chosen candidate, `None` for something seen but not modelled.
     pub chosen: Option<Chosen>,
-    /// Confidence, 0.5 to 0.99.
+    /// Chance that it is there, 0.05 to 0.99.
     pub confidence: f64,
     /// Numbers.
     pub parameters: Vec<Estimate>,
@@ -308,7 +309,11 @@ fn effects(problem: &Problem<'_>, selection: &Selection, estimates: &[Estimate])
         let law = (candidate.id == "unlisted")
             .then(|| problem.specimen.law(chosen.candidate, &hypothesis.effects[position].1))
             .flatten();
-        let confidence = confidence(chosen, selection.incomplete);
+        let evidence = Evidence {
+            gain: (chosen.gain, chosen.gain_error),
+            lead: chosen.rival.map(|(_, lead, error)| (lead, error)),
+        };
+        let confidence = evidence.confidence();
         for (place, which) in places(&candidate.place, own.len()) {
             out.push(Effect {
                 id: candidate.id.into(),
@@ -333,20 +338,4 @@ fn places(place: &str, count: usize) -> Vec<(String, Vec<usize>)> {
         ("path-1+path-2", 3) => vec![("path-1".into(), vec![0, 2]), ("path-2".into(), vec![1, 2])],
         (_, n) => vec![(place.into(), (0..n).collect())],
     }
-}
-
-/// How sure: by how many standard errors (over blocks) the effect beats its strongest rival in its place, and whether
-/// the model with it reaches the noise. The self-test holds these figures against the truth.
-fn confidence(chosen: &Chosen, incomplete: bool) -> f64 {
-    let sigmas = match chosen.rival {
-        Some((_, lead, error)) => lead / error.max(1.0),
-        None => chosen.gain / chosen.gain_error.max(1.0),
-    };
-    let certain = 0.5 * (1.0 + libm::erf(0.5 * sigmas.max(0.0) / std::f64::consts::SQRT_2));
-    (if incomplete {
-        0.5 + 0.8 * (certain - 0.5)
-    } else {
-        certain
-    })
-    .clamp(0.5, 0.99)
 }

@@ -21,7 +21,7 @@ pub struct Calibration {
     pub there: usize,
     /// Mean logarithmic score of confidence as reported; -0.69 is a coin.
     pub score_reported: f64,
-    /// The same with these weights, each report judged by weights fitted on the other half.
+    /// The same with these weights, each report judged by weights fitted on all others.
     pub score_fitted: f64,
 }
 
@@ -41,13 +41,7 @@ pub fn calibrate(trials: &[&Trial]) -> Option<Calibration> {
     for t in trials {
         for r in &t.reported {
             let Some(gain) = r.gain else { continue };
-            let evidence = Evidence {
-                gain,
-                lead: r.lead,
-                residuals: t.residuals,
-                noise_ratio: t.noise_ratio.1,
-                nameless: r.id == "unlisted",
-            };
+            let evidence = Evidence { gain, lead: r.lead };
             samples.push((evidence.measures(), t.there(r), r.confidence));
         }
     }
@@ -55,24 +49,22 @@ pub fn calibrate(trials: &[&Trial]) -> Option<Calibration> {
     if samples.len() < FEWEST || there == 0 || there == samples.len() {
         return None;
     }
-    let halves: [Vec<Sample>; 2] = std::array::from_fn(|h| {
-        samples
+    let score = |p: f64, there: bool| libm::log(if there { p } else { 1.0 - p }.max(1e-6));
+    let left_out = |k: usize| {
+        let others: Vec<Sample> = samples
             .iter()
             .enumerate()
-            .filter(|(k, _)| k % 2 == h)
+            .filter(|(i, _)| *i != k)
             .map(|(_, s)| *s)
-            .collect()
-    });
-    let fitted = [fit(&halves[1])?, fit(&halves[0])?];
-    let score = |p: f64, there: bool| libm::log(if there { p } else { 1.0 - p }.max(1e-6));
+            .collect();
+        let w = fit(&others)?;
+        Some(score(
+            crate::confidence::weighed(&samples[k].0, w.as_slice()),
+            samples[k].1,
+        ))
+    };
     let n = samples.len() as f64;
-    let score_fitted = (halves.iter().zip(&fitted))
-        .flat_map(|(half, w)| {
-            half.iter()
-                .map(|s| score(crate::confidence::weighed(&s.0, w.as_slice()), s.1))
-        })
-        .sum::<f64>()
-        / n;
+    let score_fitted = (0..samples.len()).map(left_out).sum::<Option<f64>>()? / n;
     Some(Calibration {
         names: EVIDENCE.to_vec(),
         weights: fit(&samples)?.iter().copied().collect(),

@@ -1,6 +1,5 @@
 //! One campaign diagnosed: the selection, put into figures a person or a program can judge.
 
-use nalgebra::DVector;
 use rayon::prelude::*;
 
 use crate::campaign::Campaign;
@@ -8,7 +7,7 @@ use crate::confidence::Evidence;
 use crate::error::DiagnoseError;
 use crate::fit::Fit;
 use crate::locate::{Location, Reach, Relation, locate, reaches, relations};
-use crate::problem::{Point, Problem};
+use crate::problem::Problem;
 use crate::select::{Chosen, Report, Selection, select};
 use crate::specimen::Series;
 use crate::whiteness::{Whiteness, whiteness};
@@ -207,21 +206,10 @@ impl Diagnosis {
 
 /// Residuals of every block from a simulation whose parameters that block's fold had no say in.
 fn held_out_residuals(problem: &Problem<'_>, fit: &Fit) -> Result<Vec<Series>, DiagnoseError> {
-    let folds: Vec<Vec<Series>> = (0..problem.folds)
-        .into_par_iter()
-        .map(|fold| {
-            if problem.refits_folds() {
-                return Ok(problem.residuals(&problem.predict(&fit.refitted(problem, fold)?)?));
-            }
-            let step = fit.step_without(|k| problem.blocks[k].fold == fold);
-            let step = step.unwrap_or_else(|| DVector::zeros(fit.point.z.len()));
-            let z = (fit.point.z.iter().zip(step.iter()).zip(&fit.ranges)).map(|((z, d), r)| (z + d).clamp(r.0, r.1));
-            let point = Point {
-                effects: fit.point.effects.clone(),
-                z: z.collect(),
-            };
-            Ok(problem.residuals(&problem.predict(&point)?))
-        })
+    let folds: Vec<Vec<Series>> = fit
+        .fold_points(problem)
+        .par_iter()
+        .map(|point| Ok(problem.residuals(&problem.predict(point)?)))
         .collect::<Result<_, DiagnoseError>>()?;
     let mut out = folds[0].clone();
     for b in &problem.blocks {

@@ -4,7 +4,7 @@
 //! parameters would be re-laid-out for it at every step, and the per-block sums that held-out figures and intervals are
 //! made of would have to be formed again. The step itself is Marquardt's (J. SIAM 11(2), 1963), with bounds by freezing.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::{DMatrix, DVector};
 
@@ -51,10 +51,25 @@ pub struct Fit {
     pub ranges: Vec<(f64, f64)>,
     /// Residual and derivatives, where they were kept (they are large).
     pub sensitivity: Option<Arc<Vec<Sensitivity>>>,
+    /// True for the linear end of a screening, which has not converged.
+    pub screened: bool,
+    /// Leaving out the folds, once somebody has asked.
+    pub judged: Arc<OnceLock<Judged>>,
+}
+
+/// What leaving out each fold does.
+#[derive(Debug, Clone)]
+pub struct Judged {
+    /// Cost of every block when its fold had no say in the fit.
+    costs: Vec<f64>,
+    /// The point fitted without each fold.
+    points: Vec<Point>,
 }
 
 /// Largest change of a coordinate that leaving out blocks is believed to make: beyond, the linear picture is no guide.
 const MAX_LEFT_OUT_STEP: f64 = 1.5;
+/// Held-out cost over fitted cost up to which the linear picture is believed.
+const LINEAR_LIMIT: f64 = 1.5;
 
 /// Fits all parameters of the structure from a starting point.
 ///
@@ -132,6 +147,8 @@ pub fn fit(problem: &Problem<'_>, start: Point, effort: Effort) -> Result<Fit, D
         cost,
         ranges,
         sensitivity: Some(Arc::new(sensitivity)),
+        screened: false,
+        judged: Arc::default(),
     })
 }
 
@@ -212,34 +229,56 @@ pub(crate) fn bounded_step(
 }
 
 impl Fit {
-    /// The point fitted without a fold, by a fit of its own.
-    ///
-    /// # Errors
-    /// As [`fit`].
-    pub fn refitted(&self, problem: &Problem<'_>, fold: usize) -> Result<Point, DiagnoseError> {
-        Ok(fit(&problem.without_fold(fold), self.point.clone(), Effort::FULL)?.point)
+    /// Cost of every block when its fold had no say in the fit.
+    #[must_use]
+    pub fn held_out(&self, problem: &Problem<'_>) -> &[f64] {
+        &self.judged(problem).costs
     }
 
-    /// Cost of every block when its fold had no say in the fit: by fits of their own where they are cheap, else in the
-    /// linear approximation around this fit.
+    /// The point fitted without each fold.
     #[must_use]
-    pub fn held_out(&self, problem: &Problem<'_>) -> Vec<f64> {
-        if problem.refits_folds() {
-            let mut costs = vec![f64::INFINITY; self.normals.len()];
-            for fold in 0..problem.folds {
-                if let Ok(there) = self.refitted(problem, fold).and_then(|p| problem.block_costs(&p)) {
-                    for (k, cost) in there
-                        .into_iter()
-                        .enumerate()
-                        .filter(|(k, _)| problem.blocks[*k].fold == fold)
-                    {
+    pub fn fold_points(&self, problem: &Problem<'_>) -> &[Point] {
+        &self.judged(problem).points
+    }
+
+    /// By fits of their own where they are cheap, or where the linear approximation around this fit says that leaving
+    /// out a fold changes much; else in that approximation.
+    fn judged(&self, problem: &Problem<'_>) -> &Judged {
+        self.judged.get_or_init(|| {
+            if problem.refits_folds() {
+                return self.refitted(problem, Effort::FULL);
+            }
+            let linear = self.left_out(problem);
+            if self.screened || linear.costs.iter().sum::<f64>() < LINEAR_LIMIT * total(&self.normals) {
+                linear
+            } else {
+                self.refitted(problem, Effort::QUICK)
+            }
+        })
+    }
+
+    fn refitted(&self, problem: &Problem<'_>, effort: Effort) -> Judged {
+        let mut costs = vec![f64::INFINITY; self.normals.len()];
+        let mut points = Vec::with_capacity(problem.folds);
+        for fold in 0..problem.folds {
+            let without = fit(&problem.without_fold(fold), self.point.clone(), effort).map(|f| f.point);
+            let point = without.unwrap_or_else(|_| self.point.clone());
+            if let Ok(there) = problem.block_costs(&point) {
+                for (k, cost) in there.into_iter().enumerate() {
+                    if problem.blocks[k].fold == fold {
                         costs[k] = cost;
                     }
                 }
             }
-            return costs;
+            points.push(point);
         }
+        Judged { costs, points }
+    }
+
+    /// The same in the linear approximation.
+    fn left_out(&self, problem: &Problem<'_>) -> Judged {
         let mut costs = vec![0.0; self.normals.len()];
+        let mut points = Vec::with_capacity(problem.folds);
         for fold in 0..problem.folds {
             let step = self.step_without(|k| problem.blocks[k].fold == fold);
             for (k, normal) in self
@@ -253,8 +292,15 @@ impl Fit {
                     None => normal.cost,
                 };
             }
+            let mut point = self.point.clone();
+            if let Some(d) = step {
+                for ((z, d), r) in point.z.iter_mut().zip(d.iter()).zip(&self.ranges) {
+                    *z = (*z + d).clamp(r.0, r.1);
+                }
+            }
+            points.push(point);
         }
-        costs
+        Judged { costs, points }
     }
 
     /// The change of coordinates when the selected blocks are left out; `None` if the rest does not determine them.

@@ -251,6 +251,8 @@ impl<'p, 'a> Screen<'p, 'a> {
             cost: way.cost,
             ranges,
             sensitivity: None,
+            screened: true,
+            judged: Arc::default(),
         }
     }
 

@@ -133,7 +133,7 @@ impl<'p, 'a> Judge<'p, 'a> {
     }
 
     fn held_out(&self, fit: &Fit) -> Vec<f64> {
-        fit.held_out(self.problem)
+        fit.held_out(self.problem).to_vec()
     }
 
     fn ratio(&self, costs: &[f64]) -> f64 {
@@ -203,11 +203,17 @@ impl<'p, 'a> Judge<'p, 'a> {
         Ok(candidates.into_iter().zip(fits).collect())
     }
 
-    /// Screened fits, best first by held-out cost.
+    /// Costs of the blocks as a screened fit reaches them. Held-out costs would be too much to ask of it: it has not
+    /// converged, and where one edge of a valve holds most of the misfit, the rest says little about it in a linear picture.
+    fn reached(fit: &Fit) -> Vec<f64> {
+        fit.normals.iter().map(|n| n.cost).collect()
+    }
+
+    /// Screened fits, best first by the cost that they reach.
     fn ranked(&self, screened: &Screened) -> Vec<(f64, Fit)> {
         let mut order: Vec<(f64, Fit)> = screened
             .iter()
-            .filter_map(|(_, f)| f.as_ref().map(|f| (self.held_out(f).iter().sum::<f64>(), f.clone())))
+            .filter_map(|(_, f)| f.as_ref().map(|f| (Self::reached(f).iter().sum::<f64>(), f.clone())))
             .collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
         order
@@ -236,7 +242,7 @@ impl<'p, 'a> Judge<'p, 'a> {
                 .effects
                 .last()
                 .map_or(MIN_SHARE, |&c| self.share(c, MIN_SHARE));
-            if !self.worth(&before, &self.held_out(&start), share, SCREEN_MARGIN) {
+            if !self.worth(&before, &Self::reached(&start), share, SCREEN_MARGIN) {
                 continue;
             }
             if winner

@@ -221,7 +221,10 @@ impl Cylinder {
             match (candidate.id, candidate.label.as_str()) {
                 ("seal_friction", _) => seal(e, presliding).coulomb_force_n = values[0],
                 ("side_load_friction", _) => {
-                    e.side_load_friction = Some(SideLoadFriction { coefficient: values[0] });
+                    e.side_load_friction = Some(SideLoadFriction {
+                        coefficient: values[0],
+                        overlap_growth_1_m: 0.0,
+                    });
                     seal(e, presliding);
                 }
                 ("unlisted", "moving mass") => e.moving_mass_kg = Some(values[0]),

@@ -171,7 +171,10 @@ impl SpringCharacteristic {
 #[must_use]
 pub fn side_loaded(model: &StrutModel, coefficient: f64) -> StrutModel {
     let mut bent = model.clone();
-    bent.effects.side_load_friction = Some(SideLoadFriction { coefficient });
+    bent.effects.side_load_friction = Some(SideLoadFriction {
+        coefficient,
+        overlap_growth_1_m: 0.0,
+    });
     bent
 }
 

@@ -219,15 +219,13 @@ impl CylinderModel {
                 }
                 if k > 0 {
                     let stroke = motion.displacement_m[k] - motion.displacement_m[k - 1];
-                    let duration = time_s[k] - time_s[k - 1];
-                    friction = advance_friction(
-                        friction,
-                        stroke,
-                        duration,
-                        pressing,
-                        seal.as_ref(),
-                        effects.side_load_friction.as_ref(),
-                    );
+                    let mut level = seal
+                        .as_ref()
+                        .map_or(0.0, |s| s.level_n(stroke / (time_s[k] - time_s[k - 1])));
+                    if let Some(side) = &effects.side_load_friction {
+                        level += side.level_n(pressing, motion.displacement_m[k]);
+                    }
+                    friction = advance_friction(friction, stroke, level, seal.as_ref());
                 }
                 net + friction
                     + effects.moving_mass_kg.unwrap_or(0.0) * motion.acceleration_m_s2[k]
@@ -303,7 +301,10 @@ mod tests {
             coulomb_force_n: 10.0,
             presliding_stiffness_n_m: 1e6,
         });
-        model.effects.side_load_friction = Some(SideLoadFriction { coefficient: 0.02 });
+        model.effects.side_load_friction = Some(SideLoadFriction {
+            coefficient: 0.02,
+            overlap_growth_1_m: 0.0,
+        });
         let t: Vec<f64> = (0..400).map(|k| f64::from(k) * 0.01).collect();
         let x: Vec<f64> = t.iter().map(|t| 0.01 * libm::sin(*t * 3.0)).collect();
         let f = model.force_n(&t, &smooth_motion(&t, &x, 0.03), &[vec![1e6; 400]]);

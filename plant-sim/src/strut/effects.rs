@@ -103,10 +103,14 @@ term! {
     }
 }
 term! {
-    /// Friction from the bending of an offset mounting: `mu |strut force|` (report, 3.5.1).
+    /// Friction from the bending of an offset mounting: `mu |strut force| / (1 + s x)` (report, 3.5.1). The guides carry
+    /// the bending moment over their overlap, which grows with jounce; `1/s` is the overlap at static position.
     SideLoadFriction {
-        /// Friction force over strut force, 0 to 0.3.
+        /// Friction force over strut force at static position, 0 to 0.3.
         coefficient: f64 = "coefficient",
+        /// Relative growth of the guides' overlap with displacement, 1/m; 0 for guides of constant overlap.
+        #[serde(default)]
+        overlap_growth_1_m: f64 = "overlap_growth_1_m",
     }
 }
 term! {
@@ -229,21 +233,51 @@ pub enum LawPlace {
     /// Flow beside pack 2, m3/s.
     #[serde(rename = "beside-pack-2")]
     BesidePack2,
+    /// Factor on the pressure drop of pack 1.
+    #[serde(rename = "pack-1")]
+    Pack1,
+    /// Factor on the pressure drop of pack 2.
+    #[serde(rename = "pack-2")]
+    Pack2,
+    /// Factor on the flow of valve 1.
+    #[serde(rename = "valve-1")]
+    Valve1,
+    /// Factor on the flow of valve 2.
+    #[serde(rename = "valve-2")]
+    Valve2,
+    /// Factor on the flow of valve 3.
+    #[serde(rename = "valve-3")]
+    Valve3,
+    /// Factor on the flow of each valve.
+    #[serde(rename = "valve-1..3")]
+    Valves,
+    /// Level of friction between rod and cylinder, against the motion, N.
+    MainSealFriction,
+    /// Factor on the gas pressure of accumulator 1.
+    #[serde(rename = "accumulator-1")]
+    Accumulator1,
+    /// Factor on the gas pressure of accumulator 2.
+    #[serde(rename = "accumulator-2")]
+    Accumulator2,
+    /// Flow out of the main chamber that does not come back, m3/s.
+    MainChamberLoss,
 }
 /// What a law without a name depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LawArgument {
-    /// Displacement, m (force laws).
+    /// Displacement, m (forces, friction, packs; beside a pack the value is a flow coefficient, m3/s/sqrt(Pa)).
     Displacement,
-    /// Strut speed, m/s (force laws).
+    /// Strut speed, m/s (forces and friction).
     Speed,
-    /// Gauge pressure p1, Pa (force and volume laws).
+    /// Gauge pressure p1, Pa (forces, friction, volume and loss).
     P1,
     /// Flow of the path, m3/s (series drops).
     Flow,
-    /// Pressure drop across the pack, Pa (parallel flows).
+    /// Pressure drop across the pack, Pa (parallel flows); its size (valves).
     PressureDrop,
+    /// Gas volume over the one at static pressure (accumulators).
+    RelativeVolume,
 }
 /// A law that has no name: a table at a place, over a measured quantity; linear between points and beyond the ends.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

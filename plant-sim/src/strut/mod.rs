@@ -18,6 +18,7 @@ mod effects;
 mod friction;
 mod gas;
 mod input;
+mod laws;
 mod model;
 mod network;
 mod nitrogen;

@@ -295,6 +295,7 @@ impl StrutModel {
         }
         if let Some(t) = &e.side_load_friction {
             not_negative("coefficient", t.coefficient)?;
+            finite("overlap_growth_1_m", t.overlap_growth_1_m)?;
         }
         if let Some(t) = &e.accumulator_piston_friction {
             not_negative("pressure_1_Pa", t.pressure_1_pa)?;

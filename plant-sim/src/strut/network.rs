@@ -9,9 +9,10 @@ use super::damper::Pack;
 use super::effects::{BumpStop, Effects, GasEquation, LawArgument, LawPlace, OilCount, SealFriction, SideLoadFriction};
 use super::friction::advance_friction;
 use super::gas::{Gas, GasState};
+use super::laws::{PathLaws, law_at, throttle_of};
 use super::model::{ATMOSPHERE_PA, ModelError, StrutModel};
 use super::nitrogen::Nitrogen;
-use super::solve::{Guess, Moment, Parameters, Path, Store, law_at};
+use super::solve::{Guess, Moment, Parameters, Path, Store};
 use super::stops::stop_force_n;
 use super::valve::ValveMotion;
 
@@ -52,6 +53,7 @@ pub struct Strut {
     side_load: Option<SideLoadFriction>,
     stops: Option<BumpStop>,
     force_law: Option<(LawArgument, Pack)>,
+    friction_law: Option<(LawArgument, Pack)>,
     cooling_time_s: f64,
     response: [f64; 3],
     initial_delay_fraction: f64,
@@ -119,11 +121,8 @@ impl Strut {
             seal: e.seal_friction.clone(),
             side_load: e.side_load_friction.clone(),
             stops: e.bump_stop.clone(),
-            force_law: e
-                .unlisted
-                .iter()
-                .find(|l| l.place == LawPlace::MainSeal)
-                .map(|l| (l.depends_on, Pack::through(&l.argument, &l.value))),
+            force_law: seal_law(e, LawPlace::MainSeal),
+            friction_law: seal_law(e, LawPlace::MainSealFriction),
             cooling_time_s: e.damping_fade.as_ref().map_or(f64::INFINITY, |f| f.cooling_time_s),
             response,
             initial_delay_fraction: model.valve_timing.initial_delay_fraction,
@@ -262,17 +261,18 @@ impl Strut {
             let kept = 1.0 / (1.0 + h / self.cooling_time_s);
             self.store.heat = self.store.heat.map(|e| e * kept);
         }
-        if self.seal.is_some() || self.side_load.is_some() {
-            let force = p.area_m2 * last.pressure[0];
+        if self.seal.is_some() || self.side_load.is_some() || self.friction_law.is_some() {
             let stroke = end.0 - self.actuator_m;
-            self.friction_n = advance_friction(
-                self.friction_n,
-                stroke,
-                h,
-                force,
-                self.seal.as_ref(),
-                self.side_load.as_ref(),
-            );
+            let mut level = self.seal.as_ref().map_or(0.0, |s| s.level_n(stroke / h));
+            if let Some(side) = &self.side_load {
+                level += side.level_n(p.area_m2 * last.pressure[0], end.0);
+            }
+            if let Some((argument, law)) = &self.friction_law {
+                level += law
+                    .flow(seal_argument(*argument, end.0, end.1, last.pressure[0]), &mut 0)
+                    .0;
+            }
+            self.friction_n = advance_friction(self.friction_n, stroke, level, self.seal.as_ref());
         }
         self.time_s = now + h;
         self.actuator_m = end.0;
@@ -287,11 +287,7 @@ impl Strut {
             force_n += stop_force_n(stops, self.actuator_m);
         }
         if let Some((argument, law)) = &self.force_law {
-            let at = match argument {
-                LawArgument::Displacement => self.actuator_m,
-                LawArgument::Speed => self.speed_m_s,
-                _ => self.pressure[0],
-            };
+            let at = seal_argument(*argument, self.actuator_m, self.speed_m_s, self.pressure[0]);
             force_n += law.flow(at, &mut 0).0;
         }
         StrutOutput {
@@ -322,6 +318,21 @@ impl Strut {
     #[must_use]
     pub fn gas(&self) -> [GasState; 2] {
         self.store.gas
+    }
+}
+
+fn seal_law(effects: &Effects, place: LawPlace) -> Option<(LawArgument, Pack)> {
+    (effects.unlisted.iter())
+        .find(|l| l.place == place)
+        .map(|l| (l.depends_on, Pack::through(&l.argument, &l.value)))
+}
+
+/// What a law at the seal is read at.
+fn seal_argument(argument: LawArgument, displacement_m: f64, speed_m_s: f64, p1_pa: f64) -> f64 {
+    match argument {
+        LawArgument::Displacement => displacement_m,
+        LawArgument::Speed => speed_m_s,
+        _ => p1_pa,
     }
 }
 
@@ -394,8 +405,8 @@ fn parameters(model: &StrutModel) -> Parameters {
                 .damping_fade
                 .as_ref()
                 .map_or(0.0, |f| pick(f.fade_1_per_j, f.fade_2_per_j)),
-            series_law: law_at(&e.unlisted, [LawPlace::Path1, LawPlace::Path2][i]),
-            parallel_law: law_at(&e.unlisted, [LawPlace::BesidePack1, LawPlace::BesidePack2][i]),
+            laws: PathLaws::of(&e.unlisted, i),
+            static_gas_m3: volume,
         }
     };
     let flexibility = e.mount_compliance.as_ref().map_or(0.0, |m| 1.0 / m.stiffness_n_m);
@@ -411,7 +422,9 @@ fn parameters(model: &StrutModel) -> Parameters {
         air: e.entrained_air.clone(),
         mount_compliance: area_m2 * area_m2 * flexibility,
         mount_flexibility: flexibility,
-        volume_law: law_at(&e.unlisted, LawPlace::MainChamber),
+        volume_law: law_at(&e.unlisted, LawPlace::MainChamber, LawArgument::P1),
+        loss_law: law_at(&e.unlisted, LawPlace::MainChamberLoss, LawArgument::P1),
+        valve3_law: throttle_of(&e.unlisted, 2),
         has_unlisted: !e.unlisted.is_empty(),
         paths: [path(0), path(1)],
         valve3_coefficient: model.valve[2].total_flow_coefficient(),

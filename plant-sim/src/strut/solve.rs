@@ -14,8 +14,9 @@
 //! the start is predicted ([`Guess`]) and the last step is taken linearly as soon as its square does not matter.
 
 use super::damper::Pack;
-use super::effects::{EntrainedAir, UnlistedLaw};
+use super::effects::EntrainedAir;
 use super::gas::{Departure, Gas, GasState};
+use super::laws::{PathLaws, throttled};
 use super::model::ATMOSPHERE_PA;
 use super::orifice::{unit_drop, unit_flow};
 
@@ -27,11 +28,11 @@ pub(super) struct Path {
     pub leak_coefficient: f64,
     pub resistance: f64,
     pub gas: Gas,
+    pub static_gas_m3: f64,
     pub piston_friction_pa: f64,
     pub piston_presliding_m3: f64,
     pub fade_per_j: f64,
-    pub series_law: Option<Pack>,
-    pub parallel_law: Option<Pack>,
+    pub laws: PathLaws,
 }
 
 /// What does not change from step to step.
@@ -49,6 +50,8 @@ pub(super) struct Parameters {
     /// Inverse of the mount's stiffness, m/N.
     pub mount_flexibility: f64,
     pub volume_law: Option<Pack>,
+    pub loss_law: Option<Pack>,
+    pub valve3_law: Option<Pack>,
     /// Some path or the chamber has a law without a name, read from a table.
     pub has_unlisted: bool,
     pub paths: [Path; 2],
@@ -188,8 +191,12 @@ struct Setting<'a> {
     h: f64,
     gas: GasState,
     shear: f64,
+    /// What the pack's drop is divided by.
     fade: f64,
+    /// Flow coefficient beside the pack: bypass valve, leaks and grooves.
     valve: f64,
+    /// The bypass valve's part of it.
+    through: f64,
     transition: f64,
     real: &'a Departure,
 }
@@ -197,12 +204,14 @@ struct Setting<'a> {
 impl Path {
     #[inline(always)]
     fn setting<'a>(&self, base: &Store, i: usize, at: &Moment, transition: f64, real: &'a Departure) -> Setting<'a> {
+        let through = at.opening[i] * self.valve_coefficient;
         Setting {
             h: at.h,
             gas: base.gas[i],
             shear: base.shear[i],
-            fade: 1.0 + self.fade_per_j * base.heat[i],
-            valve: at.opening[i] * self.valve_coefficient + self.leak_coefficient,
+            fade: (1.0 + self.fade_per_j * base.heat[i]) * self.laws.weakening(at.displacement_m),
+            valve: through + self.leak_coefficient + self.laws.bypass(at.displacement_m),
+            through,
             transition,
             real,
         }
@@ -214,10 +223,11 @@ impl Path {
         flow_slope *= at.fade;
         if at.valve > 0.0 {
             let (unit, slope) = unit_flow(drop, at.transition);
-            flow += at.valve * unit;
-            flow_slope += at.valve * slope;
+            let coefficient = at.valve - at.through * self.laws.throttled_away(drop);
+            flow += coefficient * unit;
+            flow_slope += coefficient * slope;
         }
-        if let Some(law) = &self.parallel_law {
+        if let Some(law) = &self.laws.parallel {
             let (q, s) = law.flow(drop, &mut 0);
             flow += q;
             flow_slope += s;
@@ -239,6 +249,11 @@ impl Path {
     fn behind(&self, at: &Setting, flow: f64, flow_slope: f64) -> Branch {
         let step = self.gas.implicit(at.gas, at.h, flow, at.real);
         let (mut oil, mut oil_slope) = (step.pressure_pa - ATMOSPHERE_PA, step.pressure_by_flow);
+        if let Some(law) = &self.laws.gas {
+            let factor = law.flow(step.state.volume_m3 / self.static_gas_m3, &mut 0).0.max(0.1);
+            oil = factor * step.pressure_pa - ATMOSPHERE_PA;
+            oil_slope *= factor;
+        }
         let (mut shear, mut shear_slope) = (at.shear, 0.0);
         if self.piston_friction_pa > 0.0 {
             let k = at.h / self.piston_presliding_m3;
@@ -249,7 +264,7 @@ impl Path {
             oil_slope += self.piston_friction_pa * shear_slope;
         }
         let (mut line, mut line_slope) = (self.resistance * flow, self.resistance);
-        if let Some(law) = &self.series_law {
+        if let Some(law) = &self.laws.series {
             let (p, s) = law.flow(flow, &mut 0);
             line += p;
             line_slope += s;
@@ -287,7 +302,7 @@ impl Parameters {
             volume -= self.oil_volume_m3 * left;
             slope += self.oil_volume_m3 * thinning;
         }
-        if let Some(law) = &self.volume_law {
+        if let Some(law) = self.volume_law.as_ref().filter(|_| self.conserves_oil) {
             let (v, s) = law.flow(p1, &mut 0);
             volume += v;
             slope += s;
@@ -311,6 +326,13 @@ impl Parameters {
                 volume += chamber * (before - left);
                 slope += chamber * thinning;
             }
+            // And so does what a law without a name adds to it.
+            if let Some(law) = &self.volume_law {
+                let part = 1.0 - self.area_m2 * displacement_m / self.oil_volume_m3;
+                let (before, (v, s)) = (law.flow(base.p1, &mut 0).0, law.flow(p1, &mut 0));
+                volume += part * (v - before);
+                slope += part * s;
+            }
         }
         GivenWay {
             volume,
@@ -332,7 +354,10 @@ impl Parameters {
 
     /// `CONNECTED`: valve 3 lets oil through; `inverse_c3` is the inverse of its flow coefficient as far as it is open.
     fn solve<const CONNECTED: bool>(&self, base: &Store, at: &Moment, inverse_c3: f64, guess: &mut Guess) -> Stage {
-        let supply = self.area_m2 * at.speed_m_s;
+        let mut supply = self.area_m2 * at.speed_m_s;
+        if let Some(law) = &self.loss_law {
+            supply -= law.flow(base.p1, &mut 0).0;
+        }
         let [path1, path2] = &self.paths;
         let Guess { segment, real, .. } = guess;
         path1.gas.refresh(&mut real[0], base.gas[0], at.h, guess.flow[0]);
@@ -364,27 +389,42 @@ impl Parameters {
             } else {
                 path2.behind(&second, 0.0, 0.0)
             };
-            let (d3, d3_slope, step1, step2, gain);
+            let (d3, d3_by, step1, step2, gain);
             if CONNECTED {
-                let (drop, slope) = unit_drop(two.flow * inverse_c3, self.transition_pa);
-                (d3, d3_slope) = (drop, slope * inverse_c3);
                 let continuity = supply - stored - one.flow - two.flow;
-                let mesh = p1 - d2 - two.line - inertia * (two.flow - base.q2) - d3 - two.oil;
                 let c_d1 = -c * p1_slope - one.flow_slope;
-                let m_d2 = -1.0 - (two.line_slope + inertia + d3_slope + two.oil_slope) * two.flow_slope;
-                let inverse = 1.0 / (c_d1 * m_d2 + two.flow_slope * p1_slope);
-                gain = [-m_d2 * inverse, p1_slope * inverse];
+                let behind = p1 - d2 - two.line - inertia * (two.flow - base.q2) - two.oil;
+                let behind_d2 = -1.0 - (two.line_slope + inertia + two.oil_slope) * two.flow_slope;
+                let (mesh, m_d1, m_d2);
+                if let Some(law) = &self.valve3_law {
+                    // A flow that falls with its drop cannot be solved for the drop: the loop is closed in flows. The
+                    // slope leaves the law's own fall out; it is then too steep, never of the wrong sign.
+                    let through = throttled(law, behind) / inverse_c3;
+                    let (unit, unit_slope) = unit_flow(behind, self.transition_pa);
+                    mesh = two.flow - through * unit;
+                    m_d1 = -through * unit_slope * p1_slope;
+                    m_d2 = two.flow_slope - through * unit_slope * behind_d2;
+                    (d3, d3_by) = (behind, [p1_slope, behind_d2]);
+                } else {
+                    let (drop, slope) = unit_drop(two.flow * inverse_c3, self.transition_pa);
+                    mesh = behind - drop;
+                    m_d1 = p1_slope;
+                    m_d2 = behind_d2 - slope * inverse_c3 * two.flow_slope;
+                    (d3, d3_by) = (drop, [0.0, slope * inverse_c3 * two.flow_slope]);
+                }
+                let inverse = 1.0 / (c_d1 * m_d2 + two.flow_slope * m_d1);
+                gain = [-m_d2 * inverse, m_d1 * inverse];
                 step1 = gain[0] * continuity - two.flow_slope * inverse * mesh;
                 step2 = gain[1] * continuity - c_d1 * inverse * mesh;
             } else {
-                (d3, d3_slope) = (0.0, 0.0);
+                (d3, d3_by) = (0.0, [0.0; 2]);
                 gain = [1.0 / (c * p1_slope + one.flow_slope), 0.0];
                 step1 = gain[0] * (supply - stored - one.flow);
                 step2 = 0.0;
             }
             round += 1;
             let p1_step = p1_slope * step1;
-            let d3_step = d3_slope * two.flow_slope * step2;
+            let d3_step = d3_by[0] * step1 + d3_by[1] * step2;
             let least = if p1 + ATMOSPHERE_PA > LEAST_BUBBLE_PA {
                 p1 + ATMOSPHERE_PA
             } else {
@@ -471,11 +511,4 @@ fn bubbles(air: &EntrainedAir, gauge_pa: f64) -> (f64, f64) {
     let volume = air.volume_fraction * power;
     let thinning = volume * thinner;
     (volume + thinning * (held - absolute), thinning)
-}
-
-/// The table of a law without a name at a place, if the model has one.
-pub(super) fn law_at(laws: &[UnlistedLaw], place: super::effects::LawPlace) -> Option<Pack> {
-    laws.iter()
-        .find(|l| l.place == place)
-        .map(|l| Pack::through(&l.argument, &l.value))
 }

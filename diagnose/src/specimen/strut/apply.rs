@@ -60,7 +60,12 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
                 presliding_stiffness_n_m: PRESLIDING_STIFFNESS_N_M,
             });
         }
-        "side_load_friction" => effects.side_load_friction = Some(SideLoadFriction { coefficient: v[0] }),
+        "side_load_friction" => {
+            effects.side_load_friction = Some(SideLoadFriction {
+                coefficient: v[0],
+                overlap_growth_1_m: v[1],
+            });
+        }
         "accumulator_piston_friction" => {
             let none = AccumulatorPistonFriction {
                 pressure_1_pa: 0.0,

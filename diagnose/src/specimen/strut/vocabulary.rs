@@ -83,7 +83,10 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         add(
             "side_load_friction",
             "main-seal",
-            vec![Parameter::amount("coefficient", 0.003, 0.5)],
+            vec![
+                Parameter::amount("coefficient", 0.003, 0.5),
+                Parameter::linear("overlap_growth_1_m", 0.0, 1.0, (-4.0, 6.0)),
+            ],
             vec![],
             None,
         );

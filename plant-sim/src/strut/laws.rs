@@ -1,0 +1,91 @@
+//! Laws without a name, as the solver reads them: tables at places of the network, linear between points and beyond.
+//!
+//! A table is a number over one quantity. What the number does follows from the place: it is added (a force, a volume, a
+//! flow, a drop), or it multiplies what the model believed (a damper's drop, a valve's flow, a gas pressure).
+
+use super::damper::Pack;
+use super::effects::{LawArgument, LawPlace, UnlistedLaw};
+
+/// A factor never falls below this part of what was believed: an element does not turn round.
+const LEAST_FACTOR: f64 = 0.01;
+
+/// The laws of one path.
+#[derive(Debug, Clone, Default)]
+pub(super) struct PathLaws {
+    /// Drop in series over flow, Pa.
+    pub series: Option<Pack>,
+    /// Flow beside the pack over its drop, m3/s.
+    pub parallel: Option<Pack>,
+    /// Flow coefficient beside the pack over displacement.
+    bypass: Option<Pack>,
+    /// Factor on the pack's drop over displacement.
+    strength: Option<Pack>,
+    /// Factor on the bypass valve's flow over the size of its drop.
+    throttle: Option<Pack>,
+    /// Factor on the gas pressure over volume.
+    pub gas: Option<Pack>,
+}
+
+/// The table at a place over a quantity, if the model has one.
+pub(super) fn law_at(laws: &[UnlistedLaw], place: LawPlace, over: LawArgument) -> Option<Pack> {
+    laws.iter()
+        .find(|l| l.place == place && l.depends_on == over)
+        .map(|l| Pack::through(&l.argument, &l.value))
+}
+
+/// A valve's law is its own or the one of all three.
+pub(super) fn throttle_of(laws: &[UnlistedLaw], valve: usize) -> Option<Pack> {
+    let own = [LawPlace::Valve1, LawPlace::Valve2, LawPlace::Valve3][valve];
+    law_at(laws, own, LawArgument::PressureDrop).or_else(|| law_at(laws, LawPlace::Valves, LawArgument::PressureDrop))
+}
+
+/// Factor of a throttle at a drop.
+#[inline]
+pub(super) fn throttled(law: &Pack, drop_pa: f64) -> f64 {
+    law.flow(drop_pa.abs(), &mut 0).0.max(LEAST_FACTOR)
+}
+
+impl PathLaws {
+    pub fn of(laws: &[UnlistedLaw], path: usize) -> Self {
+        let pick = |a: [LawPlace; 2], over| law_at(laws, a[path], over);
+        Self {
+            series: pick([LawPlace::Path1, LawPlace::Path2], LawArgument::Flow),
+            parallel: pick(
+                [LawPlace::BesidePack1, LawPlace::BesidePack2],
+                LawArgument::PressureDrop,
+            ),
+            bypass: pick(
+                [LawPlace::BesidePack1, LawPlace::BesidePack2],
+                LawArgument::Displacement,
+            ),
+            strength: pick([LawPlace::Pack1, LawPlace::Pack2], LawArgument::Displacement),
+            throttle: throttle_of(laws, path),
+            gas: pick(
+                [LawPlace::Accumulator1, LawPlace::Accumulator2],
+                LawArgument::RelativeVolume,
+            ),
+        }
+    }
+
+    /// Flow coefficient beside the pack at a displacement.
+    #[inline]
+    pub fn bypass(&self, displacement_m: f64) -> f64 {
+        self.bypass
+            .as_ref()
+            .map_or(0.0, |l| l.flow(displacement_m, &mut 0).0.max(0.0))
+    }
+
+    /// What the believed drop of the pack is divided by at a displacement.
+    #[inline]
+    pub fn weakening(&self, displacement_m: f64) -> f64 {
+        self.strength
+            .as_ref()
+            .map_or(1.0, |l| 1.0 / l.flow(displacement_m, &mut 0).0.max(LEAST_FACTOR))
+    }
+
+    /// Part of the bypass valve's flow that a drop does not let pass.
+    #[inline]
+    pub fn throttled_away(&self, drop_pa: f64) -> f64 {
+        self.throttle.as_ref().map_or(0.0, |l| 1.0 - throttled(l, drop_pa))
+    }
+}

@@ -31,8 +31,13 @@ const MIN_SHARE: f64 = 0.08;
 const MIN_SHARE_INCOMPLETE: f64 = 0.35;
 /// The same for a cylinder recorded under several conditions, whose few parameters those pin down.
 const MIN_SHARE_CONDITIONS: f64 = 0.1;
-/// Noise ratio up to which a model counts as complete.
+/// Noise ratio up to which a model counts as complete, where the noise of its inputs does not come through.
 pub const COMPLETE_NOISE_RATIO: f64 = 1.15;
+/// The same over the floor that the noise of the inputs sets.
+const COMPLETE_OVER_FLOOR: f64 = 1.07;
+/// An instrument's fault below this part of what would be visible is not worth a name: a clock off by a hundredth of a
+/// sample, a gain by a thousandth.
+const LEAST_FAULT: f64 = 0.1;
 /// Noise ratio above which laws without a name are tried.
 const LAW_NOISE_RATIO: f64 = 1.06;
 /// Screening is linear in the model's own parameters: what it calls a little less than worth it is still fitted.
@@ -252,6 +257,9 @@ impl<'p, 'a> Judge<'p, 'a> {
                 continue;
             }
             let full = self.fitted(start.point)?;
+            if self.too_small(&full) {
+                continue;
+            }
             let costs = self.held_out(&full);
             let cost = costs.iter().sum::<f64>();
             if self.worth(&before, &costs, share, 1.0) && winner.as_ref().is_none_or(|(b, _)| cost < *b) {
@@ -259,6 +267,21 @@ impl<'p, 'a> Judge<'p, 'a> {
             }
         }
         Ok(winner.map(|(_, f)| f))
+    }
+
+    /// True if the effect that came last is a fault of an instrument too small to name.
+    fn too_small(&self, fit: &Fit) -> bool {
+        fit.point.effects.last().is_some_and(|&c| {
+            let candidate = &self.problem.specimen.candidates()[c];
+            let own = &fit.point.z[fit.point.z.len() - candidate.parameters.len()..];
+            candidate.instrument && !own.is_empty() && own.iter().all(|z| z.abs() < LEAST_FAULT)
+        })
+    }
+
+    /// Noise ratio up to which a model counts as complete.
+    fn complete(&self, fit: &Fit) -> f64 {
+        let floor = self.problem.specimen.noise_floor(&self.problem.hypothesis(&fit.point));
+        COMPLETE_NOISE_RATIO.max(COMPLETE_OVER_FLOOR * floor)
     }
 
     /// Drops effects that the others have made superfluous.
@@ -302,6 +325,11 @@ impl<'p, 'a> Judge<'p, 'a> {
         }
     }
 
+    fn repeats(&self, named: usize, law: usize) -> bool {
+        let all = self.problem.specimen.candidates();
+        all[named].id != "unlisted" && all[law].id == "unlisted" && all[named].place == all[law].place
+    }
+
     /// For each effect of a model what it is worth, and its strongest rival, fitted in its place.
     fn explain(&mut self, best: &Fit, laws: bool) -> Result<(Vec<Chosen>, Option<Fit>), DiagnoseError> {
         let costs = self.held_out(best);
@@ -315,7 +343,8 @@ impl<'p, 'a> Judge<'p, 'a> {
             let rivals: Vec<usize> = self
                 .open(&less.point, laws)
                 .into_iter()
-                .filter(|&c| c != candidate)
+                // A law without a name in the same place may hold the named one in itself: that is no rival.
+                .filter(|&c| c != candidate && !self.repeats(candidate, c))
                 .collect();
             let screened = self.screen(&less, rivals)?;
             let mut rival = None;
@@ -385,7 +414,10 @@ pub fn select(problem: &Problem<'_>, report: Report<'_>) -> Result<Selection, Di
         let full = best.point.effects.len() >= MAX_EFFECTS;
         if let Some(next) = if full { None } else { judge.strongest(&screened, &best)? } {
             best = next;
-        } else if !laws && !full && judge.ratio(&judge.held_out(&best)) > LAW_NOISE_RATIO {
+        } else if !laws
+            && !full
+            && judge.ratio(&judge.held_out(&best)) > (judge.complete(&best) - 0.09).max(LAW_NOISE_RATIO)
+        {
             laws = true;
         } else {
             break;
@@ -394,7 +426,7 @@ pub fn select(problem: &Problem<'_>, report: Report<'_>) -> Result<Selection, Di
     report("dropping what the others explain", 0.8);
     let before = best.point.effects.len();
     best = judge.eliminate(best, MIN_SHARE)?;
-    if judge.ratio(&judge.held_out(&best)) > COMPLETE_NOISE_RATIO {
+    if judge.ratio(&judge.held_out(&best)) > judge.complete(&best) {
         let share = if problem.specimen.recordings() == 1 || !problem.specimen.is_cheap() {
             MIN_SHARE_INCOMPLETE
         } else {
@@ -421,13 +453,14 @@ pub fn select(problem: &Problem<'_>, report: Report<'_>) -> Result<Selection, Di
         }
     }
     let noise_ratio = (judge.ratio(&calibrated_costs), judge.ratio(&judge.held_out(&best)));
+    let complete = judge.complete(&best);
     Ok(Selection {
         calibrated,
         best,
         chosen,
         trials,
         noise_ratio,
-        incomplete: noise_ratio.1 > COMPLETE_NOISE_RATIO,
+        incomplete: noise_ratio.1 > complete,
     })
 }
 

@@ -111,6 +111,10 @@ pub trait Specimen: Sync {
     /// # Errors
     /// A law that the model file cannot hold.
     fn model_toml(&self, hypothesis: &Hypothesis) -> Result<String, String>;
+    /// Noise ratio that a complete model reaches: above one where the noise of an input comes through.
+    fn noise_floor(&self, _hypothesis: &Hypothesis) -> f64 {
+        1.0
+    }
     /// True if simulating all recordings takes milliseconds.
     fn is_cheap(&self) -> bool {
         false

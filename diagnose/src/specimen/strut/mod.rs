@@ -2,6 +2,7 @@
 
 mod apply;
 mod excitation;
+mod floor;
 mod laws;
 mod vocabulary;
 
@@ -10,6 +11,8 @@ use oleo_plant_sim::strut::{COLUMNS, Effects, Inputs, StrutModel, record_column,
 pub use excitation::Excitation;
 
 use super::{Candidate, Channel, Hypothesis, Series, Specimen};
+use rayon::prelude::*;
+
 use crate::parameter::Parameter;
 use crate::recording::{ColumnKind, ColumnSpec, Recording};
 
@@ -344,6 +347,17 @@ impl Specimen for TwoStageStrut {
             record_column(&effects, column, time_s, series);
         }
         shown
+    }
+
+    fn noise_floor(&self, hypothesis: &Hypothesis) -> f64 {
+        let model = self.applied(hypothesis);
+        let noise = model.noise.get("displacement_m").copied().unwrap_or(0.0);
+        let (sum, count) = (self.inputs.par_iter())
+            .filter_map(|inputs| floor::excess(&model, inputs, noise, &self.channels))
+            .collect::<Vec<_>>()
+            .into_iter()
+            .fold((0.0, 0), |(sum, count), (s, c)| (sum + s, count + c));
+        (1.0 + sum / count.max(1) as f64).sqrt()
     }
 
     fn model_toml(&self, hypothesis: &Hypothesis) -> Result<String, String> {

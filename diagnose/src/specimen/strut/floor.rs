@@ -1,0 +1,75 @@
+//! The noise ratio that a complete model reaches.
+//!
+//! It is not one: the displacement is measured too, and what smoothing leaves of its noise goes through the dampers into
+//! p1. How much follows from the recordings themselves: their smoothed motion with noise of the stated size added once
+//! more and smoothed once more, both simulated. Only what exceeds this floor is unexplained.
+
+use oleo_plant_sim::strut::{Inputs, StrutModel, replay};
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use crate::specimen::Channel;
+
+/// Fixed, so that a report is the same every time.
+const SEED: u64 = 1;
+
+/// The inputs once more with displacement noise of standard deviation `noise_m`, smoothed as recordings are.
+#[must_use]
+pub fn jittered(inputs: &Inputs, noise_m: f64) -> Inputs {
+    let mut rng = ChaCha8Rng::seed_from_u64(SEED);
+    let motion = &inputs.motion;
+    // Smoothing adds up many samples, so plus or minus one standard deviation is as good as a normal number.
+    let noisy: Vec<f64> = std::iter::once(motion.start_m)
+        .chain(motion.segments.iter().map(|s| s.to_m))
+        .map(|x| {
+            if rng.next_u32() & 1 == 0 {
+                x + noise_m
+            } else {
+                x - noise_m
+            }
+        })
+        .collect();
+    Inputs::from_recording(&inputs.time_s, &noisy, &inputs.signals, noise_m)
+}
+
+/// Mean square of the difference that displacement noise makes, in units of the channels' noise, and the number of values.
+#[must_use]
+pub fn excess(model: &StrutModel, inputs: &Inputs, noise_m: f64, channels: &[Channel]) -> Option<(f64, usize)> {
+    let (a, b) = (
+        replay(model, inputs).ok()?,
+        replay(model, &jittered(inputs, noise_m)).ok()?,
+    );
+    let series = |p: &oleo_plant_sim::strut::Prediction| {
+        let [p1, p2, p3, p4] = p.pressure_pa.clone();
+        [p.force_n.clone(), p1, p2, p3, p4]
+    };
+    let (mut sum, mut count) = (0.0, 0);
+    for ((a, b), channel) in series(&a).iter().zip(&series(&b)).zip(channels) {
+        sum += a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>() / (channel.noise * channel.noise);
+        count += a.len();
+    }
+    Some((sum, count))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn noise_of_nothing_adds_nothing_and_more_noise_adds_more() {
+        let model = StrutModel::defender110(8000.0);
+        let time_s: Vec<f64> = (0..2000).map(|k| 0.004 * f64::from(k)).collect();
+        let x: Vec<f64> = time_s.iter().map(|t| 0.02 * libm::sin(8.0 * t) * t.min(1.0)).collect();
+        let inputs = Inputs::from_recording(&time_s, &x, &vec![[false; 3]; 2000], 5e-6);
+        let channels: Vec<Channel> = super::super::CHANNELS
+            .iter()
+            .map(|c| Channel {
+                name: (*c).into(),
+                noise: if *c == "force_N" { 12.0 } else { 4e3 },
+            })
+            .collect();
+        let mean = |noise| excess(&model, &inputs, noise, &channels).map(|(s, n)| s / n as f64);
+        let (none, some, more) = (mean(0.0).unwrap(), mean(5e-6).unwrap(), mean(2e-5).unwrap());
+        assert!(none < 1e-3 && some > none && more > 2.0 * some, "{none} {some} {more}");
+    }
+}

@@ -104,6 +104,7 @@ impl Strut {
             p1: rest_pa,
             gas: [at_rest(0), at_rest(1)],
             held: parameters.held(rest_pa, displacement_m).0,
+            squeezed: parameters.squeezed(rest_pa).0,
             q2: 0.0,
             shear: [0.0; 2],
             heat: [0.0; 2],

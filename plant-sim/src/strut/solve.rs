@@ -69,6 +69,9 @@ pub(super) struct Store {
     /// Volume that the main chamber has given way since static pressure and that it gives back, m3. A state of its own
     /// beside p1: stages must blend volumes, since pressure is anything but linear in them near vacuum.
     pub held: f64,
+    /// Part by which the oil and air of the chamber have given way beyond constant stiffness, as `held` a state of its own:
+    /// what the recordings' equation multiplies by the chamber as it is now.
+    pub squeezed: f64,
     pub q2: f64,
     /// Seal shear of the accumulator pistons, -1 to 1.
     pub shear: [f64; 2],
@@ -89,6 +92,7 @@ impl Store {
             p1: mix(self.p1, other.p1),
             gas: [gas(0), gas(1)],
             held: mix(self.held, other.held),
+            squeezed: mix(self.squeezed, other.squeezed),
             q2: mix(self.q2, other.q2),
             shear: [mix(self.shear[0], other.shear[0]), mix(self.shear[1], other.shear[1])],
             heat: [mix(self.heat[0], other.heat[0]), mix(self.heat[1], other.heat[1])],
@@ -171,6 +175,8 @@ struct GivenWay {
     slope: f64,
     held: f64,
     held_slope: f64,
+    squeezed: f64,
+    squeezed_slope: f64,
 }
 
 /// What a Newton step that is taken without another look may neglect in a pressure drop, Pa. All quantities follow the step
@@ -310,6 +316,26 @@ impl Parameters {
         (volume, slope)
     }
 
+    /// Part by which the chamber's content has given way at a gauge pressure, beyond what constant stiffness makes of it,
+    /// and its derivative, 1/Pa: undissolved air, and a law without a name, counted as the recordings' equation counts oil.
+    #[inline(always)]
+    pub fn squeezed(&self, p1: f64) -> (f64, f64) {
+        let (mut part, mut slope) = (0.0, 0.0);
+        if !self.conserves_oil {
+            if let Some(air) = &self.air {
+                let (left, thinning) = bubbles(air, p1);
+                part -= left;
+                slope += thinning;
+            }
+            if let Some(law) = &self.volume_law {
+                let (volume, by_pressure) = law.flow(p1, &mut 0);
+                part += volume / self.oil_volume_m3;
+                slope += by_pressure / self.oil_volume_m3;
+            }
+        }
+        (part, slope)
+    }
+
     /// What the chamber does from `base` to gauge pressure `p1`. Differences of volumes: exact however far it moves.
     #[inline(always)]
     fn given_way(&self, base: &Store, p1: f64, displacement_m: f64) -> GivenWay {
@@ -319,26 +345,20 @@ impl Parameters {
             let oil = (self.oil_volume_m3 - self.area_m2 * displacement_m) * self.inverse_bulk_modulus;
             volume += oil * (p1 - base.p1);
             slope += oil;
-            // The recordings' equation counts air as it counts oil: both give way in the chamber as it is now.
-            if let Some(air) = &self.air {
-                let chamber = self.oil_volume_m3 - self.area_m2 * displacement_m;
-                let ((before, _), (left, thinning)) = (bubbles(air, base.p1), bubbles(air, p1));
-                volume += chamber * (before - left);
-                slope += chamber * thinning;
-            }
-            // And so does what a law without a name adds to it.
-            if let Some(law) = &self.volume_law {
-                let part = 1.0 - self.area_m2 * displacement_m / self.oil_volume_m3;
-                let (before, (v, s)) = (law.flow(base.p1, &mut 0).0, law.flow(p1, &mut 0));
-                volume += part * (v - before);
-                slope += part * s;
-            }
+        }
+        let (squeezed, squeezed_slope) = self.squeezed(p1);
+        if squeezed_slope != 0.0 {
+            let chamber = self.oil_volume_m3 - self.area_m2 * displacement_m;
+            volume += chamber * (squeezed - base.squeezed);
+            slope += chamber * squeezed_slope;
         }
         GivenWay {
             volume,
             slope,
             held,
             held_slope,
+            squeezed,
+            squeezed_slope,
         }
     }
 
@@ -453,6 +473,7 @@ impl Parameters {
                     store: Store {
                         p1,
                         held: given.held + given.held_slope * p1_step,
+                        squeezed: given.squeezed + given.squeezed_slope * p1_step,
                         gas: [one.gas, two.gas],
                         q2: two.flow,
                         shear: [one.shear, two.shear],

@@ -418,7 +418,10 @@ fn seal_friction_slides_on_the_stribeck_curve_and_turns_with_the_motion() {
 #[test]
 fn side_load_friction_is_a_share_of_the_strut_force() {
     let mut model = bare();
-    model.effects.side_load_friction = Some(SideLoadFriction { coefficient: 0.02 });
+    model.effects.side_load_friction = Some(SideLoadFriction {
+        coefficient: 0.02,
+        overlap_growth_1_m: 0.0,
+    });
     let mut strut = Strut::at_rest(&model, STIFF).unwrap();
     for (to, sign) in [(0.03, 1.0), (-0.03, -1.0)] {
         let out = slowly(&mut strut, to, STIFF);
@@ -464,4 +467,121 @@ fn valves_in_parallel_pass_the_sum_of_their_flows() {
     two.valve[1].in_parallel = 0;
     let error = StrutModel::from_toml(&two.to_toml(), "m.toml").unwrap_err().to_string();
     assert!(error.contains("in_parallel is 0"), "{error}");
+}
+
+fn law(place: LawPlace, depends_on: LawArgument, argument: [f64; 2], value: [f64; 2]) -> UnlistedLaw {
+    UnlistedLaw {
+        place,
+        depends_on,
+        argument: argument.to_vec(),
+        value: value.to_vec(),
+    }
+}
+
+#[test]
+fn laws_of_paths_and_valves_in_steady_flow() {
+    let model = bare();
+    let with = |law: UnlistedLaw| {
+        let mut changed = model.clone();
+        changed.effects.unlisted = vec![law];
+        changed
+    };
+    let pack = |drop: f64| Pack::from_table(&model.damper[0]).flow(drop, &mut 0).0;
+    let orifice = |c: f64, d: f64| c * d / (d.abs() + model.orifice.transition_pressure_pa).sqrt();
+    let closed = [false; 3];
+    // The move ends at 15 mm of jounce, where the groove is open by 2.15e-7.
+    let groove = law(
+        LawPlace::BesidePack1,
+        LawArgument::Displacement,
+        [-0.1, 0.1],
+        [1e-7, 3e-7],
+    );
+    let (drop, q) = steady_drop(&with(groove), 0.3, closed);
+    close(pack(drop) + orifice(2.15e-7, drop), q, 1e-3);
+    let weak = law(LawPlace::Pack1, LawArgument::Displacement, [-0.1, 0.1], [0.5, 0.5]);
+    let (drop, q) = steady_drop(&with(weak), 0.3, closed);
+    close(pack(drop / 0.5), q, 1e-3);
+    let choking = law(LawPlace::Valves, LawArgument::PressureDrop, [0.0, 1e6], [1.0, 0.2]);
+    let (drop, q) = steady_drop(&with(choking), 0.3, [true, false, false]);
+    let left = 1.0 - 0.8 * drop / 1e6;
+    close(
+        pack(drop) + orifice(left * model.valve[0].total_flow_coefficient(), drop),
+        q,
+        1e-3,
+    );
+}
+
+#[test]
+fn a_choking_valve_3_passes_what_its_law_leaves_even_where_more_drop_means_less_flow() {
+    // 1/(1 + dp/0.8 MPa) as a table: above 0.8 MPa the flow falls while the drop rises.
+    let argument: Vec<f64> = (0..200).map(|k| 5e4 * f64::from(k)).collect();
+    let value: Vec<f64> = argument.iter().map(|dp| 1.0 / (1.0 + dp / 0.8e6)).collect();
+    let mut model = bare();
+    model.effects.oil_compressibility = Some(OilCompressibility {
+        bulk_modulus_pa: 1.5e9,
+        counted_at: OilCount::default(),
+    });
+    let table = Pack::through(&argument, &value);
+    model.effects.unlisted = vec![UnlistedLaw {
+        place: LawPlace::Valve3,
+        depends_on: LawArgument::PressureDrop,
+        argument,
+        value,
+    }];
+    let mut strut = Strut::at_rest(&model, STIFF).unwrap();
+    slowly(&mut strut, 0.03, STIFF);
+    let mut seen = 0;
+    for _ in 0..400 {
+        let out = strut.advance(0.03, 5e-4, SOFT);
+        let drop = out.pressure_pa[2] - out.pressure_pa[3];
+        let coefficient = model.valve[2].total_flow_coefficient() * strut.openings()[2];
+        if coefficient > 0.0 && drop > 2e5 {
+            let passed =
+                table.flow(drop, &mut 0).0 * coefficient * drop / (drop + model.orifice.transition_pressure_pa).sqrt();
+            close(strut.flow_m3_s()[1], passed, 5e-3);
+            seen += usize::from(drop > 1.5e6);
+        }
+    }
+    assert!(seen > 5, "{seen} samples where the flow falls with the drop");
+}
+
+#[test]
+fn laws_of_seal_gas_and_chamber() {
+    let mut model = bare();
+    model.effects.unlisted = vec![law(
+        LawPlace::MainSealFriction,
+        LawArgument::P1,
+        [0.0, 1e7],
+        [150.0, 150.0],
+    )];
+    let mut strut = Strut::at_rest(&model, SOFT).unwrap();
+    close(beside_pressure(&model, &slowly(&mut strut, 0.02, SOFT)), 150.0, 1e-3);
+    close(beside_pressure(&model, &slowly(&mut strut, 0.0, SOFT)), -150.0, 1e-3);
+
+    let believed = absolute(slow_pressure(&bare(), 0.02, STIFF));
+    let volume = model.accumulator[0].static_gas_volume_m3;
+    let part = 1.0 - model.piston_area_m2() * 0.02 / volume;
+    model.effects.unlisted = vec![law(
+        LawPlace::Accumulator1,
+        LawArgument::RelativeVolume,
+        [0.2, 1.0],
+        [1.4, 1.0],
+    )];
+    close(
+        absolute(slow_pressure(&model, 0.02, STIFF)),
+        believed * (1.0 + 0.5 * (1.0 - part)),
+        1e-4,
+    );
+
+    model.effects.unlisted = vec![law(
+        LawPlace::MainChamberLoss,
+        LawArgument::P1,
+        [0.0, 1e7],
+        [1e-8, 1e-8],
+    )];
+    let mut strut = Strut::at_rest(&model, SOFT).unwrap();
+    let gas = |s: &Strut| s.gas()[0].volume_m3 + s.gas()[1].volume_m3;
+    let before = gas(&strut);
+    (0..1000).for_each(|_| _ = strut.advance(0.0, 0.1, SOFT));
+    close(gas(&strut) - before, 1e-6, 1e-3);
 }

@@ -205,7 +205,10 @@ impl Hidden {
                 ]
             }
             "side_load_friction" => {
-                effects.side_load_friction = Some(SideLoadFriction { coefficient: amount });
+                effects.side_load_friction = Some(SideLoadFriction {
+                    coefficient: amount,
+                    overlap_growth_1_m: 0.0,
+                });
                 vec![number("main-seal", "coefficient", amount)]
             }
             "accumulator_piston_friction" => {

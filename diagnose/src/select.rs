@@ -325,9 +325,15 @@ impl<'p, 'a> Judge<'p, 'a> {
         }
     }
 
-    fn repeats(&self, named: usize, law: usize) -> bool {
+    /// True if the other candidate holds the first in itself: a law without a name in its place, or the same effect
+    /// there and elsewhere too.
+    fn repeats(&self, candidate: usize, other: usize) -> bool {
         let all = self.problem.specimen.candidates();
-        all[named].id != "unlisted" && all[law].id == "unlisted" && all[named].place == all[law].place
+        let (one, two) = (&all[candidate], &all[other]);
+        let law = one.id != "unlisted" && two.id == "unlisted" && one.place == two.place;
+        let wider =
+            one.id == two.id && one.parameters.len() < two.parameters.len() && two.place.contains(one.place.as_str());
+        law || wider
     }
 
     /// For each effect of a model what it is worth, and its strongest rival, fitted in its place.
@@ -343,7 +349,7 @@ impl<'p, 'a> Judge<'p, 'a> {
             let rivals: Vec<usize> = self
                 .open(&less.point, laws)
                 .into_iter()
-                // A law without a name in the same place may hold the named one in itself: that is no rival.
+                // What holds the candidate in itself is no rival.
                 .filter(|&c| c != candidate && !self.repeats(candidate, c))
                 .collect();
             let screened = self.screen(&less, rivals)?;
@@ -366,9 +372,13 @@ impl<'p, 'a> Judge<'p, 'a> {
                 };
                 // A name gives way to a law without one only if the law is clearly better.
                 let least = if named(best) && !named(&full) { 0.1 * gain } else { 0.0 };
-                if lead < -(MIN_GAIN_PER_RESIDUAL * self.count).max(MIN_GAIN).max(least)
-                    && better.as_ref().is_none_or(|(l, _)| lead < *l)
-                {
+                let clearly = lead < -(MIN_GAIN_PER_RESIDUAL * self.count).max(MIN_GAIN).max(least);
+                // The same effect in fewer places that does as well is what is said: one damper fades, not both.
+                let all = self.problem.specimen.candidates();
+                let simpler = all[id].id == all[candidate].id
+                    && all[id].parameters.len() < all[candidate].parameters.len()
+                    && !self.worth(&held_out, &costs, 0.0, 1.0);
+                if (clearly || simpler) && better.as_ref().is_none_or(|(l, _)| lead < *l) {
                     better = Some((lead, full));
                 }
                 rival = Some((id, lead, error));

@@ -10,6 +10,8 @@ use crate::failure::Failure;
 
 /// What only the self-test takes.
 #[derive(clap::Args)]
+// Flattened into the command's own `Args`: two groups of one name are refused.
+#[group(id = "self-test arguments")]
 pub struct Args {
     /// Diagnose simulated campaigns with concealed effects, and report power, confusion, coverage and false alarms
     #[arg(long, conflicts_with = "campaign", help_heading = "Self-test")]

@@ -26,6 +26,53 @@ pub(super) struct PathLaws {
     pub gas: Option<Pack>,
 }
 
+/// Quantities that a law at a place may depend on; what is not here, the solver would not read.
+pub(super) fn arguments(place: LawPlace) -> &'static [LawArgument] {
+    match place {
+        LawPlace::MainSeal | LawPlace::MainSealFriction => {
+            &[LawArgument::Displacement, LawArgument::Speed, LawArgument::P1]
+        }
+        LawPlace::MainChamber | LawPlace::MainChamberLoss => &[LawArgument::P1],
+        LawPlace::Path1 | LawPlace::Path2 => &[LawArgument::Flow],
+        LawPlace::BesidePack1 | LawPlace::BesidePack2 => &[LawArgument::PressureDrop, LawArgument::Displacement],
+        LawPlace::Pack1 | LawPlace::Pack2 => &[LawArgument::Displacement],
+        LawPlace::Valve1 | LawPlace::Valve2 | LawPlace::Valve3 | LawPlace::Valves => &[LawArgument::PressureDrop],
+        LawPlace::Accumulator1 | LawPlace::Accumulator2 => &[LawArgument::RelativeVolume],
+    }
+}
+
+/// A place or a quantity as the model file writes it.
+fn word(value: &impl serde::Serialize) -> String {
+    toml::Value::try_from(value).map_or_else(|_| String::new(), |v| v.to_string())
+}
+
+/// What is wrong with the laws of a model, if anything: the key and what to do. Nothing that stands there is left unread.
+pub(super) fn check(laws: &[UnlistedLaw]) -> Result<(), (String, String)> {
+    for (k, law) in laws.iter().enumerate() {
+        let known = arguments(law.place);
+        if !known.contains(&law.depends_on) {
+            let list: Vec<String> = known.iter().map(word).collect();
+            let what = format!(
+                "is {}, which a law at {} does not depend on: one of {}",
+                word(&law.depends_on),
+                word(&law.place),
+                list.join(", ")
+            );
+            return Err(("depends_on".into(), what));
+        }
+        // The seal has one law of each kind; everywhere else a place has one for each quantity.
+        let one = matches!(law.place, LawPlace::MainSeal | LawPlace::MainSealFriction);
+        let same = |other: &UnlistedLaw| other.place == law.place && (one || other.depends_on == law.depends_on);
+        if laws[..k].iter().any(same) {
+            return Err((
+                "place".into(),
+                format!("{} has a law already: keep one", word(&law.place)),
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// The table at a place over a quantity, if the model has one.
 pub(super) fn law_at(laws: &[UnlistedLaw], place: LawPlace, over: LawArgument) -> Option<Pack> {
     laws.iter()

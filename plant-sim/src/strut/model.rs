@@ -362,6 +362,7 @@ impl StrutModel {
                 }
             }
         }
+        super::laws::check(&e.unlisted)?;
         for law in &e.unlisted {
             increasing("argument", &law.argument)?;
             if law.value.len() != law.argument.len() {
@@ -418,6 +419,25 @@ mod tests {
             "{error}"
         );
         assert_eq!(error.lines().count(), 1);
+    }
+
+    #[test]
+    fn a_law_that_nobody_would_read_is_refused() {
+        let law = |place: &str, over: &str| {
+            let (a, v) = ("argument = [0.0, 1.0]", "value = [1.0, 1.0]");
+            format!("\n[[effects.unlisted]]\nplace = \"{place}\"\ndepends_on = \"{over}\"\n{a}\n{v}\n")
+        };
+        let read = |laws: &str| StrutModel::from_toml(&(StrutModel::defender110(8000.0).to_toml() + laws), "m");
+        assert!(read(&(law("valve-1..3", "pressure_drop") + &law("beside-pack-1", "displacement"))).is_ok());
+        let unread = read(&law("valve-1", "p1")).unwrap_err().to_string();
+        assert!(
+            unread.contains("\"p1\"") && unread.contains("\"pressure_drop\""),
+            "{unread}"
+        );
+        let twice = read(&(law("main-seal", "speed") + &law("main-seal", "p1")))
+            .unwrap_err()
+            .to_string();
+        assert!(twice.contains("main-seal") && twice.lines().count() == 1, "{twice}");
     }
 
     #[test]

@@ -137,24 +137,7 @@ mod tests {
             group: "",
             untestable: None,
         };
-        let ids = [
-            "oil_compressibility",
-            "entrained_air",
-            "gas_heat_transfer",
-            "real_gas",
-            "gas_charge_error",
-            "seal_friction",
-            "side_load_friction",
-            "accumulator_piston_friction",
-            "damper_leakage",
-            "line_resistance",
-            "valve_delay",
-            "valve_transition",
-            "mount_compliance",
-            "sensor_lag",
-            "sensor_gain",
-            "unlisted",
-        ];
+        let ids = crate::specimen::strut::TERMS;
         for a in ids {
             for b in ids {
                 let make = |id: &'static str| candidate(id, id.starts_with("sensor"));

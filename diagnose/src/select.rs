@@ -38,7 +38,7 @@ const COMPLETE_OVER_FLOOR: f64 = 1.07;
 /// An instrument's fault below this part of what would be visible is not worth a name: a clock off by a hundredth of a
 /// sample, a gain by a thousandth.
 const LEAST_FAULT: f64 = 0.1;
-/// Noise ratio above which laws without a name are tried.
+/// Noise ratio above which, and above the floor, laws without a name are tried.
 const LAW_NOISE_RATIO: f64 = 1.06;
 /// Screening is linear in the model's own parameters: what it calls a little less than worth it is still fitted.
 const SCREEN_MARGIN: f64 = 0.6;
@@ -278,10 +278,14 @@ impl<'p, 'a> Judge<'p, 'a> {
         })
     }
 
+    /// Noise ratio that the model would reach if it were complete.
+    fn floor(&self, fit: &Fit) -> f64 {
+        self.problem.specimen.noise_floor(&self.problem.hypothesis(&fit.point))
+    }
+
     /// Noise ratio up to which a model counts as complete.
     fn complete(&self, fit: &Fit) -> f64 {
-        let floor = self.problem.specimen.noise_floor(&self.problem.hypothesis(&fit.point));
-        COMPLETE_NOISE_RATIO.max(COMPLETE_OVER_FLOOR * floor)
+        COMPLETE_NOISE_RATIO.max(COMPLETE_OVER_FLOOR * self.floor(fit))
     }
 
     /// Drops effects that the others have made superfluous.
@@ -424,10 +428,7 @@ pub fn select(problem: &Problem<'_>, report: Report<'_>) -> Result<Selection, Di
         let full = best.point.effects.len() >= MAX_EFFECTS;
         if let Some(next) = if full { None } else { judge.strongest(&screened, &best)? } {
             best = next;
-        } else if !laws
-            && !full
-            && judge.ratio(&judge.held_out(&best)) > (judge.complete(&best) - 0.09).max(LAW_NOISE_RATIO)
-        {
+        } else if !laws && !full && judge.ratio(&judge.held_out(&best)) > LAW_NOISE_RATIO.max(judge.floor(&best)) {
             laws = true;
         } else {
             break;

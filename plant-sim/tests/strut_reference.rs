@@ -44,11 +44,11 @@ fn reference(model: &StrutModel, edge3: f64, dampers: f64) -> Vec<[f64; 4]> {
     let ambient = model.gas.temperature_k;
     let p0 = model.cylinder.static_pressure_pa;
     let mr = [0, 1].map(|i| (p0 + ATMOSPHERE_PA) * model.accumulator[i].static_gas_volume_m3 / ambient);
-    let packs = [0, 1].map(|i| Pack::from_table(&model.damper[i]));
+    let packs = [0, 1].map(|i| model.damper[i].characteristic());
     let orifice = |d: f64| d / (d.abs() + model.orifice.transition_pressure_pa).sqrt();
     let gas = move |i: usize, v: f64, t: f64| mr[i] * t / v - ATMOSPHERE_PA;
     let c = [0, 1, 2].map(|i| model.valve[i].total_flow_coefficient());
-    let through2 = |d: f64| packs[1].flow(d, &mut 0).0 + dampers * c[1] * orifice(d);
+    let through2 = |d: f64| packs[1].value(d) + dampers * c[1] * orifice(d);
     // p3 between p1 and p4, where what comes through damper 2 goes through valve 3.
     let middle = |p1: f64, p4: f64, u3: f64| {
         let (mut low, mut high) = (p1.min(p4), p1.max(p4));
@@ -65,7 +65,7 @@ fn reference(model: &StrutModel, edge3: f64, dampers: f64) -> Vec<[f64; 4]> {
     let flows = |t: f64, y: &[f64]| {
         let p1 = 1e6 * y[0];
         let (p2, p4) = (gas(0, 1e-4 * y[1], y[2]), gas(1, 1e-4 * y[3], y[4]));
-        let q1 = packs[0].flow(p1 - p2, &mut 0).0 + dampers * c[0] * orifice(p1 - p2);
+        let q1 = packs[0].value(p1 - p2) + dampers * c[0] * orifice(p1 - p2);
         let u3 = opening(t, edge3);
         let p3 = if u3 > 0.0 { middle(p1, p4, u3) } else { p1 };
         let q2 = if u3 > 0.0 { through2(p1 - p3) } else { 0.0 };

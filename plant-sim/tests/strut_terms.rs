@@ -199,7 +199,7 @@ fn steady_drop(model: &StrutModel, speed: f64, signals: [bool; 3]) -> (f64, f64)
 fn pack_bypass_leak_and_line_in_steady_flow() {
     let closed = [false; 3];
     let mut model = bare();
-    let pack = |drop: f64| Pack::from_table(&model.damper[0]).flow(drop, &mut 0).0;
+    let pack = |drop: f64| model.damper[0].characteristic().value(drop);
     let (drop, q) = steady_drop(&model, 0.3, closed);
     close(pack(drop), q, 1e-3);
     let (drop, q) = steady_drop(&model, 0.3, [true, false, false]);
@@ -486,7 +486,7 @@ fn laws_of_paths_and_valves_in_steady_flow() {
         changed.effects.unlisted = vec![law];
         changed
     };
-    let pack = |drop: f64| Pack::from_table(&model.damper[0]).flow(drop, &mut 0).0;
+    let pack = |drop: f64| model.damper[0].characteristic().value(drop);
     let orifice = |c: f64, d: f64| c * d / (d.abs() + model.orifice.transition_pressure_pa).sqrt();
     let closed = [false; 3];
     // The move ends at 15 mm of jounce, where the groove is open by 2.15e-7.
@@ -521,7 +521,7 @@ fn a_choking_valve_3_passes_what_its_law_leaves_even_where_more_drop_means_less_
         bulk_modulus_pa: 1.5e9,
         counted_at: OilCount::default(),
     });
-    let table = Pack::through(&argument, &value);
+    let table = Characteristic::through(&argument, &value);
     model.effects.unlisted = vec![UnlistedLaw {
         place: LawPlace::Valve3,
         depends_on: LawArgument::PressureDrop,
@@ -536,8 +536,7 @@ fn a_choking_valve_3_passes_what_its_law_leaves_even_where_more_drop_means_less_
         let drop = out.pressure_pa[2] - out.pressure_pa[3];
         let coefficient = model.valve[2].total_flow_coefficient() * strut.openings()[2];
         if coefficient > 0.0 && drop > 2e5 {
-            let passed =
-                table.flow(drop, &mut 0).0 * coefficient * drop / (drop + model.orifice.transition_pressure_pa).sqrt();
+            let passed = table.value(drop) * coefficient * drop / (drop + model.orifice.transition_pressure_pa).sqrt();
             close(strut.flow_m3_s()[1], passed, 5e-3);
             seen += usize::from(drop > 1.5e6);
         }

@@ -10,33 +10,7 @@ use oleo_plant_sim::strut::{
 use serde::{Deserialize, Serialize};
 
 use super::draw::Draw;
-
-/// The vocabulary, and what has no name in it.
-pub const TERMS: [&str; 23] = [
-    "oil_compressibility",
-    "entrained_air",
-    "gas_heat_transfer",
-    "real_gas",
-    "gas_charge_error",
-    "seal_friction",
-    "side_load_friction",
-    "accumulator_piston_friction",
-    "damper_leakage",
-    "line_resistance",
-    "line_inertance",
-    "valve_delay",
-    "valve_transition",
-    "valve3_leakage",
-    "bump_stop",
-    "mount_compliance",
-    "damping_fade",
-    "sensor_lag",
-    "sensor_gain",
-    "sensor_drift",
-    "sensor_skew",
-    "sensor_sign",
-    "unlisted",
-];
+pub use crate::specimen::strut::TERMS;
 
 /// A number of the truth, as the report would give it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -349,11 +323,14 @@ impl Hidden {
 }
 
 /// Laws of textbook form that the vocabulary does not hold: place, what the table is over, and its form.
-const LAWS: [&str; 4] = [
+const LAWS: [&str; 7] = [
     "turbulent line 1",
     "turbulent line 2",
     "viscous seal",
     "air spring of a sealed dust boot",
+    "groove beside damper 1",
+    "groove beside damper 2",
+    "valves whose flow saturates",
 ];
 
 /// A law in a table of many points, not those that the search uses.
@@ -363,6 +340,9 @@ fn unlisted(which: usize, sign: f64, amount: f64, shape: &[f64; 4]) -> (&'static
         0 => ("path-1", LawPlace::Path1, LawArgument::Flow, 2e-3),
         1 => ("path-2", LawPlace::Path2, LawArgument::Flow, 2e-3),
         2 => ("main-seal", LawPlace::MainSeal, LawArgument::Speed, 1.2),
+        4 => ("path-1", LawPlace::BesidePack1, LawArgument::Displacement, 0.11),
+        5 => ("path-2", LawPlace::BesidePack2, LawArgument::Displacement, 0.11),
+        6 => ("valve-1..3", LawPlace::Valves, LawArgument::PressureDrop, 1.3e7),
         _ => ("main-seal", LawPlace::MainSeal, LawArgument::Displacement, 0.11),
     };
     let argument: Vec<f64> = (0..POINTS)
@@ -373,6 +353,13 @@ fn unlisted(which: usize, sign: f64, amount: f64, shape: &[f64; 4]) -> (&'static
         0 | 1 => amount * 3e6 * (a / end) * (a / end).abs(),
         // Force over speed: 1.5 kN at 1.2 m/s at most, with a drawn curvature.
         2 => amount * 1.5e3 * (a / end) * libm::pow((a / end).abs(), 0.6 * shape[0]),
+        // Opening over displacement: a groove of drawn place and width with ends that run out linearly; 2e-6 at most.
+        4 | 5 => {
+            let (at, half) = (0.03 * (2.0 * shape[0] - 1.0), 0.012 + 0.02 * shape[1]);
+            amount * 2e-6 * (1.5 - (a - at).abs() / half).clamp(0.0, 1.0)
+        }
+        // What is left of a flow over the root of the drop that approaches a constant one.
+        6 => 1.0 / (1.0 + 30.0 * amount * a.abs() / end).sqrt(),
         // Force over displacement.
         _ => sign * amount * 1e3 * (0.5 * a / end + (a / end) * (a / end) * (a / end)),
     };

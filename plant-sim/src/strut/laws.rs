@@ -3,7 +3,7 @@
 //! A table is a number over one quantity. What the number does follows from the place: it is added (a force, a volume, a
 //! flow, a drop), or it multiplies what the model believed (a damper's drop, a valve's flow, a gas pressure).
 
-use super::damper::Pack;
+use super::characteristic::Characteristic;
 use super::effects::{LawArgument, LawPlace, UnlistedLaw};
 
 /// A factor never falls below this part of what was believed: an element does not turn round.
@@ -13,17 +13,17 @@ const LEAST_FACTOR: f64 = 0.01;
 #[derive(Debug, Clone, Default)]
 pub(super) struct PathLaws {
     /// Drop in series over flow, Pa.
-    pub series: Option<Pack>,
+    pub series: Option<Characteristic>,
     /// Flow beside the pack over its drop, m3/s.
-    pub parallel: Option<Pack>,
+    pub parallel: Option<Characteristic>,
     /// Flow coefficient beside the pack over displacement.
-    bypass: Option<Pack>,
+    bypass: Option<Characteristic>,
     /// Factor on the pack's drop over displacement.
-    strength: Option<Pack>,
+    strength: Option<Characteristic>,
     /// Factor on the bypass valve's flow over the size of its drop.
-    throttle: Option<Pack>,
+    throttle: Option<Characteristic>,
     /// Factor on the gas pressure over volume.
-    pub gas: Option<Pack>,
+    pub gas: Option<Characteristic>,
 }
 
 /// Quantities that a law at a place may depend on; what is not here, the solver would not read.
@@ -74,22 +74,22 @@ pub(super) fn check(laws: &[UnlistedLaw]) -> Result<(), (String, String)> {
 }
 
 /// The table at a place over a quantity, if the model has one.
-pub(super) fn law_at(laws: &[UnlistedLaw], place: LawPlace, over: LawArgument) -> Option<Pack> {
+pub(super) fn law_at(laws: &[UnlistedLaw], place: LawPlace, over: LawArgument) -> Option<Characteristic> {
     laws.iter()
         .find(|l| l.place == place && l.depends_on == over)
-        .map(|l| Pack::through(&l.argument, &l.value))
+        .map(|l| Characteristic::through(&l.argument, &l.value))
 }
 
 /// A valve's law is its own or the one of all three.
-pub(super) fn throttle_of(laws: &[UnlistedLaw], valve: usize) -> Option<Pack> {
+pub(super) fn throttle_of(laws: &[UnlistedLaw], valve: usize) -> Option<Characteristic> {
     let own = [LawPlace::Valve1, LawPlace::Valve2, LawPlace::Valve3][valve];
     law_at(laws, own, LawArgument::PressureDrop).or_else(|| law_at(laws, LawPlace::Valves, LawArgument::PressureDrop))
 }
 
 /// Factor of a throttle at a drop.
 #[inline]
-pub(super) fn throttled(law: &Pack, drop_pa: f64) -> f64 {
-    law.flow(drop_pa.abs(), &mut 0).0.max(LEAST_FACTOR)
+pub(super) fn throttled(law: &Characteristic, drop_pa: f64) -> f64 {
+    law.value(drop_pa.abs()).max(LEAST_FACTOR)
 }
 
 impl PathLaws {
@@ -117,9 +117,7 @@ impl PathLaws {
     /// Flow coefficient beside the pack at a displacement.
     #[inline]
     pub fn bypass(&self, displacement_m: f64) -> f64 {
-        self.bypass
-            .as_ref()
-            .map_or(0.0, |l| l.flow(displacement_m, &mut 0).0.max(0.0))
+        self.bypass.as_ref().map_or(0.0, |l| l.value(displacement_m).max(0.0))
     }
 
     /// What the believed drop of the pack is divided by at a displacement.
@@ -127,7 +125,7 @@ impl PathLaws {
     pub fn weakening(&self, displacement_m: f64) -> f64 {
         self.strength
             .as_ref()
-            .map_or(1.0, |l| 1.0 / l.flow(displacement_m, &mut 0).0.max(LEAST_FACTOR))
+            .map_or(1.0, |l| 1.0 / l.value(displacement_m).max(LEAST_FACTOR))
     }
 
     /// Part of the bypass valve's flow that a drop does not let pass.

@@ -13,6 +13,7 @@
 //! ([`Effects`]); [`Strut`] solves whatever the model holds. One file a law, `network` puts them together,
 //! `replay` drives the network with a recording's inputs.
 
+mod characteristic;
 mod damper;
 mod effects;
 mod friction;
@@ -29,7 +30,8 @@ mod solve;
 mod stops;
 mod valve;
 
-pub use damper::{DamperTable, Pack};
+pub use characteristic::Characteristic;
+pub use damper::DamperTable;
 pub use effects::*;
 pub use friction::advance_friction;
 pub use gas::{Gas, GasState, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K};

@@ -5,7 +5,7 @@
 //! stages of `gamma h`, `gamma = 1 - 1/sqrt 2`; each stage is [`Parameters::stage`], of static size. Steps end at kinks of
 //! valve movements, so no stage integrates across one.
 
-use super::damper::Pack;
+use super::characteristic::Characteristic;
 use super::effects::{BumpStop, Effects, GasEquation, LawArgument, LawPlace, OilCount, SealFriction, SideLoadFriction};
 use super::friction::advance_friction;
 use super::gas::{Gas, GasState};
@@ -52,8 +52,8 @@ pub struct Strut {
     seal: Option<SealFriction>,
     side_load: Option<SideLoadFriction>,
     stops: Option<BumpStop>,
-    force_law: Option<(LawArgument, Pack)>,
-    friction_law: Option<(LawArgument, Pack)>,
+    force_law: Option<(LawArgument, Characteristic)>,
+    friction_law: Option<(LawArgument, Characteristic)>,
     cooling_time_s: f64,
     response: [f64; 3],
     initial_delay_fraction: f64,
@@ -269,9 +269,7 @@ impl Strut {
                 level += side.level_n(p.area_m2 * last.pressure[0], end.0);
             }
             if let Some((argument, law)) = &self.friction_law {
-                level += law
-                    .flow(seal_argument(*argument, end.0, end.1, last.pressure[0]), &mut 0)
-                    .0;
+                level += law.value(seal_argument(*argument, end.0, end.1, last.pressure[0]));
             }
             self.friction_n = advance_friction(self.friction_n, stroke, level, self.seal.as_ref());
         }
@@ -289,7 +287,7 @@ impl Strut {
         }
         if let Some((argument, law)) = &self.force_law {
             let at = seal_argument(*argument, self.actuator_m, self.speed_m_s, self.pressure[0]);
-            force_n += law.flow(at, &mut 0).0;
+            force_n += law.value(at);
         }
         StrutOutput {
             force_n,
@@ -322,10 +320,10 @@ impl Strut {
     }
 }
 
-fn seal_law(effects: &Effects, place: LawPlace) -> Option<(LawArgument, Pack)> {
+fn seal_law(effects: &Effects, place: LawPlace) -> Option<(LawArgument, Characteristic)> {
     (effects.unlisted.iter())
         .find(|l| l.place == place)
-        .map(|l| (l.depends_on, Pack::through(&l.argument, &l.value)))
+        .map(|l| (l.depends_on, Characteristic::through(&l.argument, &l.value)))
 }
 
 /// What a law at the seal is read at.
@@ -380,7 +378,7 @@ fn parameters(model: &StrutModel) -> Parameters {
             .map_or(0.0, |c| pick(c.relative_error_1, c.relative_error_2));
         let volume = model.accumulator[i].static_gas_volume_m3 * (1.0 + charge);
         Path {
-            pack: Pack::from_table(&model.damper[i]),
+            pack: model.damper[i].characteristic(),
             valve_coefficient: model.valve[i].total_flow_coefficient(),
             leak_coefficient: e
                 .damper_leakage

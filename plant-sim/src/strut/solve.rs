@@ -13,7 +13,7 @@
 //! and masses only), so Newton's method with a bounded step finds the one solution: one round in four stages of five, since
 //! the start is predicted ([`Guess`]) and the last step is taken linearly as soon as its square does not matter.
 
-use super::damper::Pack;
+use super::characteristic::Characteristic;
 use super::effects::EntrainedAir;
 use super::gas::{Departure, Gas, GasState};
 use super::laws::{PathLaws, throttled};
@@ -23,7 +23,7 @@ use super::orifice::{unit_drop, unit_flow};
 /// One path as the solver sees it.
 #[derive(Debug, Clone)]
 pub(super) struct Path {
-    pub pack: Pack,
+    pub pack: Characteristic,
     pub valve_coefficient: f64,
     pub leak_coefficient: f64,
     pub resistance: f64,
@@ -49,9 +49,9 @@ pub(super) struct Parameters {
     pub mount_compliance: f64,
     /// Inverse of the mount's stiffness, m/N.
     pub mount_flexibility: f64,
-    pub volume_law: Option<Pack>,
-    pub loss_law: Option<Pack>,
-    pub valve3_law: Option<Pack>,
+    pub volume_law: Option<Characteristic>,
+    pub loss_law: Option<Characteristic>,
+    pub valve3_law: Option<Characteristic>,
     /// Some path or the chamber has a law without a name, read from a table.
     pub has_unlisted: bool,
     pub paths: [Path; 2],
@@ -225,7 +225,7 @@ impl Path {
 
     #[inline(always)]
     fn branch(&self, at: &Setting, drop: f64, segment: &mut usize) -> Branch {
-        let (mut flow, mut flow_slope) = self.pack.flow(drop * at.fade, segment);
+        let (mut flow, mut flow_slope) = self.pack.at(drop * at.fade, segment);
         flow_slope *= at.fade;
         if at.valve > 0.0 {
             let (unit, slope) = unit_flow(drop, at.transition);
@@ -234,7 +234,7 @@ impl Path {
             flow_slope += coefficient * slope;
         }
         if let Some(law) = &self.laws.parallel {
-            let (q, s) = law.flow(drop, &mut 0);
+            let (q, s) = law.at(drop, &mut 0);
             flow += q;
             flow_slope += s;
         }
@@ -256,7 +256,7 @@ impl Path {
         let step = self.gas.implicit(at.gas, at.h, flow, at.real);
         let (mut oil, mut oil_slope) = (step.pressure_pa - ATMOSPHERE_PA, step.pressure_by_flow);
         if let Some(law) = &self.laws.gas {
-            let factor = law.flow(step.state.volume_m3 / self.static_gas_m3, &mut 0).0.max(0.1);
+            let factor = law.value(step.state.volume_m3 / self.static_gas_m3).max(0.1);
             oil = factor * step.pressure_pa - ATMOSPHERE_PA;
             oil_slope *= factor;
         }
@@ -271,7 +271,7 @@ impl Path {
         }
         let (mut line, mut line_slope) = (self.resistance * flow, self.resistance);
         if let Some(law) = &self.laws.series {
-            let (p, s) = law.flow(flow, &mut 0);
+            let (p, s) = law.at(flow, &mut 0);
             line += p;
             line_slope += s;
         }
@@ -309,7 +309,7 @@ impl Parameters {
             slope += self.oil_volume_m3 * thinning;
         }
         if let Some(law) = self.volume_law.as_ref().filter(|_| self.conserves_oil) {
-            let (v, s) = law.flow(p1, &mut 0);
+            let (v, s) = law.at(p1, &mut 0);
             volume += v;
             slope += s;
         }
@@ -328,7 +328,7 @@ impl Parameters {
                 slope += thinning;
             }
             if let Some(law) = &self.volume_law {
-                let (volume, by_pressure) = law.flow(p1, &mut 0);
+                let (volume, by_pressure) = law.at(p1, &mut 0);
                 part += volume / self.oil_volume_m3;
                 slope += by_pressure / self.oil_volume_m3;
             }
@@ -376,7 +376,7 @@ impl Parameters {
     fn solve<const CONNECTED: bool>(&self, base: &Store, at: &Moment, inverse_c3: f64, guess: &mut Guess) -> Stage {
         let mut supply = self.area_m2 * at.speed_m_s;
         if let Some(law) = &self.loss_law {
-            supply -= law.flow(base.p1, &mut 0).0;
+            supply -= law.value(base.p1);
         }
         let [path1, path2] = &self.paths;
         let Guess { segment, real, .. } = guess;

@@ -111,7 +111,7 @@ fn flow_at_drop(model: &StrutModel, level: Damping, drop_pa: f64) -> f64 {
     let orifice = |coefficient: f64, drop: f64| coefficient * drop / (drop.abs() + transition).sqrt();
     let pack = |index: usize, drop: f64| {
         let table = &model.damper[index];
-        crate::strut::Pack::from_table(table).flow(drop, &mut 0).0
+        table.characteristic().value(drop)
     };
     let bypassed = level == Damping::Low;
     let first = |index: usize, drop: f64| {

@@ -34,11 +34,8 @@ pub fn jittered(inputs: &Inputs, noise_m: f64) -> Inputs {
 
 /// Mean square of the difference that displacement noise makes, in units of the channels' noise, and the number of values.
 #[must_use]
-pub fn excess(model: &StrutModel, inputs: &Inputs, noise_m: f64, channels: &[Channel]) -> Option<(f64, usize)> {
-    let (a, b) = (
-        replay(model, inputs).ok()?,
-        replay(model, &jittered(inputs, noise_m)).ok()?,
-    );
+pub fn excess(model: &StrutModel, inputs: &Inputs, jittered: &Inputs, channels: &[Channel]) -> Option<(f64, usize)> {
+    let (a, b) = (replay(model, inputs).ok()?, replay(model, jittered).ok()?);
     let series = |p: &oleo_plant_sim::strut::Prediction| {
         let [p1, p2, p3, p4] = p.pressure_pa.clone();
         [p.force_n.clone(), p1, p2, p3, p4]
@@ -68,7 +65,7 @@ mod tests {
                 noise: if *c == "force_N" { 12.0 } else { 4e3 },
             })
             .collect();
-        let mean = |noise| excess(&model, &inputs, noise, &channels).map(|(s, n)| s / n as f64);
+        let mean = |noise| excess(&model, &inputs, &jittered(&inputs, noise), &channels).map(|(s, n)| s / n as f64);
         let (none, some, more) = (mean(0.0).unwrap(), mean(5e-6).unwrap(), mean(2e-5).unwrap());
         // A motion that was smooth is changed a little by being smoothed once more, also without noise.
         assert!(none < 0.01 && some > none && more > 2.0 * some, "{none} {some} {more}");

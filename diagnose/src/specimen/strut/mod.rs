@@ -9,8 +9,11 @@ mod vocabulary;
 use oleo_plant_sim::strut::{COLUMNS, Effects, Inputs, StrutModel, record_column, replay};
 
 pub use excitation::Excitation;
+pub use vocabulary::TERMS;
 
 use super::{Candidate, Channel, Hypothesis, Series, Specimen};
+use std::sync::OnceLock;
+
 use rayon::prelude::*;
 
 use crate::parameter::Parameter;
@@ -31,6 +34,8 @@ pub struct TwoStageStrut {
     parameters: Vec<Parameter>,
     candidates: Vec<Candidate>,
     excitation: Excitation,
+    /// The inputs with displacement noise once more; made when somebody asks for the floor.
+    jittered: OnceLock<Vec<Inputs>>,
 }
 
 /// What a calibration parameter changes.
@@ -109,6 +114,7 @@ impl TwoStageStrut {
             parameters,
             candidates,
             excitation,
+            jittered: OnceLock::new(),
         };
         // A model that cannot even stand still is refused here, with the model's own words.
         strut.simulate(
@@ -352,11 +358,15 @@ impl Specimen for TwoStageStrut {
     fn noise_floor(&self, hypothesis: &Hypothesis) -> f64 {
         let model = self.applied(hypothesis);
         let noise = model.noise.get("displacement_m").copied().unwrap_or(0.0);
-        let (sum, count) = (self.inputs.par_iter())
-            .filter_map(|inputs| floor::excess(&model, inputs, noise, &self.channels))
-            .collect::<Vec<_>>()
-            .into_iter()
-            .fold((0.0, 0), |(sum, count), (s, c)| (sum + s, count + c));
+        let jittered = self
+            .jittered
+            .get_or_init(|| (self.inputs.par_iter()).map(|i| floor::jittered(i, noise)).collect());
+        let excesses: Vec<(f64, usize)> = (self.inputs.par_iter())
+            .zip(jittered)
+            .filter_map(|(as_is, jittered)| floor::excess(&model, as_is, jittered, &self.channels))
+            .collect();
+        // Summed in order, so that the figure has the same bits on any number of threads.
+        let (sum, count) = (excesses.iter()).fold((0.0, 0), |(sum, count), (s, c)| (sum + s, count + c));
         (1.0 + sum / count.max(1) as f64).sqrt()
     }
 

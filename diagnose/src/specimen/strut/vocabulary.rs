@@ -9,6 +9,33 @@ use super::{CHANNELS, laws};
 use crate::parameter::Parameter;
 use crate::specimen::{Candidate, instrument};
 
+/// Ids of the vocabulary, and of what has no name in it.
+pub const TERMS: [&str; 23] = [
+    "oil_compressibility",
+    "entrained_air",
+    "gas_heat_transfer",
+    "real_gas",
+    "gas_charge_error",
+    "seal_friction",
+    "side_load_friction",
+    "accumulator_piston_friction",
+    "damper_leakage",
+    "line_resistance",
+    "line_inertance",
+    "valve_delay",
+    "valve_transition",
+    "valve3_leakage",
+    "bump_stop",
+    "mount_compliance",
+    "damping_fade",
+    "sensor_lag",
+    "sensor_gain",
+    "sensor_drift",
+    "sensor_skew",
+    "sensor_sign",
+    "unlisted",
+];
+
 /// Everything that may be missing from `model`.
 #[must_use]
 pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate> {

@@ -1,0 +1,303 @@
+//! The four corners of the vehicle, its axles and its sides.
+//!
+//! A corner is an enum and not a number, so that a fifth corner cannot be written. [`Corners`] and [`Axles`] hold one
+//! value for each; indexing them cannot fail and cannot panic.
+
+use core::ops::{Index, IndexMut};
+
+use strum::{EnumString, IntoStaticStr, VariantArray};
+
+/// An axle of the vehicle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
+#[strum(serialize_all = "snake_case")]
+pub enum Axle {
+    /// Front axle.
+    Front,
+    /// Rear axle.
+    Rear,
+}
+
+/// A side of the vehicle, seen in the direction of travel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
+#[strum(serialize_all = "snake_case")]
+pub enum Side {
+    /// Left, where y is positive (ISO 8855).
+    Left,
+    /// Right, where y is negative.
+    Right,
+}
+
+/// A corner of the vehicle, where one strut stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
+#[strum(serialize_all = "snake_case")]
+pub enum Corner {
+    /// Front left.
+    FrontLeft,
+    /// Front right.
+    FrontRight,
+    /// Rear left.
+    RearLeft,
+    /// Rear right.
+    RearRight,
+}
+
+impl Axle {
+    /// Both axles, front first.
+    pub const ALL: [Self; 2] = [Self::Front, Self::Rear];
+
+    /// Name in column names and files: `front` or `rear`.
+    #[must_use]
+    pub fn key(self) -> &'static str {
+        self.into()
+    }
+
+    /// The corner of this axle on one side.
+    #[must_use]
+    pub const fn corner(self, side: Side) -> Corner {
+        match (self, side) {
+            (Self::Front, Side::Left) => Corner::FrontLeft,
+            (Self::Front, Side::Right) => Corner::FrontRight,
+            (Self::Rear, Side::Left) => Corner::RearLeft,
+            (Self::Rear, Side::Right) => Corner::RearRight,
+        }
+    }
+}
+
+impl Side {
+    /// Both sides, left first.
+    pub const ALL: [Self; 2] = [Self::Left, Self::Right];
+
+    /// Name in column names and files: `left` or `right`.
+    #[must_use]
+    pub fn key(self) -> &'static str {
+        self.into()
+    }
+}
+
+impl Corner {
+    /// All corners, in the order of the CAN database: front left, front right, rear left, rear right.
+    pub const ALL: [Self; 4] = [Self::FrontLeft, Self::FrontRight, Self::RearLeft, Self::RearRight];
+
+    /// Name in column names and files: `front_left`, `front_right`, `rear_left` or `rear_right`.
+    #[must_use]
+    pub fn key(self) -> &'static str {
+        self.into()
+    }
+
+    /// Name in sentences and places: `front-left`, `front-right`, `rear-left` or `rear-right`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::FrontLeft => "front-left",
+            Self::FrontRight => "front-right",
+            Self::RearLeft => "rear-left",
+            Self::RearRight => "rear-right",
+        }
+    }
+
+    /// Position in [`Corner::ALL`], 0 to 3.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+
+    /// The axle that this corner belongs to.
+    #[must_use]
+    pub const fn axle(self) -> Axle {
+        match self {
+            Self::FrontLeft | Self::FrontRight => Axle::Front,
+            Self::RearLeft | Self::RearRight => Axle::Rear,
+        }
+    }
+
+    /// The side that this corner is on.
+    #[must_use]
+    pub const fn side(self) -> Side {
+        match self {
+            Self::FrontLeft | Self::RearLeft => Side::Left,
+            Self::FrontRight | Self::RearRight => Side::Right,
+        }
+    }
+}
+
+/// One value for each corner.
+///
+/// ```
+/// use oleo_interface::{Corner, Corners, Side};
+/// let load_n = Corners::from_fn(|corner| if corner.side() == Side::Left { 4000.0 } else { 3900.0 });
+/// assert_eq!(load_n[Corner::RearRight], 3900.0);
+/// assert_eq!(load_n.map(|n| n / 1000.0).into_array(), [4.0, 3.9, 4.0, 3.9]);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Corners<T>([T; 4]);
+
+impl<T> Corners<T> {
+    /// From an array in the order of [`Corner::ALL`].
+    pub const fn from_array(values: [T; 4]) -> Self {
+        Self(values)
+    }
+
+    /// From a function of the corner.
+    pub fn from_fn(value: impl FnMut(Corner) -> T) -> Self {
+        Self(Corner::ALL.map(value))
+    }
+
+    /// The values in the order of [`Corner::ALL`].
+    pub fn into_array(self) -> [T; 4] {
+        self.0
+    }
+
+    /// The values in the order of [`Corner::ALL`], borrowed.
+    pub const fn as_array(&self) -> &[T; 4] {
+        &self.0
+    }
+
+    /// References to the values.
+    pub fn each_ref(&self) -> Corners<&T> {
+        Corners(self.0.each_ref())
+    }
+
+    /// Apply a function to every value.
+    pub fn map<U>(self, function: impl FnMut(T) -> U) -> Corners<U> {
+        Corners(self.0.map(function))
+    }
+
+    /// Corner and value, in the order of [`Corner::ALL`].
+    pub fn iter(&self) -> impl Iterator<Item = (Corner, &T)> {
+        Corner::ALL.into_iter().zip(&self.0)
+    }
+
+    /// Corner and value to change, in the order of [`Corner::ALL`].
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = (Corner, &mut T)> {
+        Corner::ALL.into_iter().zip(&mut self.0)
+    }
+
+    /// The values alone.
+    pub fn values(&self) -> core::slice::Iter<'_, T> {
+        self.0.iter()
+    }
+
+    /// The values alone, to change.
+    pub fn values_mut(&mut self) -> core::slice::IterMut<'_, T> {
+        self.0.iter_mut()
+    }
+}
+
+impl<T> Index<Corner> for Corners<T> {
+    type Output = T;
+    fn index(&self, corner: Corner) -> &T {
+        let [front_left, front_right, rear_left, rear_right] = &self.0;
+        match corner {
+            Corner::FrontLeft => front_left,
+            Corner::FrontRight => front_right,
+            Corner::RearLeft => rear_left,
+            Corner::RearRight => rear_right,
+        }
+    }
+}
+
+impl<T> IndexMut<Corner> for Corners<T> {
+    fn index_mut(&mut self, corner: Corner) -> &mut T {
+        let [front_left, front_right, rear_left, rear_right] = &mut self.0;
+        match corner {
+            Corner::FrontLeft => front_left,
+            Corner::FrontRight => front_right,
+            Corner::RearLeft => rear_left,
+            Corner::RearRight => rear_right,
+        }
+    }
+}
+
+/// One value for each axle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Axles<T> {
+    /// Value of the front axle.
+    pub front: T,
+    /// Value of the rear axle.
+    pub rear: T,
+}
+
+impl<T> Axles<T> {
+    /// From the values of the front and the rear axle.
+    pub const fn new(front: T, rear: T) -> Self {
+        Self { front, rear }
+    }
+
+    /// From a function of the axle.
+    pub fn from_fn(mut value: impl FnMut(Axle) -> T) -> Self {
+        Self {
+            front: value(Axle::Front),
+            rear: value(Axle::Rear),
+        }
+    }
+
+    /// Apply a function to both values.
+    pub fn map<U>(self, mut function: impl FnMut(T) -> U) -> Axles<U> {
+        Axles {
+            front: function(self.front),
+            rear: function(self.rear),
+        }
+    }
+
+    /// Axle and value, front first.
+    pub fn iter(&self) -> impl Iterator<Item = (Axle, &T)> {
+        [(Axle::Front, &self.front), (Axle::Rear, &self.rear)].into_iter()
+    }
+}
+
+impl<T> Index<Axle> for Axles<T> {
+    type Output = T;
+    fn index(&self, axle: Axle) -> &T {
+        match axle {
+            Axle::Front => &self.front,
+            Axle::Rear => &self.rear,
+        }
+    }
+}
+
+impl<T> IndexMut<Axle> for Axles<T> {
+    fn index_mut(&mut self, axle: Axle) -> &mut T {
+        match axle {
+            Axle::Front => &mut self.front,
+            Axle::Rear => &mut self.rear,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use super::*;
+
+    #[test]
+    fn index_finds_what_was_put_there() {
+        let mut positions = Corners::from_fn(Corner::index);
+        for corner in Corner::ALL {
+            assert_eq!(positions[corner], corner.index());
+            positions[corner] += 10;
+            assert_eq!(positions.as_array()[corner.index()], corner.index() + 10);
+        }
+        let axles = Axles::from_fn(|axle| axle);
+        assert!(Axle::ALL.into_iter().all(|axle| axles[axle] == axle));
+    }
+
+    #[test]
+    fn a_corner_is_an_axle_and_a_side() {
+        for axle in Axle::ALL {
+            for side in Side::ALL {
+                let corner = axle.corner(side);
+                assert_eq!((corner.axle(), corner.side()), (axle, side));
+            }
+        }
+    }
+
+    #[test]
+    fn names_are_read_back() {
+        for corner in Corner::ALL {
+            assert_eq!(corner.key().parse(), Ok(corner));
+            assert_eq!(corner.name().replace('-', "_"), corner.key());
+        }
+        assert_eq!(Corner::VARIANTS, Corner::ALL);
+        assert!("front".parse::<Corner>().is_err());
+    }
+}

@@ -1,0 +1,21 @@
+//! What the controller and the plant must agree on before either can be written.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`corner`] | the four corners of the vehicle, its axles and sides, and one value for each of them |
+//! | [`valve`] | the three solenoid valves of a strut, and one value for each of them |
+//! | [`pressure`] | gauge and absolute pressure, so that one is never taken for the other |
+//! | [`tick`] | the period at which sensors are read and valves are commanded |
+//!
+//! The crate computes nothing. It is `no_std`, because the controller is.
+#![no_std]
+#![forbid(unsafe_code)]
+
+pub mod corner;
+pub mod pressure;
+pub mod tick;
+pub mod valve;
+
+pub use corner::{Axle, Axles, Corner, Corners, Side};
+pub use pressure::{Absolute, Gauge};
+pub use valve::{StrutValves, Valve};

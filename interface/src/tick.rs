@@ -1,0 +1,15 @@
+//! The period at which sensors are read and valves are commanded.
+//!
+//! The valves need 40 to 90 ms, so 5 ms resolves their movement; six sensor messages and one command fit into it on a
+//! CAN bus of 500 kbit/s. Everything that depends on the period is derived from [`TICK_MS`].
+
+/// Period of one tick, ms.
+pub const TICK_MS: u32 = 5;
+
+/// Period of one tick, s.
+pub const TICK_S: f64 = TICK_MS as f64 * 1e-3;
+
+/// Number of ticks in one second.
+pub const TICKS_PER_SECOND: u32 = 1000 / TICK_MS;
+
+const _: () = assert!(1000 % TICK_MS == 0, "a second must hold a whole number of ticks");

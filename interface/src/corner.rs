@@ -137,9 +137,25 @@ impl<T> Corners<T> {
         Self(values)
     }
 
+    /// The same value at every corner.
+    pub const fn splat(value: T) -> Self
+    where
+        T: Copy,
+    {
+        Self([value; 4])
+    }
+
     /// From a function of the corner.
     pub fn from_fn(value: impl FnMut(Corner) -> T) -> Self {
         Self(Corner::ALL.map(value))
+    }
+
+    /// The same value at both corners of an axle.
+    pub const fn from_axles(values: Axles<T>) -> Self
+    where
+        T: Copy,
+    {
+        Self([values.front, values.front, values.rear, values.rear])
     }
 
     /// The values in the order of [`Corner::ALL`].
@@ -157,9 +173,30 @@ impl<T> Corners<T> {
         Corners(self.0.each_ref())
     }
 
+    /// References to the values, to change them.
+    pub fn each_mut(&mut self) -> Corners<&mut T> {
+        Corners(self.0.each_mut())
+    }
+
     /// Apply a function to every value.
     pub fn map<U>(self, function: impl FnMut(T) -> U) -> Corners<U> {
         Corners(self.0.map(function))
+    }
+
+    /// The value of this and of another at each corner, as pairs.
+    pub fn zip<U>(self, other: Corners<U>) -> Corners<(T, U)> {
+        let [a, b, c, d] = self.0;
+        let [e, f, g, h] = other.0;
+        Corners([(a, e), (b, f), (c, g), (d, h)])
+    }
+
+    /// The left and the right value of each axle, as pairs.
+    pub fn by_axle(self) -> Axles<(T, T)> {
+        let [front_left, front_right, rear_left, rear_right] = self.0;
+        Axles {
+            front: (front_left, front_right),
+            rear: (rear_left, rear_right),
+        }
     }
 
     /// Corner and value, in the order of [`Corner::ALL`].
@@ -223,6 +260,17 @@ impl<T> Axles<T> {
         Self { front, rear }
     }
 
+    /// The same value at both axles.
+    pub const fn splat(value: T) -> Self
+    where
+        T: Copy,
+    {
+        Self {
+            front: value,
+            rear: value,
+        }
+    }
+
     /// From a function of the axle.
     pub fn from_fn(mut value: impl FnMut(Axle) -> T) -> Self {
         Self {
@@ -236,6 +284,19 @@ impl<T> Axles<T> {
         Axles {
             front: function(self.front),
             rear: function(self.rear),
+        }
+    }
+
+    /// The values, front first.
+    pub fn into_array(self) -> [T; 2] {
+        [self.front, self.rear]
+    }
+
+    /// The value of this and of another at each axle, as pairs.
+    pub fn zip<U>(self, other: Axles<U>) -> Axles<(T, U)> {
+        Axles {
+            front: (self.front, other.front),
+            rear: (self.rear, other.rear),
         }
     }
 
@@ -279,6 +340,22 @@ mod tests {
         }
         let axles = Axles::from_fn(|axle| axle);
         assert!(Axle::ALL.into_iter().all(|axle| axles[axle] == axle));
+    }
+
+    #[test]
+    fn pairs_keep_corner_axle_and_side() {
+        let name = Corners::from_fn(Corner::name);
+        for (corner, (index, name)) in Corners::from_fn(Corner::index).zip(name).iter() {
+            assert_eq!((*index, *name), (corner.index(), corner.name()));
+        }
+        let axles = Corners::from_fn(|corner| corner).by_axle();
+        for (axle, (left, right)) in axles.iter() {
+            assert_eq!((*left, *right), (axle.corner(Side::Left), axle.corner(Side::Right)));
+        }
+        let twice = Corners::from_axles(Axles::from_fn(|axle| axle));
+        assert!(Corner::ALL.into_iter().all(|corner| twice[corner] == corner.axle()));
+        assert_eq!(Axles::new(1, 2).zip(Axles::splat(3)).into_array(), [(1, 3), (2, 3)]);
+        assert_eq!(Corners::splat(7).into_array(), [7; 4]);
     }
 
     #[test]

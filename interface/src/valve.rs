@@ -29,6 +29,29 @@ impl Valve {
         self.into()
     }
 
+    /// Number of the valve in the seed report, the CAN database and scenario files, 1 to 3.
+    #[must_use]
+    pub const fn number(self) -> usize {
+        self as usize + 1
+    }
+
+    /// The valve with a number from 1 to 3; `None` for any other.
+    ///
+    /// ```
+    /// use oleo_interface::Valve;
+    /// assert_eq!(Valve::from_number(3), Some(Valve::Spring));
+    /// assert_eq!(Valve::from_number(0), None);
+    /// ```
+    #[must_use]
+    pub const fn from_number(number: usize) -> Option<Self> {
+        match number {
+            1 => Some(Self::Bypass1),
+            2 => Some(Self::Bypass2),
+            3 => Some(Self::Spring),
+            _ => None,
+        }
+    }
+
     /// Position in [`Valve::ALL`], 0 to 2.
     #[must_use]
     pub const fn index(self) -> usize {
@@ -58,6 +81,14 @@ impl<T> StrutValves<T> {
         Self(values)
     }
 
+    /// The same value for every valve.
+    pub const fn splat(value: T) -> Self
+    where
+        T: Copy,
+    {
+        Self([value; 3])
+    }
+
     /// From a function of the valve.
     pub fn from_fn(value: impl FnMut(Valve) -> T) -> Self {
         Self(Valve::ALL.map(value))
@@ -66,6 +97,11 @@ impl<T> StrutValves<T> {
     /// The values in the order of [`Valve::ALL`].
     pub fn into_array(self) -> [T; 3] {
         self.0
+    }
+
+    /// References to the values, to change them.
+    pub fn each_mut(&mut self) -> StrutValves<&mut T> {
+        StrutValves(self.0.each_mut())
     }
 
     /// Apply a function to every value.
@@ -112,6 +148,7 @@ mod tests {
         for valve in Valve::ALL {
             assert_eq!(positions[valve], valve.index());
             assert_eq!(valve.column().parse(), Ok(valve));
+            assert_eq!(Valve::from_number(valve.number()), Some(valve));
         }
         assert_eq!(Valve::VARIANTS, Valve::ALL);
     }

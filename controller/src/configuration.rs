@@ -8,6 +8,7 @@ use crate::filter::{Derivative, LeakyIntegrator, LowPass};
 use crate::strategy::{DamperPolicy, Strategy};
 use crate::timing::SPEED_CORNER_HZ;
 use core::fmt;
+use oleo_interface::Axles;
 
 /// Physical description, in SI units. `Default` is the Land Rover Defender 110 of the report.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,13 +22,13 @@ pub struct Builder {
     /// Gas volume of accumulator 1 and 2 at static position, m3.
     pub gas_volume_m3: [f32; 2],
     /// Distance left to right between the struts of the front and rear axle, m.
-    pub strut_spacing_m: [f32; 2],
+    pub strut_spacing_m: Axles<f32>,
     /// Distance of front and rear axle from the sprung mass's centre of gravity, m.
-    pub axle_distance_m: [f32; 2],
+    pub axle_distance_m: Axles<f32>,
     /// Height of the sprung mass's centre of gravity over the roll axis, m.
     pub roll_arm_m: f32,
     /// Anti-roll bar of front and rear axle, N m per radian of body roll relative to the axle.
-    pub anti_roll_stiffness_n_m_rad: [f32; 2],
+    pub anti_roll_stiffness_n_m_rad: Axles<f32>,
     /// Radius of gyration of the sprung mass in roll, m.
     pub roll_gyration_m: f32,
     /// Radius of gyration of the sprung mass in pitch, m.
@@ -59,24 +60,24 @@ impl Default for Builder {
         Self {
             strategy: Strategy::RideHandling,
             damper_policy: DamperPolicy::Karnopp,
-            piston_area_m2: 1.963_495_4e-3,  // computed from the report: bore 50 mm
-            gas_volume_m3: [1.0e-4, 4.0e-4], // report
-            strut_spacing_m: [1.0, 1.0],     // assumed, as the vehicle preset
-            axle_distance_m: [1.389, 1.405], // computed from the preset: wheelbase 2.794 m, axle loads less axle masses
-            roll_arm_m: 0.45,                // assumed: body's centre of gravity 0.85 m, roll axis 0.40 m
-            anti_roll_stiffness_n_m_rad: [8.0e3, 8.0e3], // assumed, as the vehicle preset
-            roll_gyration_m: 0.661,          // preset: sqrt(700 / 1600)
-            pitch_gyration_m: 1.25,          // preset: sqrt(2500 / 1600)
-            lateral_corner_hz: 1.0,          // vehicle.md: 0.5 to 1 Hz
-            running_rms_s: 1.0,              // recalled: Els, about 1 s
-            handling_ratio: [1.0, 0.8],      // recalled: Els switches at equality; hysteresis assumed
-            handling_floor_m_s2: [1.0, 0.6], // assumed: on a smooth straight both are near nothing
-            guard_roll_rad: [0.08, 0.04],    // assumed: 4.6 and 2.3 degrees relative to the axles
-            guard_lateral_m_s2: 3.0,         // assumed
-            body_velocity_share_s: 0.35,     // measured: docs/controller.md
-            body_acceleration_share: 2.2,    // measured: docs/controller.md
-            trapped_shift_m: 0.008,          // assumed
-            opening_step_share: 0.05,        // assumed
+            piston_area_m2: 1.963_495_4e-3,     // computed from the report: bore 50 mm
+            gas_volume_m3: [1.0e-4, 4.0e-4],    // report
+            strut_spacing_m: Axles::splat(1.0), // assumed, as the vehicle preset
+            axle_distance_m: Axles::new(1.389, 1.405), // computed from the preset: wheelbase 2.794 m, axle loads less axle masses
+            roll_arm_m: 0.45,                          // assumed: body's centre of gravity 0.85 m, roll axis 0.40 m
+            anti_roll_stiffness_n_m_rad: Axles::splat(8.0e3), // assumed, as the vehicle preset
+            roll_gyration_m: 0.661,                    // preset: sqrt(700 / 1600)
+            pitch_gyration_m: 1.25,                    // preset: sqrt(2500 / 1600)
+            lateral_corner_hz: 1.0,                    // vehicle.md: 0.5 to 1 Hz
+            running_rms_s: 1.0,                        // recalled: Els, about 1 s
+            handling_ratio: [1.0, 0.8],                // recalled: Els switches at equality; hysteresis assumed
+            handling_floor_m_s2: [1.0, 0.6],           // assumed: on a smooth straight both are near nothing
+            guard_roll_rad: [0.08, 0.04],              // assumed: 4.6 and 2.3 degrees relative to the axles
+            guard_lateral_m_s2: 3.0,                   // assumed
+            body_velocity_share_s: 0.35,               // measured: docs/controller.md
+            body_acceleration_share: 2.2,              // measured: docs/controller.md
+            trapped_shift_m: 0.008,                    // assumed
+            opening_step_share: 0.05,                  // assumed
         }
     }
 }
@@ -127,11 +128,11 @@ impl Builder {
         ];
         let pairs = [
             both("gas_volume_m3", self.gas_volume_m3, (1e-6, 1e-1)),
-            both("strut_spacing_m", self.strut_spacing_m, (0.2, 4.0)),
-            both("axle_distance_m", self.axle_distance_m, (0.2, 10.0)),
+            both("strut_spacing_m", self.strut_spacing_m.into_array(), (0.2, 4.0)),
+            both("axle_distance_m", self.axle_distance_m.into_array(), (0.2, 10.0)),
             both(
                 "anti_roll_stiffness_n_m_rad",
-                self.anti_roll_stiffness_n_m_rad,
+                self.anti_roll_stiffness_n_m_rad.into_array(),
                 (0.0, 1e6),
             ),
             both("handling_ratio", self.handling_ratio, (0.05, 20.0)),
@@ -169,12 +170,12 @@ pub struct Configuration {
     pub(crate) piston_area_m2: f32,
     pub(crate) per_piston_area: f32,
     pub(crate) gas_volume_m3: [f32; 2],
-    pub(crate) half_spacing_m: [f32; 2],
-    pub(crate) per_spacing: [f32; 2],
-    pub(crate) axle_distance_m: [f32; 2],
+    pub(crate) half_spacing_m: Axles<f32>,
+    pub(crate) per_spacing: Axles<f32>,
+    pub(crate) axle_distance_m: Axles<f32>,
     pub(crate) per_wheelbase: f32,
     pub(crate) per_roll_arm: f32,
-    pub(crate) anti_roll_stiffness_n_m_rad: [f32; 2],
+    pub(crate) anti_roll_stiffness_n_m_rad: Axles<f32>,
     pub(crate) per_roll_gyration_2: f32,
     pub(crate) per_pitch_gyration_2: f32,
     pub(crate) strut_speed: Derivative,
@@ -216,7 +217,10 @@ impl Configuration {
 
     fn from_checked(b: &Builder) -> Self {
         let square = |x: f32| x * x;
-        let [front_m, rear_m] = b.axle_distance_m;
+        let Axles {
+            front: front_m,
+            rear: rear_m,
+        } = b.axle_distance_m;
         Self {
             strategy: b.strategy,
             damper_policy: b.damper_policy,

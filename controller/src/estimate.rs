@@ -20,10 +20,11 @@
 //! What this cannot know: a side slope looks like cornering (so it does to an accelerometer); seal friction, links, bushes and
 //! stops that press past the oil are not in p1; axle roll on the tyres is missing from `phi`. Figures in `docs/controller.md`.
 
+use oleo_interface::{Axles, Corners};
+
 use crate::configuration::Configuration;
 use crate::filter::{DerivativeState, at_least};
 use crate::plausibility::Trusted;
-use crate::valves::CORNERS;
 
 /// Standard gravity, m/s2 (ISO 80000-3).
 pub const GRAVITY_M_S2: f32 = 9.806_65;
@@ -35,7 +36,7 @@ const MAX_BIAS_M_S2: f32 = 0.5;
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// Strut speed, m/s, compression positive.
-    pub strut_speed_m_s: [f32; CORNERS],
+    pub strut_speed_m_s: Corners<f32>,
     /// Heave of the body relative to the axles, m, up positive.
     pub heave_m: f32,
     /// Roll of the body relative to the axles, rad, right side down positive.
@@ -57,11 +58,11 @@ pub struct Estimate {
     /// Running mean square of the vertical acceleration, m2/s4.
     pub vertical_mean_square: f32,
     /// Vertical acceleration of the body over each strut, m/s2, up positive.
-    pub corner_acceleration_m_s2: [f32; CORNERS],
+    pub corner_acceleration_m_s2: Corners<f32>,
     /// Vertical velocity of the body over each strut above 0.2 Hz, m/s, up positive.
-    pub corner_velocity_m_s: [f32; CORNERS],
+    pub corner_velocity_m_s: Corners<f32>,
     /// Static load on each strut, N.
-    pub static_load_n: [f32; CORNERS],
+    pub static_load_n: Corners<f32>,
 }
 
 impl Estimate {
@@ -70,10 +71,10 @@ impl Estimate {
         // Every quantity above enters one of these sums, and NaN or infinity survives addition.
         let corners: f32 = self
             .strut_speed_m_s
-            .iter()
-            .chain(&self.corner_acceleration_m_s2)
-            .chain(&self.corner_velocity_m_s)
-            .chain(&self.static_load_n)
+            .values()
+            .chain(self.corner_acceleration_m_s2.values())
+            .chain(self.corner_velocity_m_s.values())
+            .chain(self.static_load_n.values())
             .sum();
         let body = self.heave_m
             + self.roll_rad
@@ -89,9 +90,9 @@ impl Estimate {
 /// Memory of the estimator.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct State {
-    speed: [DerivativeState; CORNERS],
-    static_load_n: [f32; CORNERS],
-    velocity: [f32; CORNERS],
+    speed: Corners<DerivativeState>,
+    static_load_n: Corners<f32>,
+    velocity: Corners<f32>,
     lateral: [f32; 2],
     lateral_bias: f32,
     lateral_mean_square: f32,
@@ -102,35 +103,29 @@ pub struct State {
 impl State {
     /// One tick from readings that may be used.
     pub fn step(&mut self, c: &Configuration, trusted: &Trusted) -> Estimate {
-        let mut strut_speed_m_s = [0.0; CORNERS];
-        for ((speed, state), x) in strut_speed_m_s
-            .iter_mut()
-            .zip(&mut self.speed)
-            .zip(trusted.displacement_m)
-        {
-            *speed = c.strut_speed.step(state, x);
-        }
-        let relative = Relative::from_struts(c, &trusted.displacement_m);
-        let relative_rate = Relative::from_struts(c, &strut_speed_m_s);
+        let speeds = self.speed.each_mut().zip(trusted.displacement_m);
+        let strut_speed_m_s = speeds.map(|(state, x)| c.strut_speed.step(state, x));
+        let relative = Relative::from_struts(c, trusted.displacement_m);
+        let relative_rate = Relative::from_struts(c, strut_speed_m_s);
 
-        let force = trusted.pressure_pa.map(|[p1, ..]| p1 * c.piston_area_m2);
+        let force = trusted.pressure.map(|pressure| pressure.p1.pa() * c.piston_area_m2);
         if !self.started {
             self.started = true;
             self.static_load_n = force;
         }
-        for (load, force) in self.static_load_n.iter_mut().zip(force) {
+        for (load, force) in self.static_load_n.each_mut().zip(force).into_array() {
             // A strut without load (jacked up, empty) must not divide by nothing.
             *load = at_least(c.static_load.step(load, force), 1.0);
         }
-        let weight: f32 = self.static_load_n.iter().sum();
+        let weight: f32 = self.static_load_n.values().sum();
         let per_mass = GRAVITY_M_S2 / weight;
 
-        let [hf, hr] = c.half_spacing_m;
-        let [a, b] = c.axle_distance_m;
-        let [kf, kr] = c.anti_roll_stiffness_n_m_rad;
-        let bars_n_m = kf * relative.roll_front_rad + kr * relative.roll_rear_rad;
-        let [w0, w1, w2, w3] = self.static_load_n;
-        let [f0, f1, f2, f3] = force;
+        let Axles { front: hf, rear: hr } = c.half_spacing_m;
+        let Axles { front: a, rear: b } = c.axle_distance_m;
+        let Axles { front: kf, rear: kr } = c.anti_roll_stiffness_n_m_rad;
+        let bars_n_m = kf * relative.axle_roll_rad.front + kr * relative.axle_roll_rad.rear;
+        let [w0, w1, w2, w3] = self.static_load_n.into_array();
+        let [f0, f1, f2, f3] = force.into_array();
         let left_up_n_m = hf * (f0 - f1) + hr * (f2 - f3);
         let static_left_up_n_m = hf * (w0 - w1) + hr * (w2 - w3);
 
@@ -145,13 +140,13 @@ impl State {
             .step(&mut self.lateral_bias, lagged.clamp(-MAX_BIAS_M_S2, MAX_BIAS_M_S2));
         let lateral = lagged - self.lateral_bias;
 
-        let corner_acceleration_m_s2 = [
+        let corner_acceleration_m_s2 = Corners::from_array([
             vertical + hf * roll - a * pitch,
             vertical - hf * roll - a * pitch,
             vertical + hr * roll + b * pitch,
             vertical - hr * roll + b * pitch,
-        ];
-        for (velocity, acceleration) in self.velocity.iter_mut().zip(corner_acceleration_m_s2) {
+        ]);
+        for (velocity, acceleration) in self.velocity.each_mut().zip(corner_acceleration_m_s2).into_array() {
             c.body_velocity.step(velocity, acceleration);
         }
         Estimate {
@@ -177,26 +172,24 @@ impl State {
 struct Relative {
     heave_m: f32,
     roll_rad: f32,
-    roll_front_rad: f32,
-    roll_rear_rad: f32,
+    axle_roll_rad: Axles<f32>,
     pitch_rad: f32,
 }
 
 impl Relative {
-    fn from_struts(c: &Configuration, &[fl, fr, rl, rr]: &[f32; CORNERS]) -> Self {
-        let [front, rear] = c.per_spacing;
-        let [a, b] = c.axle_distance_m;
-        let roll_front_rad = (fr - fl) * front;
-        let roll_rear_rad = (rr - rl) * rear;
-        let front_m = 0.5 * (fl + fr);
-        let rear_m = 0.5 * (rl + rr);
+    fn from_struts(c: &Configuration, displacement: Corners<f32>) -> Self {
+        let struts = displacement.by_axle();
+        let Axles { front: a, rear: b } = c.axle_distance_m;
+        let axle_roll_rad = struts
+            .zip(c.per_spacing)
+            .map(|((left, right), per)| (right - left) * per);
+        let Axles { front, rear } = struts.map(|(left, right)| 0.5 * (left + right));
         Self {
             // Compression lowers the body; the centre of gravity is nearer to one axle.
-            heave_m: -(front_m * b + rear_m * a) * c.per_wheelbase,
-            roll_rad: 0.5 * (roll_front_rad + roll_rear_rad),
-            roll_front_rad,
-            roll_rear_rad,
-            pitch_rad: (front_m - rear_m) * c.per_wheelbase,
+            heave_m: -(front * b + rear * a) * c.per_wheelbase,
+            roll_rad: 0.5 * (axle_roll_rad.front + axle_roll_rad.rear),
+            axle_roll_rad,
+            pitch_rad: (front - rear) * c.per_wheelbase,
         }
     }
 }

@@ -29,8 +29,10 @@
 //! | Degraded | closed, all four: roll stiffness and balance of the safe state | strategy on the healthy axle, closed on the other |
 //! | StartUp, Safe, Latched | closed | closed |
 
+use oleo_interface::{Axles, Corners, Valve};
+
 use crate::timing::ticks;
-use crate::valves::{BYPASS_1, BYPASS_2, CORNERS, SPRING, ValveCommand};
+use crate::valves::ValveCommand;
 
 /// Ticks of health from `StartUp` to `Normal`.
 pub const START_UP_TICKS: u16 = ticks(100);
@@ -147,17 +149,14 @@ impl FaultCode {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Health {
     /// Corners with at least one reading that may not be used.
-    pub affected: [bool; CORNERS],
+    pub affected: Corners<bool>,
     /// Why (the gravest cause present), [`FaultCode::None`] if healthy.
     pub cause: FaultCode,
 }
 
-impl Health {
-    /// (front, rear)
-    fn axles(&self) -> (bool, bool) {
-        let [fl, fr, rl, rr] = self.affected;
-        (fl || fr, rl || rr)
-    }
+/// Whether either corner of each axle is affected.
+fn affected_axles(affected: Corners<bool>) -> Axles<bool> {
+    affected.by_axle().map(|(left, right)| left || right)
 }
 
 /// Memory of the mode machine.
@@ -204,7 +203,7 @@ impl State {
         if self.mode == Mode::Latched {
             return self.mode;
         }
-        let (front, rear) = health.axles();
+        let Axles { front, rear } = affected_axles(health.affected);
         let terminal = matches!(health.cause, FaultCode::Solenoid | FaultCode::Internal);
         let severe = front && rear;
         let healthy = !front && !rear && !terminal;
@@ -261,20 +260,14 @@ impl State {
 }
 
 /// The part of a wanted command that a mode permits. `affected` as in [`Health`].
-pub fn permitted(mode: Mode, affected: &[bool; CORNERS], wanted: ValveCommand) -> ValveCommand {
+pub fn permitted(mode: Mode, affected: Corners<bool>, wanted: ValveCommand) -> ValveCommand {
     match mode {
         Mode::Normal => wanted,
         Mode::Degraded => {
-            let [fl, fr, rl, rr] = *affected;
-            let (front, rear) = (fl || fr, rl || rr);
-            let mut command = wanted;
-            for (corner, axle_affected) in [front, front, rear, rear].into_iter().enumerate() {
-                command = command.with(corner, SPRING, false);
-                if axle_affected {
-                    command = command.with(corner, BYPASS_1, false).with(corner, BYPASS_2, false);
-                }
-            }
-            command
+            let axles = affected_axles(affected);
+            ValveCommand::from_fn(|corner, valve| {
+                valve != Valve::Spring && !axles[corner.axle()] && wanted.is_open(corner, valve)
+            })
         }
         Mode::StartUp | Mode::Safe | Mode::Latched => ValveCommand::SAFE,
     }

@@ -3,7 +3,7 @@
 //! Coefficients are computed once, from physical units, when the configuration is built; a tick then only multiplies and
 //! adds. All sections are exact at steady state and unconditionally stable (0 < alpha < 1).
 
-use crate::timing::TICK_S;
+use oleo_interface::tick::TICK_S_F32 as TICK_S;
 
 /// `y += alpha (x - y)`, the step-invariant form of a first-order lag: `alpha = 1 - exp(-T / tau)`.
 ///

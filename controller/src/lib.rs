@@ -13,27 +13,34 @@
 
 pub mod can;
 pub mod configuration;
-pub mod dwell;
+mod dwell;
 pub mod estimate;
 pub mod failsafe;
 pub mod filter;
 pub mod node;
 pub mod plausibility;
 pub mod port;
-pub mod reading;
-pub mod solenoids;
+mod reading;
+mod receiver;
+mod sensor_message;
+mod solenoids;
 pub mod spring;
 pub mod strategy;
 pub mod tick;
-pub mod timing;
-pub mod valves;
+mod timing;
+mod valves;
 
 pub use configuration::Configuration;
 pub use estimate::Estimate;
 pub use failsafe::{FaultCode, Mode};
 pub use node::Node;
+pub use oleo_interface as interface;
+pub use oleo_interface::{
+    Absolute, Axle, Axles, Corner, Corners, Gauge, PressurePoint, Side, StrutPressures, StrutValves, Valve,
+};
 pub use reading::{Inputs, Reading};
-pub use solenoids::Solenoids;
+pub use sensor_message::{MessageSet, SensorMessage};
+pub use solenoids::{SolenoidError, Solenoids};
 pub use strategy::{DamperPolicy, Strategy};
 pub use tick::{Outputs, State, tick};
 pub use valves::ValveCommand;

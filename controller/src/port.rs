@@ -66,7 +66,7 @@ impl<C: Can> Port<C> {
     }
 
     /// One period: reads what has come, decides, and hands the frames to the transmitter. Call it every
-    /// [`crate::timing::TICK_MS`].
+    /// [`TICK_MS`](oleo_interface::tick::TICK_MS).
     pub fn tick(&mut self) -> Outputs {
         self.poll();
         let (outputs, frames) = self.node.tick();
@@ -135,7 +135,7 @@ mod tests {
     extern crate std;
     use super::*;
     use crate::can::{COMMAND, PlantEnd};
-    use crate::{Configuration, Inputs, Mode};
+    use crate::{Configuration, Corners, Gauge, Inputs, Mode, StrutPressures};
     use std::collections::VecDeque;
     use std::vec::Vec;
 
@@ -212,7 +212,7 @@ mod tests {
     #[test]
     fn frames_reach_the_node_and_commands_the_bus() {
         let (mut port, mut plant) = (port(), PlantEnd::new());
-        let inputs = Inputs::from_values([0.0; 4], [[2.0e6; 4]; 4]);
+        let inputs = Inputs::from_values(Corners::splat(0.0), Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
         let mut mode = Mode::StartUp;
         for n in 0..60 {
             for frame in plant.encode(n, &inputs) {

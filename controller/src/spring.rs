@@ -20,12 +20,13 @@
 //!
 //! What an emergency traps is not bounded; it is reported ([`Springs::trapped_shift_m`]) and goes at the next opening.
 
+use oleo_interface::{Absolute, Corners, Gauge, StrutPressures};
+
 use crate::configuration::Configuration;
 use crate::filter::{DerivativeState, at_least};
 use crate::plausibility::Trusted;
 use crate::strategy::Urgency;
 use crate::timing::ticks;
-use crate::valves::CORNERS;
 
 /// Where pressures are extrapolated to: the middle of the valves' 40 to 90 ms.
 const AHEAD_S: f32 = 0.06;
@@ -36,14 +37,14 @@ const DWELL_TICKS: u16 = ticks(500);
 const SETTLE_TICKS: u16 = ticks(200);
 /// A throttled opening ends here even where the pressures stay apart (a sensor's offset must not hold the damper for ever).
 const LONGEST_THROTTLE_TICKS: u16 = ticks(1_000);
+/// Pressures closer than this count as equal, Pa.
 const EQUAL_PA: f32 = 0.2e6;
-/// Absolute pressure below which an accumulator counts as empty.
+/// Absolute pressure below which an accumulator counts as empty, Pa.
 const LEAST_PA: f32 = 2.0e4;
 
-use crate::plausibility::ATMOSPHERE_PA;
-
+/// State of one spring valve.
 #[derive(Clone, Copy, Debug, Default)]
-struct Corner {
+struct SpringValve {
     open: bool,
     throttled: bool,
     /// Ticks since the last change, saturating.
@@ -59,78 +60,73 @@ struct Corner {
 /// State of the four spring valves.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Springs {
-    corners: [Corner; CORNERS],
+    valves: Corners<SpringValve>,
 }
 
 impl Springs {
-    /// One tick: whether valve 3 is to be open at each corner. Not to be called while the mode machine keeps all closed:
-    /// that is [`Springs::forced_closed`].
+    /// One tick: whether valve 3 is to be open at each corner, where the strategy wants it open at `wanted`. Not to be
+    /// called while the mode machine keeps all closed: that is [`Springs::forced_closed`].
     pub fn step(
         &mut self,
         c: &Configuration,
         trusted: &Trusted,
-        static_load_n: &[f32; CORNERS],
-        soft: bool,
+        static_load_n: &Corners<f32>,
+        wanted: Corners<bool>,
         urgency: Urgency,
-    ) -> [bool; CORNERS] {
-        for ((corner, pressure), &charge) in self
-            .corners
-            .iter_mut()
-            .zip(&trusted.pressure_pa)
-            .zip(&trusted.charge_pa)
-        {
-            corner.observe(c, pressure, charge, soft);
-        }
-        let [fl, fr, rl, rr] = &mut self.corners;
-        let [wfl, wfr, wrl, wrr] = *static_load_n;
-        for (left, right, left_load_n, right_load_n) in [(fl, fr, wfl, wfr), (rl, rr, wrl, wrr)] {
-            if soft {
-                let smooth = left.opens_smoothly(c, left_load_n) && right.opens_smoothly(c, right_load_n);
-                left.open_if_due(smooth);
-                right.open_if_due(smooth);
-            } else {
-                left.close_if_due(c, urgency);
-                right.close_if_due(c, urgency);
+    ) -> Corners<bool> {
+        self.observe(c, trusted, wanted);
+        let axles = self.valves.each_mut().zip(wanted).zip(*static_load_n).by_axle();
+        for (((left, left_wanted), left_load_n), ((right, right_wanted), right_load_n)) in axles.into_array() {
+            // The valves of an axle that are to open do so together.
+            let smooth = (!left_wanted || left.opens_smoothly(c, left_load_n))
+                && (!right_wanted || right.opens_smoothly(c, right_load_n));
+            for (valve, wanted) in [(left, left_wanted), (right, right_wanted)] {
+                if wanted {
+                    valve.open_if_due(smooth);
+                } else {
+                    valve.close_if_due(c, urgency);
+                }
             }
         }
-        self.corners.each_ref().map(|corner| corner.open)
+        self.valves.map(|valve| valve.open)
     }
 
     /// All valves are closed by the mode machine: nothing is decided, and the next opening is careful.
     pub fn forced_closed(&mut self, c: &Configuration, trusted: &Trusted) {
-        for ((corner, pressure), &charge) in self
-            .corners
-            .iter_mut()
-            .zip(&trusted.pressure_pa)
-            .zip(&trusted.charge_pa)
-        {
-            corner.observe(c, pressure, charge, false);
-            if corner.open {
-                corner.change(false);
+        self.observe(c, trusted, Corners::splat(false));
+        for valve in self.valves.values_mut() {
+            if valve.open {
+                valve.change(false);
             }
         }
     }
 
+    fn observe(&mut self, c: &Configuration, trusted: &Trusted, wanted: Corners<bool>) {
+        for (corner, valve) in self.valves.iter_mut() {
+            valve.observe(c, &trusted.pressure[corner], trusted.charge[corner], wanted[corner]);
+        }
+    }
+
     /// Corners whose opening is throttled through damper 2: valve 2 is to stay closed.
-    pub fn throttled(&self) -> [bool; CORNERS] {
-        self.corners.each_ref().map(|corner| corner.throttled)
+    pub fn throttled(&self) -> Corners<bool> {
+        self.valves.each_ref().map(|valve| valve.throttled)
     }
 
     /// Corners whose valve 3 has been open for long enough that p4 follows p1.
-    pub fn settled_open(&self) -> [bool; CORNERS] {
-        self.corners
+    pub fn settled_open(&self) -> Corners<bool> {
+        self.valves
             .each_ref()
-            .map(|corner| corner.open && corner.since >= SETTLE_TICKS && !corner.throttled)
+            .map(|valve| valve.open && valve.since >= SETTLE_TICKS && !valve.throttled)
     }
 
     /// Shift of the ride height that the oil behind each closed valve 3 causes, m, lower positive; what closing would
-    /// trap where it is open.
-    pub fn trapped_shift_m(&self) -> [f32; CORNERS] {
-        self.corners.each_ref().map(|corner| corner.trapped_shift_m)
+    /// trap where the valve is open.
+    pub fn trapped_shift_m(&self) -> Corners<f32> {
+        self.valves.each_ref().map(|valve| valve.trapped_shift_m)
     }
 }
 
-impl Corner {
+impl SpringValve {
     fn change(&mut self, open: bool) {
         self.open = open;
         self.since = 0;
@@ -138,31 +134,35 @@ impl Corner {
         self.throttled = false;
     }
 
-    fn observe(&mut self, c: &Configuration, &[p1, _, p3, p4]: &[f32; 4], charge_pa: f32, soft: bool) {
+    fn observe(
+        &mut self,
+        c: &Configuration,
+        pressure: &StrutPressures<Gauge<f32>>,
+        charge: Absolute<f32>,
+        wanted: bool,
+    ) {
         self.since = self.since.saturating_add(1);
-        self.waiting = if soft == self.open {
+        self.waiting = if wanted == self.open {
             0
         } else {
             self.waiting.saturating_add(1)
         };
         let [v1, v2] = c.gas_volume_m3;
-        let p1_ahead = at_least(
-            p1 + ATMOSPHERE_PA + AHEAD_S * c.pressure_rate.step(&mut self.p1_rate, p1),
-            LEAST_PA,
-        );
-        let p4_ahead = at_least(
-            p4 + ATMOSPHERE_PA + AHEAD_S * c.pressure_rate.step(&mut self.p4_rate, p4),
-            LEAST_PA,
-        );
-        let gas4 = v2 * charge_pa / p4_ahead;
+        let ahead = |p: Gauge<f32>, rate: &mut DerivativeState| {
+            let later = p.absolute() + AHEAD_S * c.pressure_rate.step(rate, p.pa());
+            Absolute(at_least(later.pa(), LEAST_PA))
+        };
+        let p1 = ahead(pressure.p1, &mut self.p1_rate);
+        let p4 = ahead(pressure.p4, &mut self.p4_rate);
+        let gas4 = v2 * charge.pa() / p4.pa();
         self.trapped_shift_m = (v2 - gas4) * c.per_piston_area;
         if !self.open {
-            let gas1 = v1 * charge_pa / p1_ahead;
-            self.opening_step_n =
-                c.piston_area_m2 * (p4_ahead - p1_ahead) * gas4 / at_least(gas1 + gas4, f32::MIN_POSITIVE);
+            let gas1 = v1 * charge.pa() / p1.pa();
+            self.opening_step_n = c.piston_area_m2 * (p4 - p1) * gas4 / at_least(gas1 + gas4, f32::MIN_POSITIVE);
         }
         if self.throttled
-            && ((p3 - p4).abs() < EQUAL_PA && self.since >= SETTLE_TICKS || self.since >= LONGEST_THROTTLE_TICKS)
+            && ((pressure.p3 - pressure.p4).abs() < EQUAL_PA && self.since >= SETTLE_TICKS
+                || self.since >= LONGEST_THROTTLE_TICKS)
         {
             self.throttled = false;
         }

@@ -3,16 +3,17 @@
 //! The order is the data flow: trust the readings, estimate the motion, decide, and let the mode machine strike out what it
 //! does not permit. Nothing else may keep state between ticks.
 
-use crate::can::StatusMessage;
+use oleo_interface::{Corners, StrutValves, Valve};
+
 use crate::configuration::Configuration;
 use crate::dwell::Dwell;
 use crate::estimate::{self, Estimate};
 use crate::failsafe::{self, FaultCode, Health, Mode};
 use crate::plausibility;
-use crate::reading::{Inputs, MessageSet};
+use crate::reading::Inputs;
 use crate::spring::Springs;
 use crate::strategy::{self, Urgency};
-use crate::valves::{CORNERS, VALVES, ValveCommand};
+use crate::valves::ValveCommand;
 
 /// All memory of the controller.
 #[derive(Clone, Debug, Default)]
@@ -48,28 +49,12 @@ pub struct Outputs {
     /// Readings that may not be used at present.
     pub invalid_readings: u8,
     /// Shift of the ride height by the oil behind valve 3, m, lower positive (see [`crate::spring`]).
-    pub trapped_shift_m: [f32; CORNERS],
+    pub trapped_shift_m: Corners<f32>,
     /// Estimated motion.
     pub estimate: Estimate,
 }
 
-impl Outputs {
-    /// The status message's content.
-    pub fn status(&self, lost_messages: MessageSet) -> StatusMessage {
-        StatusMessage {
-            mode: self.mode,
-            fault: self.fault,
-            handling: self.handling,
-            rollover_guard: self.rollover_guard,
-            lateral_rms_m_s2: libm::sqrtf(self.estimate.lateral_mean_square),
-            vertical_rms_m_s2: libm::sqrtf(self.estimate.vertical_mean_square),
-            invalid_readings: self.invalid_readings,
-            lost_messages,
-        }
-    }
-}
-
-/// One tick. Call it every [`crate::timing::TICK_MS`]; the caller owns time.
+/// One tick. Call it every [`TICK_MS`](oleo_interface::tick::TICK_MS); the caller owns time.
 pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     let context = plausibility::Context {
         spring_settled_open: state.springs.settled_open(),
@@ -89,29 +74,34 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     }
 
     let mode = state.failsafe.step(&health);
-    let wish = state.strategy.step(c, &estimate, &trusted);
-    let soft = if mode == Mode::Normal {
-        state
-            .springs
-            .step(c, &trusted, &estimate.static_load_n, wish.soft_spring, wish.urgency)
+    let demand = state.strategy.step(c, &estimate, &trusted);
+    let springs = if mode == Mode::Normal {
+        let wanted = demand.valves.corners().map(|strut| strut[Valve::Spring]);
+        let load_n = &estimate.static_load_n;
+        state.springs.step(c, &trusted, load_n, wanted, demand.urgency)
     } else {
         state.springs.forced_closed(c, &trusted);
-        [false; CORNERS]
+        Corners::splat(false)
     };
-    let low = state.dwell.step(wish.low_damping, wish.urgency == Urgency::Emergency);
+    let bypass = state.dwell.step(demand.valves, demand.urgency == Urgency::Emergency);
 
-    let mut corners = [[false; VALVES]; CORNERS];
-    for (((valves, soft), low), throttled) in corners.iter_mut().zip(soft).zip(low).zip(state.springs.throttled()) {
-        // Valve 2 has no effect behind a closed valve 3: de-energised, it does not wear.
-        *valves = [low, low && soft && !throttled, soft];
-    }
-    let command = failsafe::permitted(mode, &health.affected, ValveCommand::from_corners(corners));
+    // Valve 2 has no effect behind a closed valve 3: de-energised, it does not wear.
+    let valve_2 = springs
+        .zip(state.springs.throttled())
+        .map(|(open, throttled)| open && !throttled);
+    let struts = bypass
+        .corners()
+        .zip(springs.zip(valve_2))
+        .map(|(bypass, (spring, valve_2))| {
+            StrutValves::new(bypass[Valve::Bypass1], bypass[Valve::Bypass2] && valve_2, spring)
+        });
+    let command = failsafe::permitted(mode, health.affected, ValveCommand::from_corners(struts));
     Outputs {
         command,
         mode,
         fault: state.failsafe.first_cause(),
-        handling: wish.handling,
-        rollover_guard: wish.rollover_guard,
+        handling: demand.handling,
+        rollover_guard: demand.rollover_guard,
         invalid_readings: trusted.invalid_readings,
         trapped_shift_m: state.springs.trapped_shift_m(),
         estimate,

@@ -5,28 +5,33 @@
 
 use core::convert::Infallible;
 use embedded_hal::digital::{ErrorType, OutputPin};
+use oleo_controller::ValveCommand;
+use oleo_interface::{Corners, StrutValves};
 use stm32f4::stm32f405::{GPIOE, RCC};
 
-const COUNT: usize = oleo_controller::solenoids::SOLENOIDS;
+/// Pin of the solenoid with the lowest bit in the command word.
 const FIRST_PIN: u8 = 4;
-const ALL: u32 = ((1 << COUNT) - 1) << FIRST_PIN;
+const PINS: core::ops::Range<u8> = FIRST_PIN..16;
+const ALL: u32 = (ValveCommand::SOFT.word() as u32) << FIRST_PIN;
 
 /// One solenoid driver input; off until told otherwise.
 pub struct Solenoid {
     mask: u32,
 }
 
-/// Makes the port's twelve pins outputs and hands them out in the order of the command word's bits. Takes the port, so
-/// that nobody else has it.
-pub fn take(_port: GPIOE, rcc: &RCC) -> [Solenoid; COUNT] {
+/// Makes the port's twelve pins outputs and hands out one for each valve, in the order of the command word's bits. Takes
+/// the port, so that nobody else has it.
+pub fn take(_port: GPIOE, rcc: &RCC) -> Corners<StrutValves<Solenoid>> {
     rcc.ahb1enr().modify(|_, w| w.gpioeen().enabled());
     all_off();
     let port = registers();
-    for pin in FIRST_PIN..FIRST_PIN + COUNT as u8 {
+    for pin in PINS {
         port.moder().modify(|_, w| w.moder(pin).output());
     }
-    core::array::from_fn(|index| Solenoid {
-        mask: 1 << (FIRST_PIN as usize + index),
+    Corners::from_fn(|corner| {
+        StrutValves::from_fn(|valve| Solenoid {
+            mask: u32::from(ValveCommand::SAFE.with(corner, valve, true).word()) << FIRST_PIN,
+        })
     })
 }
 

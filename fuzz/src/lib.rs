@@ -4,8 +4,8 @@
 //! Driven by libFuzzer (`fuzz_targets/`, coverage-guided, as long as one likes) and by `tests/hostile_bytes.rs` of the
 //! root package (mutated valid files, seconds, every test run).
 
-use oleo_controller::can::{PlantEnd, SENSOR_MESSAGES};
-use oleo_controller::{Configuration, Node};
+use oleo_controller::can::PlantEnd;
+use oleo_controller::{Configuration, Node, SensorMessage};
 use oleo_diagnose::recording::{ColumnKind, ColumnSpec, GapPolicy, parse};
 use oleo_hil::bus::{SlcanDecoder, slcan_encode};
 use oleo_hil::candump::{parse_line, write_line};
@@ -23,7 +23,7 @@ pub fn can_frames(bytes: &[u8]) {
     let mut plant = PlantEnd::new();
     for chunk in bytes.chunks_exact(10) {
         let id = match usize::from(chunk[0]) {
-            known @ 0..48 => SENSOR_MESSAGES[known % SENSOR_MESSAGES.len()].id,
+            known @ 0..48 => SensorMessage::ALL[known % SensorMessage::ALL.len()].contract().id,
             48..64 => oleo_controller::can::COMMAND.id,
             other => other as u16 * 8,
         };

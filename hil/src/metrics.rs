@@ -5,13 +5,15 @@
 
 use oleo_controller::can::bus_load;
 use oleo_controller::{FaultCode, Mode};
+use oleo_interface::tick::TICK_US;
+use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::measures::{RideMeasures, RideMeter};
 
 use crate::bit_timing::{WireModel, trace_bits};
 use crate::record::{Sample, controller_account, fault_name, mode_name};
 use crate::run::Outcome;
+use crate::scenario::Scenario;
 use crate::scenario::check::{Figure, Metric};
-use crate::scenario::{Scenario, TICK_US};
 
 /// Figures of a run, and what they were worked out from.
 #[derive(Debug)]
@@ -22,8 +24,8 @@ pub struct Metrics {
     pub ticks_missing: u32,
     /// Driver's and left rear passenger's seat.
     pub seats: [RideMeasures; 2],
-    /// Edges of each valve signal, in the order of the word's bits.
-    pub valve_switches: [u64; 12],
+    /// Edges of each valve signal.
+    pub valve_switches: Corners<StrutValves<u64>>,
     /// Frames sent and not received, injected drops included.
     pub frames_lost: u64,
     /// Of these, lost by the bus itself.
@@ -113,7 +115,12 @@ impl Metrics {
             Metric::MaxRebound => Figure::Number(self.extremes.rebound_m),
             Metric::MaxPressure => Figure::Number(self.extremes.pressure_pa),
             Metric::WheelLift => Figure::Number(self.extremes.lifted_ticks as f64 / f64::from(self.ticks.max(1))),
-            Metric::ValveSwitches => count(self.valve_switches.iter().sum()),
+            Metric::ValveSwitches => count(
+                self.valve_switches
+                    .map(|strut| strut.into_array().iter().sum::<u64>())
+                    .values()
+                    .sum(),
+            ),
             Metric::FramesLost => count(self.frames_lost),
             Metric::BusFramesLost => count(self.bus_frames_lost),
             Metric::E2eErrors => count(self.e2e_errors),
@@ -167,12 +174,12 @@ impl Extremes {
             most.heave_m = most.heave_m.max(body.heave_m.abs());
             most.roll_rad = most.roll_rad.max(body.roll_rad.abs());
             most.pitch_rad = most.pitch_rad.max(body.pitch_rad.abs());
-            for (displacement_m, strut) in sample.displacement_m.iter().zip(&sample.strut) {
+            for (_, (displacement_m, strut)) in sample.displacement_m.zip(sample.strut).iter() {
                 most.jounce_m = most.jounce_m.max(*displacement_m);
                 most.rebound_m = most.rebound_m.max(-displacement_m);
                 most.pressure_pa = strut.pressure_pa.iter().fold(most.pressure_pa, |p, q| p.max(*q));
             }
-            most.lifted_ticks += u64::from(sample.wheel.iter().any(|wheel| wheel.force_n <= 0.0));
+            most.lifted_ticks += u64::from(sample.wheel.values().any(|wheel| wheel.force_n <= 0.0));
             most
         })
     }
@@ -216,15 +223,15 @@ mod tests {
         Sample {
             station_m: 0.0,
             body: BodyMotion::default(),
-            displacement_m: [0.01, -0.02, 0.0, 0.0],
-            strut: [StrutOutput {
+            displacement_m: Corners::from_array([0.01, -0.02, 0.0, 0.0]),
+            strut: Corners::splat(StrutOutput {
                 force_n: 0.0,
                 pressure_pa: [4e6; 4],
-            }; 4],
-            wheel: [WheelMotion {
+            }),
+            wheel: Corners::splat(WheelMotion {
                 force_n: 1.0,
                 ..WheelMotion::default()
-            }; 4],
+            }),
             command: ValveCommand::from_word(word),
             energised: ValveCommand::from_word(word),
         }

@@ -3,6 +3,9 @@
 //! Written through [`OutputDirectory`], so they appear together or not at all. Only wall-clock figures differ between two runs of one
 //! scenario; everything else has the same bytes.
 
+use oleo_controller::ValveCommand;
+use oleo_interface::tick::TICK_S;
+use oleo_interface::{Corner, PressurePoint};
 use oleo_report::{OutputDirectory, OutputError};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde::Serialize;
@@ -13,9 +16,8 @@ use crate::clock::Lateness;
 use crate::metrics::Metrics;
 use crate::record::{command_hash, fault_name, mode_name};
 use crate::run::Outcome;
+use crate::scenario::Scenario;
 use crate::scenario::check::{Figure, Metric};
-use crate::scenario::fault::CORNER_NAMES;
-use crate::scenario::{Scenario, TICK_S};
 
 /// Outcome of one check.
 #[derive(Clone, Debug, Serialize)]
@@ -170,7 +172,7 @@ impl Summary {
             msdv_driver_m_s1_5: driver.msdv_m_s1_5,
             msdv_rear_left_m_s1_5: rear_left.msdv_m_s1_5,
             max_roll_deg: number(Metric::MaxRoll).unwrap_or(0.0),
-            valve_switches: metrics.valve_switches,
+            valve_switches: valve_switches(metrics),
             modes: mode_entries(metrics),
             ticks_to_detect: number(Metric::TicksToDetect),
             ticks_to_safe: number(Metric::TicksToSafe),
@@ -194,6 +196,17 @@ impl Summary {
     pub fn passed(&self) -> bool {
         self.checks.iter().all(|check| check.passed)
     }
+}
+
+/// The edges in the order of the valve word's bits.
+fn valve_switches(metrics: &Metrics) -> [u64; 12] {
+    let mut edges = [0; 12];
+    for (corner, strut) in metrics.valve_switches.iter() {
+        for (valve, count) in strut.iter() {
+            edges[ValveCommand::bit(corner, valve)] = *count;
+        }
+    }
+    edges
 }
 
 fn check_outcomes(scenario: &Scenario, metrics: &Metrics) -> Vec<CheckOutcome> {
@@ -307,8 +320,8 @@ fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<f64>)> {
     };
     column("time_s", &|i| i as f64 * TICK_S);
     column("station_m", &|i| samples[i].station_m);
-    for (corner, name) in CORNER_NAMES.iter().enumerate() {
-        let name = name.replace('-', "_");
+    for corner in Corner::ALL {
+        let name = corner.key();
         column(&format!("road_{name}_m"), &|i| samples[i].wheel[corner].road_height_m);
     }
     column("heave_m", &|i| samples[i].body.heave_m);
@@ -328,15 +341,15 @@ fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<f64>)> {
     };
     column("driver_acceleration_m_s2", &|i| felt(i, 0));
     column("rear_left_acceleration_m_s2", &|i| felt(i, 1));
-    for (corner, name) in CORNER_NAMES.iter().enumerate() {
-        let name = name.replace('-', "_");
+    for corner in Corner::ALL {
+        let name = corner.key();
         column(&format!("displacement_{name}_m"), &|i| {
             samples[i].displacement_m[corner]
         });
         column(&format!("force_{name}_N"), &|i| samples[i].strut[corner].force_n);
-        for place in 0..4 {
-            let title = format!("p{}_{name}_Pa", place + 1);
-            column(&title, &|i| samples[i].strut[corner].pressure_pa[place]);
+        for point in PressurePoint::ALL {
+            let title = format!("{}_{name}_Pa", point.key());
+            column(&title, &|i| samples[i].strut[corner].pressure_pa[point.index()]);
         }
         column(&format!("wheel_load_{name}_N"), &|i| samples[i].wheel[corner].force_n);
     }

@@ -1,13 +1,15 @@
 //! `report.html` of a run: the outcome first, then road, body, struts, controller and bus, on one time axis.
 
+use oleo_interface::tick::TICK_S;
+use oleo_interface::{Axle, Corner, PressurePoint, Side, Valve};
 use oleo_report::{Axis, Bars, Cell, Column, Curves, Page, Style, Table, Verdict, significant};
 
 use crate::metrics::Metrics;
 use crate::output::Summary;
 use crate::record::{mode_name, status_messages};
 use crate::run::Outcome;
-use crate::scenario::fault::{CORNER_NAMES, Fault, FaultKind};
-use crate::scenario::{Scenario, TICK_S};
+use crate::scenario::Scenario;
+use crate::scenario::fault::{Fault, FaultKind};
 use crate::sync::Role;
 
 /// All figures of a page zoom together.
@@ -172,12 +174,13 @@ fn road(page: &mut Page, outcome: &Outcome, time: &Time) {
     let samples = &outcome.remains.recording.samples;
     let mut curves = time.curves("Road under the front wheels");
     curves.panel(Axis::new("Height", "mm"));
-    for (corner, side) in [(0, "left"), (1, "right")] {
+    for side in Side::ALL {
+        let corner = Axle::Front.corner(side);
         let height: Vec<f64> = samples
             .iter()
             .map(|sample| 1e3 * sample.wheel[corner].road_height_m)
             .collect();
-        curves.line(side, &time.s, &height);
+        curves.line(side.key(), &time.s, &height);
     }
     page.section("Road").figure(curves);
 }
@@ -220,9 +223,9 @@ fn struts(page: &mut Page, outcome: &Outcome, time: &Time) {
         "Compression is positive; pressures are gauge. Valves 1 and 2 bypass the dampers (open: low damping), valve 3 connects the \
          0.4 l accumulator (open: soft spring).",
     );
-    for (corner, name) in CORNER_NAMES.iter().enumerate() {
+    for corner in Corner::ALL {
         let column = |value: &dyn Fn(usize) -> f64| (0..samples.len()).map(value).collect::<Vec<f64>>();
-        let mut curves = time.curves(&format!("Strut {}", name.replace('-', " ")));
+        let mut curves = time.curves(&format!("Strut {}", corner.name().replace('-', " ")));
         curves.height(620);
         curves.panel(Axis::new("Displacement", "mm"));
         curves.line(
@@ -232,9 +235,9 @@ fn struts(page: &mut Page, outcome: &Outcome, time: &Time) {
         );
         time.mark(&mut curves);
         curves.panel(Axis::new("Pressure", "MPa"));
-        for place in 0..4 {
-            let pressure = column(&|i| 1e-6 * samples[i].strut[corner].pressure_pa[place]);
-            curves.line(&format!("p{}", place + 1), &time.s, &pressure);
+        for point in PressurePoint::ALL {
+            let pressure = column(&|i| 1e-6 * samples[i].strut[corner].pressure_pa[point.index()]);
+            curves.line(point.key(), &time.s, &pressure);
         }
         curves.panel(Axis::new("Force", "kN"));
         curves.line("force", &time.s, &column(&|i| 1e-3 * samples[i].strut[corner].force_n));
@@ -244,9 +247,10 @@ fn struts(page: &mut Page, outcome: &Outcome, time: &Time) {
                 .ticks([(0.0, "valve 1"), (1.5, "valve 2"), (3.0, "valve 3")])
                 .range(-0.3, 4.3),
         );
-        for valve in 0..3 {
-            let open = column(&|i| 1.5 * valve as f64 + f64::from(u8::from(samples[i].energised.valve(corner, valve))));
-            curves.series(Style::Step, &format!("valve {}", valve + 1), &time.s, &open);
+        for valve in Valve::ALL {
+            let label = 1.5 * valve.index() as f64;
+            let open = column(&|i| label + f64::from(u8::from(samples[i].energised.is_open(corner, valve))));
+            curves.series(Style::Step, &format!("valve {}", valve.number()), &time.s, &open);
         }
         page.figure(curves);
     }
@@ -302,12 +306,13 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
         ]);
     }
     page.table(table);
-    let valves = ["1", "2", "3"];
-    let names = CORNER_NAMES
-        .iter()
-        .flat_map(|corner| valves.iter().map(move |valve| format!("{corner} {valve}")));
-    let names: Vec<String> = names.collect();
-    let edges: Vec<f64> = summary.valve_switches.iter().map(|edges| *edges as f64).collect();
+    let (mut names, mut edges) = (Vec::new(), Vec::new());
+    for (corner, strut) in metrics.valve_switches.iter() {
+        for (valve, count) in strut.iter() {
+            names.push(format!("{} {}", corner.name(), valve.number()));
+            edges.push(*count as f64);
+        }
+    }
     let mut bars = Bars::new(
         "Valve switches",
         names.iter().map(String::as_str),

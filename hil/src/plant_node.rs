@@ -7,13 +7,15 @@
 use std::time::Duration;
 
 use oleo_controller::can::PlantEnd;
+use oleo_interface::tick::TICK_S;
+use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
 
 use crate::Frame;
 use crate::bus::{Bus, BusError, FaultInjector, Trace};
 use crate::instruments::{Instruments, OutputStage};
 use crate::record::{Recording, Sample};
-use crate::scenario::{Scenario, TICK_S};
+use crate::scenario::Scenario;
 use crate::sync::{Role, Sync};
 
 /// What ended the wait for the controller.
@@ -83,10 +85,9 @@ impl<B: Bus> PlantNode<B> {
     /// Begins a tick: sends what the sensors say.
     pub fn send_sensors(&mut self) -> Result<(), BusError> {
         self.bus.begin_tick(self.tick);
-        let displacement_m = self.vehicle.strut_displacement_m();
-        let inputs = self
-            .instruments
-            .read(self.tick, displacement_m, self.vehicle.strut_output());
+        let displacement_m = Corners::from_array(self.vehicle.strut_displacement_m());
+        let struts = Corners::from_array(self.vehicle.strut_output());
+        let inputs = self.instruments.read(self.tick, displacement_m, struts);
         for frame in self.end.encode(self.tick as u16, &inputs) {
             self.bus.send(&frame.into())?;
         }
@@ -138,13 +139,13 @@ impl<B: Bus> PlantNode<B> {
         self.recording.samples.push(Sample {
             station_m: self.vehicle.station_m(),
             body: self.vehicle.body(),
-            displacement_m: self.vehicle.strut_displacement_m(),
-            strut: self.vehicle.strut_output(),
-            wheel: self.vehicle.wheels(),
+            displacement_m: Corners::from_array(self.vehicle.strut_displacement_m()),
+            strut: Corners::from_array(self.vehicle.strut_output()),
+            wheel: Corners::from_array(self.vehicle.wheels()),
             command: self.output.command(),
             energised,
         });
-        let signals = energised.corners();
+        let signals = energised.corners().map(StrutValves::into_array).into_array();
         for _ in 0..self.steps_per_tick {
             self.vehicle.step(signals);
             let felt = self

@@ -5,8 +5,8 @@
 
 use crc::{CRC_64_XZ, Crc};
 use oleo_controller::can::{COMMAND, CommandMessage, STATUS, StatusMessage};
-use oleo_controller::valves::{CORNERS, VALVES, ValveCommand};
-use oleo_controller::{FaultCode, Mode};
+use oleo_controller::{FaultCode, Mode, ValveCommand};
+use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::strut::StrutOutput;
 use oleo_plant_sim::vehicle::{BodyMotion, WheelMotion};
 
@@ -20,11 +20,11 @@ pub struct Sample {
     /// Sprung mass.
     pub body: BodyMotion,
     /// Strut displacement, m, compression positive.
-    pub displacement_m: [f64; CORNERS],
+    pub displacement_m: Corners<f64>,
     /// Force and pressures.
-    pub strut: [StrutOutput; CORNERS],
+    pub strut: Corners<StrutOutput>,
     /// Wheels, with the road under them.
-    pub wheel: [WheelMotion; CORNERS],
+    pub wheel: Corners<WheelMotion>,
     /// What the output stage was told (after its check and watchdog).
     pub command: ValveCommand,
     /// Where the valves' signals were (stuck ones included).
@@ -57,16 +57,18 @@ impl Recording {
         self.samples.iter().map(|sample| sample.command.word())
     }
 
-    /// Edges of each valve signal, in the order of the word's bits. Before the first tick all are closed.
-    pub fn valve_switches(&self) -> [u64; CORNERS * VALVES] {
-        let mut edges = [0; CORNERS * VALVES];
-        let mut before = 0;
+    /// Edges of each valve signal. Before the first tick all are closed.
+    pub fn valve_switches(&self) -> Corners<StrutValves<u64>> {
+        let mut edges = Corners::<StrutValves<u64>>::default();
+        let mut before = ValveCommand::SAFE;
         for sample in &self.samples {
-            let word = sample.energised.word();
-            for (bit, count) in edges.iter_mut().enumerate() {
-                *count += u64::from((word ^ before) >> bit & 1);
+            let changed = ValveCommand::from_word(sample.energised.word() ^ before.word());
+            for (corner, strut) in edges.iter_mut() {
+                for (valve, changed) in changed.strut(corner).iter() {
+                    strut[valve] += u64::from(*changed);
+                }
             }
-            before = word;
+            before = sample.energised;
         }
         edges
     }

@@ -223,13 +223,9 @@ impl<T> Corners<T> {
 impl<T> Index<Corner> for Corners<T> {
     type Output = T;
     fn index(&self, corner: Corner) -> &T {
-        let [front_left, front_right, rear_left, rear_right] = &self.0;
-        match corner {
-            Corner::FrontLeft => front_left,
-            Corner::FrontRight => front_right,
-            Corner::RearLeft => rear_left,
-            Corner::RearRight => rear_right,
-        }
+        // Faster than a match. There is a value for every corner, so the compiler leaves out the other case.
+        let [first, ..] = &self.0;
+        self.0.get(corner.index()).unwrap_or(first)
     }
 }
 

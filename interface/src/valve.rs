@@ -109,6 +109,13 @@ impl<T> StrutValves<T> {
         StrutValves(self.0.map(function))
     }
 
+    /// The value of this and of another for each valve, as pairs.
+    pub fn zip<U>(self, other: StrutValves<U>) -> StrutValves<(T, U)> {
+        let [a, b, c] = self.0;
+        let [d, e, f] = other.0;
+        StrutValves([(a, d), (b, e), (c, f)])
+    }
+
     /// Valve and value, in the order of [`Valve::ALL`].
     pub fn iter(&self) -> impl Iterator<Item = (Valve, &T)> {
         Valve::ALL.into_iter().zip(&self.0)

@@ -10,8 +10,9 @@ use oleo_hil::metrics::Metrics;
 use oleo_hil::output::{self, Summary};
 use oleo_hil::record::{command_hash, fault_name, mode_name};
 use oleo_hil::run::{self, ControllerOutcome, Outcome, Plant};
-use oleo_hil::scenario::{self, Clock, Scenario, TICK_S};
+use oleo_hil::scenario::{self, Clock, Scenario};
 use oleo_hil::{page, sync::Role};
+use oleo_interface::tick::TICK_S;
 use oleo_report::{Column, OutputDirectory, Progress, Table, interrupt::Graceful, significant};
 
 use crate::failure::Failure;

@@ -8,7 +8,7 @@
 //!   C = g + 8 n + 13 + floor((g + 8 n - 1) / 4)        135 bits for n = 8
 //! ```
 
-use super::{Contract, MESSAGES};
+use super::contract::{Contract, MESSAGES};
 
 /// Bit rates this bus is meant for, bit/s.
 pub const BIT_RATES: [u32; 2] = [500_000, 1_000_000];

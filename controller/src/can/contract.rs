@@ -4,7 +4,11 @@
 //! Identifiers are priorities on CAN: the command comes first (it can only make things safer in time), then the sensors in the order in which
 //! the controller needs them, status last.
 
-use crate::timing::TICK_MS;
+use oleo_interface::tick::TICK_MS;
+use oleo_interface::{Axle, Axles, Corner, Corners};
+
+use super::frame::FRAME_BYTES;
+use crate::sensor_message::SensorMessage;
 
 /// The agreement about one message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,7 +42,7 @@ const fn contract(number: u16, name: &'static str, id: u16, period_ms: u32) -> C
     Contract {
         name,
         id,
-        length: super::FRAME_BYTES,
+        length: FRAME_BYTES,
         period_ms,
         data_ids,
         max_delta: 3,
@@ -46,19 +50,19 @@ const fn contract(number: u16, name: &'static str, id: u16, period_ms: u32) -> C
     }
 }
 
-/// Pressures p1 to p4 of one strut, one message a corner.
-pub const PRESSURE: [Contract; 4] = [
+/// Pressures p1 to p4 of the strut at each corner.
+pub const PRESSURE: Corners<Contract> = Corners::from_array([
     contract(0, "PRESSURE_FRONT_LEFT", 0x110, TICK_MS),
     contract(1, "PRESSURE_FRONT_RIGHT", 0x111, TICK_MS),
     contract(2, "PRESSURE_REAR_LEFT", 0x112, TICK_MS),
     contract(3, "PRESSURE_REAR_RIGHT", 0x113, TICK_MS),
-];
+]);
 
-/// Displacements of the two struts of an axle and the sender's tick: front, rear.
-pub const DISPLACEMENT: [Contract; 2] = [
+/// Displacements of the two struts of each axle, and the sender's tick.
+pub const DISPLACEMENT: Axles<Contract> = Axles::new(
     contract(4, "DISPLACEMENT_FRONT", 0x114, TICK_MS),
     contract(5, "DISPLACEMENT_REAR", 0x115, TICK_MS),
-];
+);
 
 /// The valve command, controller to output stage.
 pub const COMMAND: Contract = contract(6, "COMMAND", 0x0A0, TICK_MS);
@@ -66,31 +70,60 @@ pub const COMMAND: Contract = contract(6, "COMMAND", 0x0A0, TICK_MS);
 /// The controller's state, for people and loggers.
 pub const STATUS: Contract = contract(7, "STATUS", 0x300, 100);
 
-/// What the controller listens to, in sending order. The last one completes a set of one tick.
-pub const SENSOR_MESSAGES: [Contract; 6] = [
-    PRESSURE[0],
-    PRESSURE[1],
-    PRESSURE[2],
-    PRESSURE[3],
-    DISPLACEMENT[0],
-    DISPLACEMENT[1],
-];
+/// Everything on the bus: what sensors send, in sending order, then the controller's two messages.
+pub const MESSAGES: [Contract; 8] = {
+    let [front_left, front_right, rear_left, rear_right] = *PRESSURE.as_array();
+    [
+        front_left,
+        front_right,
+        rear_left,
+        rear_right,
+        DISPLACEMENT.front,
+        DISPLACEMENT.rear,
+        COMMAND,
+        STATUS,
+    ]
+};
 
-/// Everything on the bus.
-pub const MESSAGES: [Contract; 8] = [
-    PRESSURE[0],
-    PRESSURE[1],
-    PRESSURE[2],
-    PRESSURE[3],
-    DISPLACEMENT[0],
-    DISPLACEMENT[1],
-    COMMAND,
-    STATUS,
-];
+impl SensorMessage {
+    /// The agreement about this message.
+    pub const fn contract(self) -> Contract {
+        let [front_left, front_right, rear_left, rear_right] = *PRESSURE.as_array();
+        match self {
+            Self::Pressure(Corner::FrontLeft) => front_left,
+            Self::Pressure(Corner::FrontRight) => front_right,
+            Self::Pressure(Corner::RearLeft) => rear_left,
+            Self::Pressure(Corner::RearRight) => rear_right,
+            Self::Displacement(Axle::Front) => DISPLACEMENT.front,
+            Self::Displacement(Axle::Rear) => DISPLACEMENT.rear,
+        }
+    }
+}
+
+/// The sensor message with an identifier, if there is one.
+pub fn sensor_message(id: u16) -> Option<SensorMessage> {
+    SensorMessage::ALL
+        .into_iter()
+        .find(|message| message.contract().id == id)
+}
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn identifiers_lead_to_sensor_messages() {
+        for message in SensorMessage::ALL {
+            assert_eq!(sensor_message(message.contract().id), Some(message));
+        }
+        assert_eq!(sensor_message(COMMAND.id), None);
+        assert!(
+            MESSAGES
+                .iter()
+                .zip(SensorMessage::ALL)
+                .all(|(contract, message)| *contract == message.contract())
+        );
+    }
 
     #[test]
     fn data_ids_tell_messages_and_counters_apart() {

@@ -10,8 +10,10 @@
 //!   CRC = CRC8H2F( byte 1 .. byte 7, data_ids[counter] )
 //! ```
 
-use super::{Contract, FRAME_BYTES};
 use crc::{CRC_8_AUTOSAR, Crc};
+
+use super::contract::Contract;
+use super::frame::FRAME_BYTES;
 
 /// CRC8H2F, by a table of 256 bytes.
 const CRC8H2F: Crc<u8> = Crc::<u8>::new(&CRC_8_AUTOSAR);

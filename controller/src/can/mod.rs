@@ -13,24 +13,14 @@
 //! ```
 
 pub mod bus_load;
-pub mod contract;
-pub mod e2e;
-pub mod plant_end;
+mod contract;
+mod e2e;
+mod frame;
+mod plant_end;
 pub mod signals;
 
-pub use contract::{COMMAND, Contract, DISPLACEMENT, MESSAGES, PRESSURE, SENSOR_MESSAGES, STATUS};
+pub use contract::{COMMAND, Contract, DISPLACEMENT, MESSAGES, PRESSURE, STATUS, sensor_message};
 pub use e2e::{CheckStatus, Checker, Protector};
+pub use frame::{FRAME_BYTES, Frame};
 pub use plant_end::PlantEnd;
 pub use signals::{CommandMessage, DisplacementMessage, PressureMessage, StatusMessage};
-
-/// Bytes of every frame of this bus.
-pub const FRAME_BYTES: usize = 8;
-
-/// A data frame of this bus: 11-bit identifier and eight bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Frame {
-    /// Standard identifier.
-    pub id: u16,
-    /// Protected payload.
-    pub data: [u8; FRAME_BYTES],
-}

@@ -4,9 +4,12 @@
 //! number, so packing is shifts of a `u64` and cannot overlap unnoticed. Raw values that are reserved for "no value" come
 //! out as [`Reading::INVALID`], and a value outside the range of its signal goes in as an error, never as a clipped number.
 
-use super::FRAME_BYTES;
+use oleo_interface::StrutPressures;
+
+use super::frame::FRAME_BYTES;
 use crate::failsafe::{FaultCode, Mode};
-use crate::reading::{MessageSet, Reading};
+use crate::reading::Reading;
+use crate::sensor_message::MessageSet;
 use crate::valves::ValveCommand;
 
 /// Step of a pressure signal, Pa.
@@ -79,14 +82,14 @@ fn acceleration_to_raw(acceleration_m_s2: f32) -> u64 {
 /// Pressures p1 to p4 of one strut, gauge, Pa. Resolution 5 kPa (9.8 N on the 50 mm piston).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PressureMessage {
-    /// p1 to p4.
-    pub pressure: [Reading; 4],
+    /// Readings at the four points.
+    pub pressure: StrutPressures<Reading>,
 }
 
 impl PressureMessage {
     /// Payload, unprotected.
     pub fn encode(&self) -> [u8; FRAME_BYTES] {
-        let [p1, p2, p3, p4] = self.pressure.map(pressure_to_raw);
+        let StrutPressures { p1, p2, p3, p4 } = self.pressure.map(pressure_to_raw);
         (p1 << 12 | p2 << 25 | p3 << 38 | p4 << 51).to_le_bytes()
     }
 
@@ -94,7 +97,13 @@ impl PressureMessage {
     pub fn decode(data: &[u8; FRAME_BYTES]) -> Self {
         let bits = u64::from_le_bytes(*data);
         Self {
-            pressure: [12, 25, 38, 51].map(|start| pressure_from_raw(field(bits, start, 13))),
+            pressure: StrutPressures {
+                p1: 12,
+                p2: 25,
+                p3: 38,
+                p4: 51,
+            }
+            .map(|start| pressure_from_raw(field(bits, start, 13))),
         }
     }
 }
@@ -188,7 +197,7 @@ pub struct StatusMessage {
     pub vertical_rms_m_s2: f32,
     /// Readings that are invalid at present, 0 to 20.
     pub invalid_readings: u8,
-    /// Sensor messages whose contract is broken, bits as [`crate::Inputs::lost_messages`].
+    /// Sensor messages that are late or not trusted, see [`crate::Inputs::lost_messages`].
     pub lost_messages: MessageSet,
 }
 
@@ -202,7 +211,7 @@ impl StatusMessage {
             | acceleration_to_raw(self.lateral_rms_m_s2) << 28
             | acceleration_to_raw(self.vertical_rms_m_s2) << 38
             | u64::from(self.invalid_readings.min(31)) << 48
-            | u64::from(self.lost_messages & 0x3F) << 53;
+            | u64::from(self.lost_messages.bits()) << 53;
         bits.to_le_bytes()
     }
 
@@ -217,7 +226,7 @@ impl StatusMessage {
             lateral_rms_m_s2: field(bits, 28, 10) as u16 as f32 * ACCELERATION_STEP_M_S2,
             vertical_rms_m_s2: field(bits, 38, 10) as u16 as f32 * ACCELERATION_STEP_M_S2,
             invalid_readings: field(bits, 48, 5) as u8,
-            lost_messages: field(bits, 53, 6) as u8,
+            lost_messages: MessageSet::from_bits(field(bits, 53, 6) as u8),
         })
     }
 }

@@ -12,13 +12,12 @@
 //! is expected within 25 mm (gas 30 K warmer: 10 % of 0.255 m); 40 mm for 40 ticks condemns the displacement reading. A charge outside
 //! 0.3 to 15 MPa is not a suspension.
 
-use super::{Verdicts, blame};
+use oleo_interface::{Absolute, Gauge, StrutPressures};
+
+use super::verdict::{Verdicts, blame};
 use crate::configuration::Configuration;
 use crate::failsafe::FaultCode;
 use crate::filter::at_least;
-
-/// Standard atmosphere, Pa.
-pub const ATMOSPHERE_PA: f32 = 101_325.0;
 
 const WRONG_M: f32 = 0.04;
 const CONFIRM_TICKS: u8 = 40;
@@ -37,22 +36,22 @@ pub struct OilBalance {
 }
 
 impl OilBalance {
-    /// One tick; returns the charge pressure, Pa absolute.
+    /// One tick; returns the charge pressure.
     pub fn step(
         &mut self,
         c: &Configuration,
         displacement_m: f32,
-        &[_, p2, _, p4]: &[f32; 4],
+        pressure: &StrutPressures<Gauge<f32>>,
         learning: bool,
         verdict: &mut Verdicts,
-    ) -> f32 {
-        let [_, f2, _, f4] = verdict.pressure;
-        let measured = [verdict.displacement, f2, f4]
+    ) -> Absolute<f32> {
+        let measured = [verdict.displacement, verdict.pressure.p2, verdict.pressure.p4]
             .iter()
             .all(|&fault| fault == FaultCode::None);
         if measured {
             let [v1, v2] = c.gas_volume_m3;
-            let s = v1 / at_least(p2 + ATMOSPHERE_PA, LEAST_PA) + v2 / at_least(p4 + ATMOSPHERE_PA, LEAST_PA);
+            let least = |p: Gauge<f32>| at_least(p.absolute().pa(), LEAST_PA);
+            let s = v1 / least(pressure.p2) + v2 / least(pressure.p4);
             let now_pa = (v1 + v2 - c.piston_area_m2 * displacement_m) / s;
             if !self.started {
                 self.started = true;
@@ -81,6 +80,6 @@ impl OilBalance {
         if self.flagged {
             blame(&mut verdict.displacement, FaultCode::OilBalance);
         }
-        self.charge_pa
+        Absolute(self.charge_pa)
     }
 }

@@ -3,19 +3,12 @@
 //! A single bad sample is bridged with the last good one; three in a row (or three bad for every nine good) make the reading faulty,
 //! and it takes twelve good ones more than bad to be believed again: a counter that goes up by 4 and down by 1.
 
+use super::limits::Limits;
 use crate::failsafe::FaultCode;
 use crate::reading::Reading;
 
 const UP: u8 = 4;
 const LIMIT: u8 = 12;
-
-/// Range, and largest change within a tick, in the reading's unit.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits {
-    pub least: f32,
-    pub most: f32,
-    pub step: f32,
-}
 
 /// State of the check. Starts as faulty: a sensor is believed after it has delivered.
 #[derive(Clone, Copy, Debug)]

@@ -11,10 +11,12 @@
 //!
 //! Two windows, 200 ticks, at the most from freezing to verdict. A window in which the reading moves clears it.
 
-use super::{Context, Trusted, Verdicts, blame};
+use oleo_interface::{Corners, PressurePoint, StrutPressures};
+
+use super::trusted::Trusted;
+use super::verdict::{Verdicts, blame};
 use crate::failsafe::FaultCode;
 use crate::timing::ticks;
-use crate::valves::CORNERS;
 
 const WINDOW_TICKS: u16 = ticks(500);
 
@@ -54,17 +56,17 @@ impl Span {
 #[derive(Clone, Copy, Debug)]
 struct CornerWindow {
     displacement: Span,
-    pressure: [Span; 4],
+    pressure: StrutPressures<Span>,
     spring_open: bool,
     displacement_stuck: bool,
-    pressure_stuck: [bool; 4],
+    pressure_stuck: StrutPressures<bool>,
 }
 
 /// Windows of all corners; they end in the same tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Stuck {
     ticks: u16,
-    corners: [CornerWindow; CORNERS],
+    corners: Corners<CornerWindow>,
     /// Any reading of any corner is found stuck: spares the usual tick the look.
     any: bool,
 }
@@ -73,40 +75,34 @@ impl Default for Stuck {
     fn default() -> Self {
         let corner = CornerWindow {
             displacement: Span::EMPTY,
-            pressure: [Span::EMPTY; 4],
+            pressure: StrutPressures::splat(Span::EMPTY),
             spring_open: true,
             displacement_stuck: false,
-            pressure_stuck: [false; 4],
+            pressure_stuck: StrutPressures::splat(false),
         };
         Self {
             ticks: 0,
-            corners: [corner; CORNERS],
+            corners: Corners::splat(corner),
             any: false,
         }
     }
 }
 
 impl Stuck {
-    /// One tick.
-    pub fn step(&mut self, trusted: &Trusted, context: &Context, verdicts: &mut [Verdicts; CORNERS]) {
-        for ((((window, x), pressures), open), verdict) in self
-            .corners
-            .iter_mut()
-            .zip(trusted.displacement_m)
-            .zip(trusted.pressure_pa)
-            .zip(context.spring_settled_open)
-            .zip(&*verdicts)
-        {
+    /// One tick. `spring_settled_open`: valve 3 has been open for long enough that p4 follows.
+    pub fn step(&mut self, trusted: &Trusted, spring_settled_open: Corners<bool>, verdicts: &mut Corners<Verdicts>) {
+        for (corner, window) in self.corners.iter_mut() {
+            let verdict = &verdicts[corner];
             // What stands in for a reading (at first, zero) does not move with it: a parked vehicle would be called broken.
             if verdict.displacement == FaultCode::None {
-                window.displacement.add(x);
+                window.displacement.add(trusted.displacement_m[corner]);
             }
-            for ((span, pressure), &fault) in window.pressure.iter_mut().zip(pressures).zip(&verdict.pressure) {
-                if fault == FaultCode::None {
-                    span.add(pressure);
+            for point in PressurePoint::ALL {
+                if verdict.pressure[point] == FaultCode::None {
+                    window.pressure[point].add(trusted.pressure[corner][point].pa());
                 }
             }
-            window.spring_open &= open;
+            window.spring_open &= spring_settled_open[corner];
         }
         self.ticks = self.ticks.saturating_add(1);
         if self.ticks >= WINDOW_TICKS {
@@ -116,13 +112,14 @@ impl Stuck {
         if !self.any {
             return;
         }
-        for (window, verdict) in self.corners.iter().zip(verdicts) {
+        for (corner, window) in self.corners.iter() {
+            let verdict = &mut verdicts[corner];
             if window.displacement_stuck {
                 blame(&mut verdict.displacement, FaultCode::SensorStuck);
             }
-            for (&stuck, fault) in window.pressure_stuck.iter().zip(&mut verdict.pressure) {
-                if stuck {
-                    blame(fault, FaultCode::SensorStuck);
+            for (point, stuck) in window.pressure_stuck.iter() {
+                if *stuck {
+                    blame(&mut verdict.pressure[point], FaultCode::SensorStuck);
                 }
             }
         }
@@ -131,62 +128,60 @@ impl Stuck {
     fn end_of_window(&mut self) {
         let moving = self
             .corners
-            .iter()
-            .filter(|w| w.displacement.width() >= DISPLACEMENT_MOVING_M)
+            .values()
+            .filter(|window| window.displacement.width() >= DISPLACEMENT_MOVING_M)
             .count();
-        for window in &mut self.corners {
+        for window in self.corners.values_mut() {
             let x_width = window.displacement.width();
-            let [p1_width, ..] = window.pressure.map(|span| span.width());
+            let p1_width = window.pressure.p1.width();
             if x_width > DISPLACEMENT_STILL_M {
                 window.displacement_stuck = false;
             } else if p1_width >= PRESSURE_MOVING_ALONE_PA || (moving >= 2 && p1_width >= PRESSURE_MOVING_PA) {
                 window.displacement_stuck = true;
             }
-            let moves_p = x_width >= DISPLACEMENT_MOVING_M;
-            let moves_p4 = x_width >= DISPLACEMENT_MOVING_FOR_P4_M && window.spring_open;
-            for ((stuck, span), moves) in window
-                .pressure_stuck
-                .iter_mut()
-                .zip(&window.pressure)
-                .zip([moves_p, moves_p, moves_p, moves_p4])
-            {
-                if span.width() > PRESSURE_STILL_PA {
-                    *stuck = false;
-                } else if moves {
-                    *stuck = true;
+            let must_move = StrutPressures {
+                p4: x_width >= DISPLACEMENT_MOVING_FOR_P4_M && window.spring_open,
+                ..StrutPressures::splat(x_width >= DISPLACEMENT_MOVING_M)
+            };
+            for (point, must_move) in must_move.iter() {
+                if window.pressure[point].width() > PRESSURE_STILL_PA {
+                    window.pressure_stuck[point] = false;
+                } else if *must_move {
+                    window.pressure_stuck[point] = true;
                 }
             }
             window.displacement = Span::EMPTY;
-            window.pressure = [Span::EMPTY; 4];
+            window.pressure = StrutPressures::splat(Span::EMPTY);
             window.spring_open = true;
         }
-        self.any = (self.corners.iter()).any(|w| w.displacement_stuck || w.pressure_stuck.contains(&true));
+        let nothing = StrutPressures::splat(false);
+        self.any = (self.corners.values()).any(|window| window.displacement_stuck || window.pressure_stuck != nothing);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oleo_interface::Gauge;
 
     #[test]
     fn a_parked_vehicle_that_is_switched_on_is_not_stuck() {
         let mut stuck = Stuck::default();
-        let context = Context::default();
         for tick in 0..3 * WINDOW_TICKS {
             let believed = tick >= 16;
             let mut trusted = Trusted::default();
-            let mut verdicts = [Verdicts::default(); CORNERS];
+            let mut verdicts = Corners::<Verdicts>::default();
             if believed {
-                trusted.pressure_pa = [[2.0e6; 4]; CORNERS];
+                trusted.pressure = Corners::splat(StrutPressures::splat(Gauge(2.0e6)));
             } else {
-                verdicts = [Verdicts {
+                verdicts = Corners::splat(Verdicts {
                     displacement: FaultCode::SensorRange,
-                    pressure: [FaultCode::SensorRange; 4],
-                }; CORNERS];
+                    pressure: StrutPressures::splat(FaultCode::SensorRange),
+                });
             }
-            stuck.step(&trusted, &context, &mut verdicts);
+            stuck.step(&trusted, Corners::splat(false), &mut verdicts);
             let healthy = verdicts
-                .iter()
+                .values()
                 .flat_map(Verdicts::all)
                 .all(|fault| fault == FaultCode::None);
             assert_eq!(healthy, believed, "tick {tick}");

@@ -13,10 +13,12 @@ pub mod ride_handling;
 pub mod rollover;
 pub mod semi_active;
 
+use oleo_interface::StrutValves;
+
 use crate::configuration::Configuration;
 use crate::estimate::Estimate;
 use crate::plausibility::Trusted;
-use crate::valves::CORNERS;
+use crate::valves::ValveCommand;
 use ride_handling::RideHandling;
 use rollover::Rollover;
 use semi_active::SemiActive;
@@ -91,12 +93,11 @@ pub enum Urgency {
 
 /// What a strategy wants.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Wish {
-    /// Soft spring (valve 3 open), for the whole vehicle: left and right are never wanted different.
-    pub soft_spring: bool,
-    /// Low damping (valves 1 and 2 open) at each corner.
-    pub low_damping: [bool; CORNERS],
-    /// For the springs.
+pub struct Demand {
+    /// Wanted position of every valve. Valve 2 is wanted for itself: that it has no effect behind a closed valve 3 is
+    /// not the strategy's business.
+    pub valves: ValveCommand,
+    /// How much a change of springs matters.
     pub urgency: Urgency,
     /// Handling mode.
     pub handling: bool,
@@ -114,26 +115,28 @@ pub struct State {
 
 impl State {
     /// One tick.
-    pub fn step(&mut self, c: &Configuration, estimate: &Estimate, trusted: &Trusted) -> Wish {
+    pub fn step(&mut self, c: &Configuration, estimate: &Estimate, trusted: &Trusted) -> Demand {
         match c.strategy {
-            Strategy::AlwaysSoft => Wish {
-                soft_spring: true,
-                low_damping: [true; CORNERS],
-                ..Wish::default()
+            Strategy::AlwaysSoft => Demand {
+                valves: ValveCommand::SOFT,
+                ..Demand::default()
             },
-            Strategy::AlwaysStiff => Wish {
+            Strategy::AlwaysStiff => Demand {
                 urgency: Urgency::Handling,
                 handling: true,
-                ..Wish::default()
+                ..Demand::default()
             },
             Strategy::RideHandling => {
                 let rollover_guard = self.guard.step(c, estimate);
                 let handling = self.mode.step(c, estimate);
                 let low_damping = self.dampers.step(c, estimate, trusted);
                 let stiff = handling || rollover_guard;
-                Wish {
-                    soft_spring: !stiff,
-                    low_damping: if stiff { [false; CORNERS] } else { low_damping },
+                Demand {
+                    valves: if stiff {
+                        ValveCommand::SAFE
+                    } else {
+                        ValveCommand::from_corners(low_damping.map(|low| StrutValves::new(low, low, true)))
+                    },
                     urgency: if rollover_guard {
                         Urgency::Emergency
                     } else if handling {

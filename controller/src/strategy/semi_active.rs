@@ -16,12 +16,13 @@
 //! the running RMS of the vertical acceleration: a body that swings at 1.5 Hz has `v = a / 9.4 s`, so where the velocity is much less
 //! than that the acceleration comes from the wheels, and high damping would only pass on more of it.
 
+use oleo_interface::Corners;
+
 use super::DamperPolicy;
 use crate::configuration::Configuration;
 use crate::estimate::Estimate;
 use crate::filter::at_least;
 use crate::plausibility::Trusted;
-use crate::valves::CORNERS;
 
 /// Square of the body velocity below which Karnopp's rule is not asked, m2/s2.
 const LEAST_VELOCITY_2: f32 = 0.08 * 0.08;
@@ -35,30 +36,30 @@ const NEAR_STOP_M: (f32, f32) = (0.06, 0.11);
 /// State of the four corners.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SemiActive {
-    speed_m_s: [f32; CORNERS],
-    acceleration_m_s2: [f32; CORNERS],
-    high: [bool; CORNERS],
+    corners: Corners<Corner>,
+}
+
+/// State of one corner.
+#[derive(Clone, Copy, Debug, Default)]
+struct Corner {
+    speed_m_s: f32,
+    acceleration_m_s2: f32,
+    high: bool,
 }
 
 impl SemiActive {
     /// One tick; low damping wanted, by corner.
-    pub fn step(&mut self, c: &Configuration, estimate: &Estimate, trusted: &Trusted) -> [bool; CORNERS] {
-        for ((((((lagged, lagged_acceleration), high), speed), velocity), acceleration), x) in self
-            .speed_m_s
-            .iter_mut()
-            .zip(&mut self.acceleration_m_s2)
-            .zip(&mut self.high)
-            .zip(estimate.strut_speed_m_s)
-            .zip(estimate.corner_velocity_m_s)
-            .zip(estimate.corner_acceleration_m_s2)
-            .zip(trusted.displacement_m)
-        {
-            let extension = -c.body_band.step(lagged, speed);
-            let body_acceleration = c.body_band.step(lagged_acceleration, acceleration);
+    pub fn step(&mut self, c: &Configuration, estimate: &Estimate, trusted: &Trusted) -> Corners<bool> {
+        for (corner, state) in self.corners.iter_mut() {
+            let speed = estimate.strut_speed_m_s[corner];
+            let extension = -c.body_band.step(&mut state.speed_m_s, speed);
+            let body_acceleration = c
+                .body_band
+                .step(&mut state.acceleration_m_s2, estimate.corner_acceleration_m_s2[corner]);
             let (body, least_2) = match c.damper_policy {
                 DamperPolicy::Low => (0.0, f32::MAX),
                 DamperPolicy::Karnopp => (
-                    velocity,
+                    estimate.corner_velocity_m_s[corner],
                     at_least(
                         c.body_velocity_share_2 * estimate.vertical_mean_square,
                         LEAST_VELOCITY_2,
@@ -72,18 +73,19 @@ impl SemiActive {
                     ),
                 ),
             };
+            let x = trusted.displacement_m[corner];
             let (jounce, rebound) = NEAR_STOP_M;
             let near_stop = (x > jounce && speed > 0.0) || (x < -rebound && speed < 0.0);
             let opposes = if body < 0.0 { -extension } else { extension };
             if near_stop {
-                *high = true;
+                state.high = true;
             } else if body * body < least_2 || opposes < -DEAD_BAND_M_S {
-                *high = false;
+                state.high = false;
             } else if opposes > DEAD_BAND_M_S {
-                *high = true;
+                state.high = true;
             }
         }
-        self.high.map(|high| !high)
+        self.corners.map(|state| !state.high)
     }
 }
 
@@ -94,22 +96,23 @@ mod tests {
     fn settled(policy: DamperPolicy, extension_m_s: f32, velocity: f32, acceleration: f32, x_m: f32) -> bool {
         let c = Configuration::defender110().with_damper_policy(policy);
         let estimate = Estimate {
-            strut_speed_m_s: [-extension_m_s; 4],
-            corner_velocity_m_s: [velocity; 4],
-            corner_acceleration_m_s2: [acceleration; 4],
+            strut_speed_m_s: Corners::splat(-extension_m_s),
+            corner_velocity_m_s: Corners::splat(velocity),
+            corner_acceleration_m_s2: Corners::splat(acceleration),
             ..Estimate::default()
         };
         let trusted = Trusted {
-            displacement_m: [x_m; 4],
+            displacement_m: Corners::splat(x_m),
             ..Trusted::default()
         };
         let mut state = SemiActive::default();
-        let mut low = [false; 4];
+        let mut low = Corners::splat(false);
         for _ in 0..100 {
             low = state.step(&c, &estimate, &trusted);
         }
-        assert!(low.iter().all(|&l| l == low[0]));
-        !low[0]
+        let [one, ..] = low.into_array();
+        assert_eq!(low, Corners::splat(one));
+        !one
     }
 
     #[test]

@@ -3,12 +3,13 @@
 use std::time::{Duration, Instant};
 
 use oleo_controller::Mode;
+use oleo_interface::tick::TICK_S;
 
 use super::{TICK, guard};
 use crate::bus::{Bus, BusError};
 use crate::clock::{Lateness, RealTime};
 use crate::controller_node::{ControllerNode, Heard};
-use crate::scenario::{Scenario, TICK_S};
+use crate::scenario::Scenario;
 
 /// Ticks that a controller without a plant may take to reach a safe mode before it gives up counting.
 const RUN_DOWN_TICKS: u32 = 1000;

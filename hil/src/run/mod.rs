@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 
 use oleo_controller::strategy::Strategy;
 use oleo_controller::{Configuration, FaultCode, Mode};
+use oleo_interface::tick::{TICK_MS, TICK_S};
 use oleo_plant_sim::road;
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
@@ -27,7 +28,7 @@ use crate::clock::Lateness;
 use crate::controller_node::{ControllerNode, Heard};
 use crate::plant_node::{PlantNode, PlantRemains};
 use crate::scenario::file::DEFENDER;
-use crate::scenario::{Clock, Scenario, TICK_S};
+use crate::scenario::{Clock, Scenario};
 use crate::sync::{HandshakeError, Role, Terms, handshake};
 
 /// Why a run did not come about.
@@ -85,7 +86,7 @@ pub type Watch<'a> = &'a mut dyn FnMut(u32) -> bool;
 const PATIENCE: Duration = Duration::from_secs(60);
 /// Between the plant's deadline and the controller's in real time.
 const CONTROLLER_PHASE: Duration = Duration::from_micros(2500);
-const TICK: Duration = Duration::from_millis(oleo_controller::timing::TICK_MS as u64);
+const TICK: Duration = Duration::from_millis(TICK_MS as u64);
 
 /// The plant's parts, made before the clock starts.
 pub struct Plant {

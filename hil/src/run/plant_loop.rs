@@ -2,11 +2,13 @@
 
 use std::time::{Duration, Instant};
 
+use oleo_interface::tick::TICK_S;
+
 use super::{Outcome, RunError, TICK, Watch, guard};
 use crate::bus::{Bus, BusError};
 use crate::clock::{Lateness, RealTime};
 use crate::plant_node::{Answer, PlantNode};
-use crate::scenario::{OnControllerLoss, Scenario, TICK_S};
+use crate::scenario::{OnControllerLoss, Scenario};
 use crate::sync::Role;
 
 /// Ticks between two calls of [`Watch`].

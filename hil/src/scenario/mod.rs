@@ -11,17 +11,12 @@ pub mod file;
 use std::path::Path;
 
 use oleo_controller::strategy::{DamperPolicy, Strategy};
+use oleo_interface::tick::TICK_S;
 
 use crate::bus::BusAddress;
 pub use check::{Check, Comparison};
 pub use fault::{Fault, FaultKind};
 pub use file::ScenarioError;
-
-/// Tick of the controller, s, as the plant's clock counts it.
-pub const TICK_S: f64 = oleo_controller::timing::TICK_MS as f64 * 1e-3;
-
-/// Tick of the controller, microseconds.
-pub const TICK_US: u32 = oleo_controller::timing::TICK_MS * 1000;
 
 /// How time passes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

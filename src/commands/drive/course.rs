@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use oleo_interface::tick::TICK_S;
+use oleo_interface::{Axle, Corner, Corners};
 use oleo_plant_sim::handling::{
     Ending, HandlingModel, HandlingParameters, HandlingVehicle, Manoeuvre, Run, Sample, Track,
 };
@@ -13,8 +15,6 @@ use super::suspension::{Valves, struts};
 use super::{Args, Kind, Model, Setting};
 use crate::failure::Failure;
 
-/// Samples are taken at the controller's tick, s.
-const TICK_S: f64 = 0.005;
 /// Time before a step of steer, s.
 const STEP_AT_S: f64 = 1.0;
 
@@ -117,12 +117,11 @@ impl Course {
     }
 
     fn coils(&self) -> [CoilElement; 4] {
-        let load = self.vehicle.static_strut_load_n();
-        core::array::from_fn(|corner| {
-            let axle = if corner < 2 {
-                &self.vehicle.front_baseline
-            } else {
-                &self.vehicle.rear_baseline
+        let load = Corners::from_array(self.vehicle.static_strut_load_n());
+        Corner::ALL.map(|corner| {
+            let axle = match corner.axle() {
+                Axle::Front => &self.vehicle.front_baseline,
+                Axle::Rear => &self.vehicle.rear_baseline,
             };
             CoilElement::new(axle, load[corner])
         })

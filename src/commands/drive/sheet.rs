@@ -2,6 +2,10 @@
 
 use std::io::Write as _;
 
+use oleo_controller::ValveCommand;
+use oleo_interface::Corner::{FrontLeft, FrontRight, RearLeft, RearRight};
+use oleo_interface::tick::TICK_S;
+use oleo_interface::{Axle, Side};
 use oleo_plant_sim::handling::{Ending, Manoeuvre, Run, Sample};
 use oleo_plant_sim::measures::RideMeter;
 use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Style, Table, significant};
@@ -18,9 +22,8 @@ type Named<'a> = (&'a str, &'a str, f64, &'a str);
 
 /// Measures of one run: key, words, value, unit.
 fn measures(course: &Course, run: &Run) -> Vec<(&'static str, &'static str, f64, &'static str)> {
-    let interval_s = 0.005;
     let meter = |of: fn(&Sample) -> f64| {
-        let mut meter = RideMeter::new(interval_s);
+        let mut meter = RideMeter::new(TICK_S);
         run.history.iter().for_each(|sample| meter.add(of(sample)));
         meter.measures()
     };
@@ -216,22 +219,29 @@ const COLUMNS: [(&str, Signal); 32] = [
     ("passenger_seat_m_s2", |s| s.passenger_seat_m_s2),
     ("front_axle_heave_m", |s| s.front_axle_heave_m),
     ("front_axle_roll_rad", |s| s.front_axle_roll_rad),
-    ("wheel_load_fl_N", |s| s.wheel_load_n[0]),
-    ("wheel_load_fr_N", |s| s.wheel_load_n[1]),
-    ("wheel_load_rl_N", |s| s.wheel_load_n[2]),
-    ("wheel_load_rr_N", |s| s.wheel_load_n[3]),
-    ("strut_fl_m", |s| s.strut_displacement_m[0]),
-    ("strut_fr_m", |s| s.strut_displacement_m[1]),
-    ("strut_rl_m", |s| s.strut_displacement_m[2]),
-    ("strut_rr_m", |s| s.strut_displacement_m[3]),
-    ("strut_force_fl_N", |s| s.strut_force_n[0]),
-    ("strut_force_fr_N", |s| s.strut_force_n[1]),
-    ("strut_force_rl_N", |s| s.strut_force_n[2]),
-    ("strut_force_rr_N", |s| s.strut_force_n[3]),
+    ("wheel_load_fl_N", |s| s.wheel_load_n[FrontLeft.index()]),
+    ("wheel_load_fr_N", |s| s.wheel_load_n[FrontRight.index()]),
+    ("wheel_load_rl_N", |s| s.wheel_load_n[RearLeft.index()]),
+    ("wheel_load_rr_N", |s| s.wheel_load_n[RearRight.index()]),
+    ("strut_fl_m", |s| s.strut_displacement_m[FrontLeft.index()]),
+    ("strut_fr_m", |s| s.strut_displacement_m[FrontRight.index()]),
+    ("strut_rl_m", |s| s.strut_displacement_m[RearLeft.index()]),
+    ("strut_rr_m", |s| s.strut_displacement_m[RearRight.index()]),
+    ("strut_force_fl_N", |s| s.strut_force_n[FrontLeft.index()]),
+    ("strut_force_fr_N", |s| s.strut_force_n[FrontRight.index()]),
+    ("strut_force_rl_N", |s| s.strut_force_n[RearLeft.index()]),
+    ("strut_force_rr_N", |s| s.strut_force_n[RearRight.index()]),
     ("valve_word", |s| f64::from(s.valves)),
-    ("front_valves_open", |s| f64::from((s.valves & 0x3F).count_ones())),
-    ("rear_valves_open", |s| f64::from((s.valves >> 6).count_ones())),
+    ("front_valves_open", |s| open_valves(s, Axle::Front)),
+    ("rear_valves_open", |s| open_valves(s, Axle::Rear)),
 ];
+
+/// Number of open valves of an axle, 0 to 6.
+fn open_valves(sample: &Sample, axle: Axle) -> f64 {
+    let struts = ValveCommand::from_word(sample.valves).corners();
+    let valves = Side::ALL.map(|side| struts[axle.corner(side)].into_array());
+    valves.as_flattened().iter().filter(|open| **open).count() as f64
+}
 
 fn column(run: &Run, of: fn(&Sample) -> f64) -> Vec<f64> {
     run.history.iter().map(of).collect()
@@ -388,20 +398,20 @@ fn page(course: &Course, setting: Setting, runs: &[(&str, Run)], table: &Table, 
                 "Wheel load",
                 "N",
                 &[
-                    ("front left", |s| s.wheel_load_n[0]),
-                    ("front right", |s| s.wheel_load_n[1]),
-                    ("rear left", |s| s.wheel_load_n[2]),
-                    ("rear right", |s| s.wheel_load_n[3]),
+                    ("front left", |s| s.wheel_load_n[FrontLeft.index()]),
+                    ("front right", |s| s.wheel_load_n[FrontRight.index()]),
+                    ("rear left", |s| s.wheel_load_n[RearLeft.index()]),
+                    ("rear right", |s| s.wheel_load_n[RearRight.index()]),
                 ],
             ),
             (
                 "Displacement",
                 "m",
                 &[
-                    ("front left", |s| s.strut_displacement_m[0]),
-                    ("front right", |s| s.strut_displacement_m[1]),
-                    ("rear left", |s| s.strut_displacement_m[2]),
-                    ("rear right", |s| s.strut_displacement_m[3]),
+                    ("front left", |s| s.strut_displacement_m[FrontLeft.index()]),
+                    ("front right", |s| s.strut_displacement_m[FrontRight.index()]),
+                    ("rear left", |s| s.strut_displacement_m[RearLeft.index()]),
+                    ("rear right", |s| s.strut_displacement_m[RearRight.index()]),
                 ],
             ),
             (

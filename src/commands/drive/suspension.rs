@@ -1,6 +1,7 @@
 //! The suspension as set on the command line: fixed valves, or the controller called directly, without a bus between.
 
-use oleo_controller::{Configuration, Inputs, State, tick};
+use oleo_controller::{Configuration, Inputs, State, ValveCommand, tick};
+use oleo_interface::{Corners, Gauge, StrutPressures, StrutValves};
 use oleo_plant_sim::strut::{ModelError, Strut, StrutModel, StrutOutput};
 use oleo_plant_sim::vehicle::VehicleParameters;
 
@@ -34,17 +35,20 @@ impl Valves {
 
     /// Signals for the coming tick of 5 ms, and the valve word.
     pub fn decide(&mut self, displacement_m: [f64; 4], outputs: [StrutOutput; 4]) -> ([[bool; 3]; 4], u16) {
-        match self {
-            Self::Fixed(open) => ([[*open; 3]; 4], if *open { 0x0FFF } else { 0 }),
+        let command = match self {
+            Self::Fixed(true) => ValveCommand::SOFT,
+            Self::Fixed(false) => ValveCommand::SAFE,
             Self::Controlled { configuration, state } => {
-                let inputs = Inputs::from_values(
-                    displacement_m.map(|x| x as f32),
-                    outputs.map(|output| output.pressure_pa.map(|p| p as f32)),
-                );
-                let command = tick(configuration, state, &inputs).command;
-                (command.corners(), command.word())
+                let pressure = Corners::from_array(outputs)
+                    .map(|output| StrutPressures::from_array(output.pressure_pa).map(|p| Gauge(p as f32)));
+                let displacement_m = Corners::from_array(displacement_m).map(|x| x as f32);
+                tick(configuration, state, &Inputs::from_values(displacement_m, pressure)).command
             }
-        }
+        };
+        (
+            command.corners().map(StrutValves::into_array).into_array(),
+            command.word(),
+        )
     }
 }
 

@@ -20,17 +20,98 @@
 //! What this cannot know: a side slope looks like cornering (so it does to an accelerometer); seal friction, links, bushes and
 //! stops that press past the oil are not in p1; axle roll on the tyres is missing from `phi`. Figures in `docs/controller.md`.
 
+use oleo_interface::tick::TICKS_PER_SECOND;
 use oleo_interface::{Axles, Corners};
 
-use crate::configuration::Configuration;
-use crate::filter::{DerivativeState, at_least};
+use crate::filter::{Derivative, DerivativeState, LeakyIntegrator, LowPass, at_least};
 use crate::plausibility::Trusted;
+use crate::range::{ConfigurationError, within};
+use crate::vehicle::VehicleDescription;
 
 /// Standard gravity, m/s2 (ISO 80000-3).
 pub const GRAVITY_M_S2: f32 = 9.806_65;
 
 /// Largest lateral offset that is learnt as uneven load or sensor bias, m/s2: a long bend must not be learnt away.
 const MAX_BIAS_M_S2: f32 = 0.5;
+
+/// Corner frequency of the strut speed's differentiating filter, Hz: above wheel hop's use for valves of 40 to 90 ms, low
+/// enough for the 0.01 mm step of the displacement signal (`vehicle.md`: 15 to 20 Hz).
+const SPEED_CORNER_HZ: f32 = 18.0;
+const _: () = assert!(
+    SPEED_CORNER_HZ * 8.0 <= TICKS_PER_SECOND as f32,
+    "fastest filter: at least eight ticks a period of its corner, or its discrete form is not what was designed"
+);
+
+/// What a person may choose about the estimate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// Corner frequency of the lateral surrogate's two lags, Hz, 0.1 to 5: below the body's roll resonance.
+    pub lateral_corner_hz: f32,
+    /// Time constant of the running mean squares, s, 0.1 to 20.
+    pub running_rms_s: f32,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self {
+            lateral_corner_hz: 1.0, // vehicle.md: 0.5 to 1 Hz
+            running_rms_s: 1.0,     // recalled: Els, about 1 s
+        }
+    }
+}
+
+impl Tuning {
+    /// Whether every value is within its range.
+    pub(crate) fn check(&self) -> Result<(), ConfigurationError> {
+        within("tuning.estimate.lateral_corner_hz", self.lateral_corner_hz, 0.1, 5.0)?;
+        within("tuning.estimate.running_rms_s", self.running_rms_s, 0.1, 20.0)
+    }
+}
+
+/// Dimensions and filters, as the equations above use them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    piston_area_m2: f32,
+    half_spacing_m: Axles<f32>,
+    per_spacing: Axles<f32>,
+    axle_distance_m: Axles<f32>,
+    per_wheelbase: f32,
+    per_roll_arm: f32,
+    anti_roll_stiffness_n_m_rad: Axles<f32>,
+    per_roll_gyration_2: f32,
+    per_pitch_gyration_2: f32,
+    strut_speed: Derivative,
+    static_load: LowPass,
+    lateral: LowPass,
+    lateral_bias: LowPass,
+    running: LowPass,
+    body_velocity: LeakyIntegrator,
+}
+
+impl Parameters {
+    /// From a description and a tuning that have been checked.
+    pub(crate) fn new(vehicle: &VehicleDescription, tuning: &Tuning) -> Self {
+        let square = |x: f32| x * x;
+        let Axles { front, rear } = vehicle.axle_distance_m;
+        Self {
+            piston_area_m2: vehicle.piston_area_m2,
+            half_spacing_m: vehicle.strut_spacing_m.map(|spacing| 0.5 * spacing),
+            per_spacing: vehicle.strut_spacing_m.map(|spacing| 1.0 / spacing),
+            axle_distance_m: vehicle.axle_distance_m,
+            per_wheelbase: 1.0 / (front + rear),
+            per_roll_arm: 1.0 / vehicle.roll_arm_m,
+            anti_roll_stiffness_n_m_rad: vehicle.anti_roll_stiffness_n_m_rad,
+            per_roll_gyration_2: 1.0 / square(vehicle.roll_gyration_m),
+            per_pitch_gyration_2: 1.0 / square(vehicle.pitch_gyration_m),
+            strut_speed: Derivative::from_corner_hz(SPEED_CORNER_HZ),
+            static_load: LowPass::from_time_constant_s(20.0),
+            lateral: LowPass::from_corner_hz(tuning.lateral_corner_hz),
+            lateral_bias: LowPass::from_time_constant_s(30.0),
+            running: LowPass::from_time_constant_s(tuning.running_rms_s),
+            body_velocity: LeakyIntegrator::from_corner_hz(0.2),
+        }
+    }
+}
 
 /// Estimated motion. Body quantities are about its centre of gravity, x forward, y left, z up; struts compression positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -102,7 +183,7 @@ pub struct State {
 
 impl State {
     /// One tick from readings that may be used.
-    pub fn step(&mut self, c: &Configuration, trusted: &Trusted) -> Estimate {
+    pub fn step(&mut self, c: &Parameters, trusted: &Trusted) -> Estimate {
         let speeds = self.speed.each_mut().zip(trusted.displacement_m);
         let strut_speed_m_s = speeds.map(|(state, x)| c.strut_speed.step(state, x));
         let relative = Relative::from_struts(c, trusted.displacement_m);
@@ -177,7 +258,7 @@ struct Relative {
 }
 
 impl Relative {
-    fn from_struts(c: &Configuration, displacement: Corners<f32>) -> Self {
+    fn from_struts(c: &Parameters, displacement: Corners<f32>) -> Self {
         let struts = displacement.by_axle();
         let Axles { front: a, rear: b } = c.axle_distance_m;
         let axle_roll_rad = struts

@@ -30,6 +30,7 @@
 //! | StartUp, Safe, Latched | closed | closed |
 
 use oleo_interface::{Axles, Corners, Valve};
+use strum::{FromRepr, IntoStaticStr, VariantArray};
 
 use crate::timing::ticks;
 use crate::valves::ValveCommand;
@@ -43,105 +44,74 @@ pub const LATCH_TICKS: u16 = ticks(10_000);
 /// Entry into `Safe` that latches.
 pub const LATCH_ENTRIES: u8 = 3;
 
-/// What the controller is doing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+/// What the controller is doing. The numbers are those on the bus; in words a mode is `start-up`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, FromRepr, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "kebab-case")]
+#[repr(u8)]
 pub enum Mode {
     /// Waiting for a complete and plausible set of sensors. Valves closed.
     #[default]
-    StartUp,
+    StartUp = 0,
     /// The strategy decides.
-    Normal,
-    /// One axle's sensors are incomplete: limp. Springs stiff, dampers by strategy on the other axle.
-    Degraded,
+    Normal = 1,
+    /// One axle's sensors are incomplete: springs stiff, dampers by strategy on the other axle.
+    Degraded = 2,
     /// Valves closed; recovers when everything is healthy again.
-    Safe,
+    Safe = 3,
     /// Valves closed until restart.
-    Latched,
+    Latched = 4,
 }
 
 impl Mode {
-    /// Number on the bus.
+    /// Number on the bus, 0 to 4.
     pub const fn raw(self) -> u8 {
-        match self {
-            Self::StartUp => 0,
-            Self::Normal => 1,
-            Self::Degraded => 2,
-            Self::Safe => 3,
-            Self::Latched => 4,
-        }
+        self as u8
     }
 
-    /// From the number on the bus.
-    pub const fn from_raw(raw: u8) -> Option<Self> {
-        Some(match raw {
-            0 => Self::StartUp,
-            1 => Self::Normal,
-            2 => Self::Degraded,
-            3 => Self::Safe,
-            4 => Self::Latched,
-            _ => return None,
-        })
+    /// Name in logs, tables and scenario files.
+    pub fn name(self) -> &'static str {
+        self.into()
     }
 }
 
-/// What was found to be wrong. The first cause of leaving `Normal` (or of not reaching it) is kept until all is well.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+/// What was found to be wrong. The first cause of leaving `Normal` (or of not reaching it) is kept until all is well. The
+/// numbers are those on the bus; the graver of two faults has the higher one. In words a fault is `sensor-range`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, FromRepr, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "kebab-case")]
+#[repr(u8)]
 pub enum FaultCode {
     /// Nothing.
     #[default]
-    None,
+    None = 0,
     /// A reading is flagged by its sensor, not finite, or outside its range.
-    SensorRange,
+    SensorRange = 1,
     /// A reading changes faster than the hardware can.
-    SensorRate,
+    SensorRate = 2,
     /// A reading does not change while its neighbours do.
-    SensorStuck,
+    SensorStuck = 3,
     /// One pressure of a strut disagrees with the others at rest.
-    SensorVote,
+    SensorVote = 4,
     /// Displacement and gas volumes of a strut disagree.
-    OilBalance,
+    OilBalance = 5,
     /// A sensor message is late or not trustworthy.
-    MessageLost,
+    MessageLost = 6,
     /// No sensor message arrives any more.
-    BusSilent,
+    BusSilent = 7,
     /// A solenoid could not be switched.
-    Solenoid,
+    Solenoid = 8,
     /// The controller's own arithmetic gave no number.
-    Internal,
+    Internal = 9,
 }
 
 impl FaultCode {
-    /// Number on the bus.
+    /// Number on the bus, 0 to 9.
     pub const fn raw(self) -> u8 {
-        match self {
-            Self::None => 0,
-            Self::SensorRange => 1,
-            Self::SensorRate => 2,
-            Self::SensorStuck => 3,
-            Self::SensorVote => 4,
-            Self::OilBalance => 5,
-            Self::MessageLost => 6,
-            Self::BusSilent => 7,
-            Self::Solenoid => 8,
-            Self::Internal => 9,
-        }
+        self as u8
     }
 
-    /// From the number on the bus.
-    pub const fn from_raw(raw: u8) -> Option<Self> {
-        Some(match raw {
-            0 => Self::None,
-            1 => Self::SensorRange,
-            2 => Self::SensorRate,
-            3 => Self::SensorStuck,
-            4 => Self::SensorVote,
-            5 => Self::OilBalance,
-            6 => Self::MessageLost,
-            7 => Self::BusSilent,
-            8 => Self::Solenoid,
-            9 => Self::Internal,
-            _ => return None,
-        })
+    /// Name in logs, tables and scenario files.
+    pub fn name(self) -> &'static str {
+        self.into()
     }
 }
 

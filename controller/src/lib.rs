@@ -12,7 +12,7 @@
 #![forbid(unsafe_code)]
 
 pub mod can;
-pub mod configuration;
+mod configuration;
 mod dwell;
 pub mod estimate;
 pub mod failsafe;
@@ -20,6 +20,7 @@ pub mod filter;
 pub mod node;
 pub mod plausibility;
 pub mod port;
+mod range;
 mod reading;
 mod receiver;
 mod sensor_message;
@@ -29,8 +30,9 @@ pub mod strategy;
 pub mod tick;
 mod timing;
 mod valves;
+mod vehicle;
 
-pub use configuration::Configuration;
+pub use configuration::{Builder, Configuration, Tuning};
 pub use estimate::Estimate;
 pub use failsafe::{FaultCode, Mode};
 pub use node::Node;
@@ -38,9 +40,11 @@ pub use oleo_interface as interface;
 pub use oleo_interface::{
     Absolute, Axle, Axles, Corner, Corners, Gauge, PressurePoint, Side, StrutPressures, StrutValves, Valve,
 };
+pub use range::{ConfigurationError, Hysteresis};
 pub use reading::{Inputs, Reading};
 pub use sensor_message::{MessageSet, SensorMessage};
 pub use solenoids::{SolenoidError, Solenoids};
 pub use strategy::{DamperPolicy, Strategy};
 pub use tick::{Outputs, State, tick};
 pub use valves::ValveCommand;
+pub use vehicle::VehicleDescription;

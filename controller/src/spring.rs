@@ -22,11 +22,12 @@
 
 use oleo_interface::{Absolute, Corners, Gauge, StrutPressures};
 
-use crate::configuration::Configuration;
-use crate::filter::{DerivativeState, at_least};
+use crate::filter::{Derivative, DerivativeState, at_least};
 use crate::plausibility::Trusted;
+use crate::range::{ConfigurationError, within};
 use crate::strategy::Urgency;
 use crate::timing::ticks;
+use crate::vehicle::VehicleDescription;
 
 /// Where pressures are extrapolated to: the middle of the valves' 40 to 90 ms.
 const AHEAD_S: f32 = 0.06;
@@ -41,6 +42,60 @@ const LONGEST_THROTTLE_TICKS: u16 = ticks(1_000);
 const EQUAL_PA: f32 = 0.2e6;
 /// Absolute pressure below which an accumulator counts as empty, Pa.
 const LEAST_PA: f32 = 2.0e4;
+
+/// What a person may choose about the spring valves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// Largest shift of the ride height that closing valve 3 may trap, m, 1e-4 to 0.1.
+    pub trapped_shift_m: f32,
+    /// Largest force step on opening valve 3, as a fraction of the static load, 1e-3 to 1.
+    pub opening_step_share: f32,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self {
+            trapped_shift_m: 0.008,   // assumed
+            opening_step_share: 0.05, // assumed
+        }
+    }
+}
+
+impl Tuning {
+    /// Whether every value is within its range.
+    pub(crate) fn check(&self) -> Result<(), ConfigurationError> {
+        within("tuning.spring.trapped_shift_m", self.trapped_shift_m, 1e-4, 0.1)?;
+        within("tuning.spring.opening_step_share", self.opening_step_share, 1e-3, 1.0)
+    }
+}
+
+/// Dimensions, bounds and the filter of the pressures' rates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    piston_area_m2: f32,
+    per_piston_area: f32,
+    gas_volume_1_m3: f32,
+    gas_volume_2_m3: f32,
+    pressure_rate: Derivative,
+    trapped_shift_m: f32,
+    opening_step_share: f32,
+}
+
+impl Parameters {
+    /// From a description and a tuning that have been checked.
+    pub(crate) fn new(vehicle: &VehicleDescription, tuning: &Tuning) -> Self {
+        Self {
+            piston_area_m2: vehicle.piston_area_m2,
+            per_piston_area: 1.0 / vehicle.piston_area_m2,
+            gas_volume_1_m3: vehicle.gas_volume_1_m3,
+            gas_volume_2_m3: vehicle.gas_volume_2_m3,
+            // Slower than the strut speed: 5 kPa steps.
+            pressure_rate: Derivative::from_corner_hz(8.0),
+            trapped_shift_m: tuning.trapped_shift_m,
+            opening_step_share: tuning.opening_step_share,
+        }
+    }
+}
 
 /// State of one spring valve.
 #[derive(Clone, Copy, Debug, Default)]
@@ -68,7 +123,7 @@ impl Springs {
     /// called while the mode machine keeps all closed: that is [`Springs::forced_closed`].
     pub fn step(
         &mut self,
-        c: &Configuration,
+        c: &Parameters,
         trusted: &Trusted,
         static_load_n: &Corners<f32>,
         wanted: Corners<bool>,
@@ -92,7 +147,7 @@ impl Springs {
     }
 
     /// All valves are closed by the mode machine: nothing is decided, and the next opening is careful.
-    pub fn forced_closed(&mut self, c: &Configuration, trusted: &Trusted) {
+    pub fn forced_closed(&mut self, c: &Parameters, trusted: &Trusted) {
         self.observe(c, trusted, Corners::splat(false));
         for valve in self.valves.values_mut() {
             if valve.open {
@@ -101,7 +156,7 @@ impl Springs {
         }
     }
 
-    fn observe(&mut self, c: &Configuration, trusted: &Trusted, wanted: Corners<bool>) {
+    fn observe(&mut self, c: &Parameters, trusted: &Trusted, wanted: Corners<bool>) {
         for (corner, valve) in self.valves.iter_mut() {
             valve.observe(c, &trusted.pressure[corner], trusted.charge[corner], wanted[corner]);
         }
@@ -134,20 +189,14 @@ impl SpringValve {
         self.throttled = false;
     }
 
-    fn observe(
-        &mut self,
-        c: &Configuration,
-        pressure: &StrutPressures<Gauge<f32>>,
-        charge: Absolute<f32>,
-        wanted: bool,
-    ) {
+    fn observe(&mut self, c: &Parameters, pressure: &StrutPressures<Gauge<f32>>, charge: Absolute<f32>, wanted: bool) {
         self.since = self.since.saturating_add(1);
         self.waiting = if wanted == self.open {
             0
         } else {
             self.waiting.saturating_add(1)
         };
-        let [v1, v2] = c.gas_volume_m3;
+        let (v1, v2) = (c.gas_volume_1_m3, c.gas_volume_2_m3);
         let ahead = |p: Gauge<f32>, rate: &mut DerivativeState| {
             let later = p.absolute() + AHEAD_S * c.pressure_rate.step(rate, p.pa());
             Absolute(at_least(later.pa(), LEAST_PA))
@@ -168,7 +217,7 @@ impl SpringValve {
         }
     }
 
-    fn opens_smoothly(&self, c: &Configuration, static_load_n: f32) -> bool {
+    fn opens_smoothly(&self, c: &Parameters, static_load_n: f32) -> bool {
         self.open || self.opening_step_n.abs() <= c.opening_step_share * static_load_n
     }
 
@@ -184,7 +233,7 @@ impl SpringValve {
         }
     }
 
-    fn close_if_due(&mut self, c: &Configuration, urgency: Urgency) {
+    fn close_if_due(&mut self, c: &Parameters, urgency: Urgency) {
         let patience = match urgency {
             Urgency::Emergency => 0,
             Urgency::Handling => HANDLING_PATIENCE_TICKS,

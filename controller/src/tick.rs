@@ -60,13 +60,13 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
         spring_settled_open: state.springs.settled_open(),
         learning: !state.failsafe.was_normal(),
     };
-    let trusted = state.plausibility.step(c, inputs, &context);
+    let trusted = state.plausibility.step(&c.plausibility, inputs, &context);
     let mut health = trusted.health;
 
     // Before the first complete set of sensors there is nothing to estimate from, and the filters must not start at zero load.
     let mut estimate = Estimate::default();
     if state.failsafe.was_normal() || health == Health::default() {
-        estimate = state.estimate.step(c, &trusted);
+        estimate = state.estimate.step(&c.estimate, &trusted);
         if !estimate.is_finite() {
             health.cause = FaultCode::Internal;
             estimate = Estimate::default();
@@ -74,13 +74,13 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     }
 
     let mode = state.failsafe.step(&health);
-    let demand = state.strategy.step(c, &estimate, &trusted);
+    let demand = state.strategy.step(&c.strategy, &estimate, &trusted);
     let springs = if mode == Mode::Normal {
         let wanted = demand.valves.corners().map(|strut| strut[Valve::Spring]);
         let load_n = &estimate.static_load_n;
-        state.springs.step(c, &trusted, load_n, wanted, demand.urgency)
+        state.springs.step(&c.spring, &trusted, load_n, wanted, demand.urgency)
     } else {
-        state.springs.forced_closed(c, &trusted);
+        state.springs.forced_closed(&c.spring, &trusted);
         Corners::splat(false)
     };
     let bypass = state.dwell.step(demand.valves, demand.urgency == Urgency::Emergency);

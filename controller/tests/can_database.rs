@@ -147,19 +147,22 @@ fn value_tables_are_the_enumerations() {
         let id = MessageId::Standard(contract.id);
         let modes = dbc.value_descriptions_for_signal(id, "Mode").unwrap();
         for d in modes {
-            assert_eq!(format!("{:?}", Mode::from_raw(d.id as u8).unwrap()), d.description);
+            assert_eq!(format!("{:?}", Mode::from_repr(d.id as u8).unwrap()), d.description);
         }
         assert_eq!(
-            Mode::from_raw(modes.len() as u8),
+            Mode::from_repr(modes.len() as u8),
             None,
             "a mode is missing in the database"
         );
         let faults = dbc.value_descriptions_for_signal(id, "Fault").unwrap();
         for d in faults {
-            assert_eq!(format!("{:?}", FaultCode::from_raw(d.id as u8).unwrap()), d.description);
+            assert_eq!(
+                format!("{:?}", FaultCode::from_repr(d.id as u8).unwrap()),
+                d.description
+            );
         }
         assert_eq!(
-            FaultCode::from_raw(faults.len() as u8),
+            FaultCode::from_repr(faults.len() as u8),
             None,
             "a fault is missing in the database"
         );
@@ -234,8 +237,8 @@ proptest! {
         let sent = CommandMessage {
             command: ValveCommand::from_word(word),
             echo_tick,
-            mode: Mode::from_raw(mode).unwrap(),
-            fault: FaultCode::from_raw(fault).unwrap(),
+            mode: Mode::from_repr(mode).unwrap(),
+            fault: FaultCode::from_repr(fault).unwrap(),
         };
         let frame = sent.encode();
         for corner in Corner::ALL {
@@ -257,8 +260,8 @@ proptest! {
         let dbc = database();
         let message = message(&dbc, STATUS.id);
         let sent = StatusMessage {
-            mode: Mode::from_raw(mode).unwrap(),
-            fault: FaultCode::from_raw(fault).unwrap(),
+            mode: Mode::from_repr(mode).unwrap(),
+            fault: FaultCode::from_repr(fault).unwrap(),
             handling,
             rollover_guard,
             lateral_rms_m_s2: lateral as f32 * 0.02,

@@ -1,10 +1,11 @@
 //! The estimator against rigid-body mechanics worked out beforehand: a body of known mass and inertia is given a motion, the forces that
 //! cause it are computed by Newton and Euler in f64, and the estimate must find the motion again.
 
-use oleo_controller::configuration::Builder;
 use oleo_controller::estimate::{GRAVITY_M_S2, State};
 use oleo_controller::plausibility::Trusted;
-use oleo_controller::{Axles, Configuration, Corner, Corners, Estimate, Gauge, Side, StrutPressures};
+use oleo_controller::{
+    Axles, Configuration, Corner, Corners, Estimate, Gauge, Side, StrutPressures, VehicleDescription,
+};
 
 const MASS_KG: f64 = 1600.0;
 const G: f64 = GRAVITY_M_S2 as f64;
@@ -17,7 +18,7 @@ struct Motion {
 
 /// Pressures of the four struts that give the body these accelerations from rest; displacements zero.
 fn trusted(motion: &Motion) -> Trusted {
-    let b = Builder::default();
+    let b = VehicleDescription::default();
     let Axles { front: a, rear: c } = b.axle_distance_m.map(f64::from);
     let half = 0.5 * f64::from(b.strut_spacing_m.front);
     let roll_inertia = MASS_KG * f64::from(b.roll_gyration_m * b.roll_gyration_m);
@@ -51,7 +52,7 @@ fn still() -> Motion {
 fn at_rest() -> (Configuration, State) {
     let (c, mut state) = (Configuration::defender110(), State::default());
     for _ in 0..10 {
-        let estimate = state.step(&c, &trusted(&still()));
+        let estimate = state.step(&c.estimate, &trusted(&still()));
         assert!(estimate.vertical_acceleration_m_s2.abs() < 1e-4);
     }
     (c, state)
@@ -68,7 +69,7 @@ fn near(what: &str, found: f32, expected: f64, tolerance: f64) {
 fn accelerations_are_found_again() {
     for (vertical, roll, pitch) in [(2.0, 0.0, 0.0), (0.0, 1.5, 0.0), (0.0, 0.0, 1.2), (-1.0, 0.7, -0.9)] {
         let (c, mut state) = at_rest();
-        let e = state.step(&c, &trusted(&Motion { vertical, roll, pitch }));
+        let e = state.step(&c.estimate, &trusted(&Motion { vertical, roll, pitch }));
         near("vertical", e.vertical_acceleration_m_s2, vertical, 2e-3);
         near("roll", e.roll_acceleration_rad_s2, roll, 2e-3);
         near("pitch", e.pitch_acceleration_rad_s2, pitch, 2e-3);
@@ -90,7 +91,7 @@ fn attitude_and_speed_from_displacements() {
     for n in 0..200 {
         let x = rate.map(|v| v * n as f32 * 0.005 * 0.1);
         e = state.step(
-            &c,
+            &c.estimate,
             &Trusted {
                 displacement_m: x,
                 ..trusted(&still())
@@ -110,7 +111,7 @@ fn attitude_and_speed_from_displacements() {
 #[test]
 fn steady_cornering() {
     // Left turn of 3 m/s2, body rolled by phi: struts and bars hold m (a_y h + g h phi) about the roll axis.
-    let b = Builder::default();
+    let b = VehicleDescription::default();
     let (a_y, phi, h) = (3.0, 0.03, f64::from(b.roll_arm_m));
     let bars = phi * f64::from(b.anti_roll_stiffness_n_m_rad.front + b.anti_roll_stiffness_n_m_rad.rear);
     let struts = MASS_KG * h * (a_y + G * phi) - bars;
@@ -125,7 +126,7 @@ fn steady_cornering() {
     }
     let mut lateral = 0.0f32;
     for _ in 0..200 {
-        lateral = state.step(&c, &turn).lateral_acceleration_m_s2;
+        lateral = state.step(&c.estimate, &turn).lateral_acceleration_m_s2;
     }
     near("lateral", lateral, a_y, 0.2); // after 1 s: bias learning and static load have taken a little
 }
@@ -140,10 +141,10 @@ fn payload_needs_no_parameter() {
         }
         t
     };
-    state.step(&c, &load(1.7));
+    state.step(&c.estimate, &load(1.7));
     near(
         "laden",
-        state.step(&c, &load(1.7 * 1.1)).vertical_acceleration_m_s2,
+        state.step(&c.estimate, &load(1.7 * 1.1)).vertical_acceleration_m_s2,
         0.1 * G,
         1e-3,
     );

@@ -7,8 +7,8 @@ mod common;
 
 use common::{AREA_M2, QuietStrut, STATIC_PA, rough_road};
 use oleo_controller::{
-    Configuration, Corner, Corners, DamperPolicy, Gauge, Inputs, Side, State, Strategy, StrutPressures, Valve,
-    ValveCommand, tick,
+    Builder, Corner, Corners, DamperPolicy, Gauge, Inputs, Side, State, Strategy, StrutPressures, Valve, ValveCommand,
+    tick,
 };
 
 const TICKS: u32 = 4000;
@@ -45,9 +45,12 @@ fn drive(tick_number: u32, struts: &mut Corners<QuietStrut>, command: ValveComma
 }
 
 fn words(strategy: Strategy, policy: DamperPolicy) -> Vec<u16> {
-    let configuration = Configuration::defender110()
-        .with_strategy(strategy)
-        .with_damper_policy(policy);
+    let mut builder = Builder {
+        strategy,
+        ..Builder::default()
+    };
+    builder.tuning.strategy.ride_handling.dampers.policy = policy;
+    let configuration = builder.build().unwrap();
     let (mut state, mut struts) = (State::new(), Corners::splat(QuietStrut::default()));
     let mut command = ValveCommand::SAFE;
     (0..TICKS)

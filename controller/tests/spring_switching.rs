@@ -46,7 +46,7 @@ impl Bench {
         let wanted = Corners::splat(soft);
         self.open = self
             .springs
-            .step(&Configuration::defender110(), &trusted, &LOAD_N, wanted, urgency);
+            .step(&Configuration::defender110().spring, &trusted, &LOAD_N, wanted, urgency);
         self.open
     }
 

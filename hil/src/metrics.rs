@@ -10,7 +10,7 @@ use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::measures::{RideMeasures, RideMeter};
 
 use crate::bit_timing::{WireModel, trace_bits};
-use crate::record::{Sample, controller_account, fault_name, mode_name};
+use crate::record::{Sample, controller_account};
 use crate::run::Outcome;
 use crate::scenario::Scenario;
 use crate::scenario::check::{Figure, Metric};
@@ -132,7 +132,7 @@ impl Metrics {
             Metric::WorstMode => Figure::Word(self.worst_mode()),
             Metric::FinalMode => {
                 let last = self.account.iter().rev().flatten().next();
-                Figure::Word(mode_name(last.map_or(Mode::StartUp, |(mode, _)| *mode)))
+                Figure::Word(last.map_or(Mode::StartUp, |(mode, _)| *mode).name())
             }
             Metric::FirstFault => {
                 // Before the first complete set of sensors the bus is rightly called silent.
@@ -147,7 +147,7 @@ impl Metrics {
                     .flatten()
                     .map(|(_, fault)| *fault);
                 let first = faults.find(|fault| *fault != FaultCode::None);
-                Figure::Word(fault_name(first.unwrap_or_default()))
+                Figure::Word(first.unwrap_or_default().name())
             }
         }
     }
@@ -160,10 +160,8 @@ impl Metrics {
             .flatten()
             .map(|(mode, _)| *mode)
             .skip_while(|mode| *mode == Mode::StartUp);
-        let worst = modes
-            .filter(|mode| *mode != Mode::StartUp)
-            .max_by_key(|mode| mode.raw());
-        mode_name(worst.unwrap_or(Mode::StartUp))
+        let worst = modes.filter(|mode| *mode != Mode::StartUp).max();
+        worst.unwrap_or(Mode::StartUp).name()
     }
 }
 

@@ -14,7 +14,7 @@ use crate::bus::BusCounters;
 use crate::candump::write_line;
 use crate::clock::Lateness;
 use crate::metrics::Metrics;
-use crate::record::{command_hash, fault_name, mode_name};
+use crate::record::command_hash;
 use crate::run::Outcome;
 use crate::scenario::Scenario;
 use crate::scenario::check::{Figure, Metric};
@@ -148,7 +148,7 @@ impl Summary {
             road: scenario.road.clone(),
             // Without the last digit's noise of the way to m/s and back.
             speed_km_h: (scenario.speed_m_s * 3.6 * 1e6).round() * 1e-6,
-            strategy: scenario.strategy_name(),
+            strategy: scenario.strategy.name(),
             bus: scenario.bus.to_string(),
             clock: scenario.clock.name(),
             seed: scenario.seed,
@@ -225,7 +225,7 @@ fn mode_entries(metrics: &Metrics) -> Vec<ModeEntry> {
     let mut entries: Vec<ModeEntry> = Vec::new();
     for (tick, account) in metrics.account.iter().enumerate() {
         let Some((mode, fault)) = account else { continue };
-        let (mode, fault) = (mode_name(*mode), fault_name(*fault));
+        let (mode, fault) = (mode.name(), fault.name());
         if entries
             .last()
             .is_none_or(|last| (last.mode, last.fault) != (mode, fault))

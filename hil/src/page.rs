@@ -1,12 +1,14 @@
 //! `report.html` of a run: the outcome first, then road, body, struts, controller and bus, on one time axis.
 
+use oleo_controller::Mode;
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Axle, Corner, PressurePoint, Side, Valve};
 use oleo_report::{Axis, Bars, Cell, Column, Curves, Page, Style, Table, Verdict, significant};
+use strum::VariantArray;
 
 use crate::metrics::Metrics;
 use crate::output::Summary;
-use crate::record::{mode_name, status_messages};
+use crate::record::status_messages;
 use crate::run::Outcome;
 use crate::scenario::Scenario;
 use crate::scenario::fault::{Fault, FaultKind};
@@ -263,7 +265,7 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
         .map(|account| account.map_or(f64::NAN, |(mode, _)| f64::from(mode.raw())))
         .collect();
     let mut curves = time.curves("Mode machine and strategy");
-    let names = (0..5).filter_map(|raw| Some((f64::from(raw), mode_name(oleo_controller::Mode::from_raw(raw)?))));
+    let names = Mode::VARIANTS.iter().map(|mode| (f64::from(mode.raw()), mode.name()));
     curves.panel(Axis::new("Mode", "").ticks(names).range(-0.4, 4.4));
     curves.series(Style::Step, "mode", &time.s, &mode);
     time.mark(&mut curves);

@@ -110,33 +110,6 @@ pub fn status_messages(trace: &[TraceEntry]) -> Vec<(u32, StatusMessage)> {
         .collect()
 }
 
-/// A mode in words.
-pub fn mode_name(mode: Mode) -> &'static str {
-    match mode {
-        Mode::StartUp => "start-up",
-        Mode::Normal => "normal",
-        Mode::Degraded => "degraded",
-        Mode::Safe => "safe",
-        Mode::Latched => "latched",
-    }
-}
-
-/// A fault code in words.
-pub fn fault_name(fault: FaultCode) -> &'static str {
-    match fault {
-        FaultCode::None => "none",
-        FaultCode::SensorRange => "sensor-range",
-        FaultCode::SensorRate => "sensor-rate",
-        FaultCode::SensorStuck => "sensor-stuck",
-        FaultCode::SensorVote => "sensor-vote",
-        FaultCode::OilBalance => "oil-balance",
-        FaultCode::MessageLost => "message-lost",
-        FaultCode::BusSilent => "bus-silent",
-        FaultCode::Solenoid => "solenoid",
-        FaultCode::Internal => "internal",
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

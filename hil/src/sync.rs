@@ -18,12 +18,15 @@
 
 use std::time::{Duration, Instant};
 
+use strum::{EnumString, IntoStaticStr, VariantNames};
+
 use crate::Frame;
 use crate::bus::{Bus, BusError};
 use crate::frame::extended;
 
 /// Which node a sync frame comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, EnumString, IntoStaticStr, VariantNames)]
+#[strum(serialize_all = "lowercase")]
 pub enum Role {
     /// Sensors, vehicle and valves.
     Plant,
@@ -40,12 +43,9 @@ impl Role {
         }
     }
 
-    /// As on the command line.
+    /// As on the command line: `plant` or `controller`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Plant => "plant",
-            Self::Controller => "controller",
-        }
+        self.into()
     }
 }
 
@@ -58,7 +58,7 @@ const VERSION: u8 = 1;
 /// What the nodes must agree on before they start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Terms {
-    /// Position of the strategy in `strategy::NAMES` of the scenario.
+    /// Number of the [`Strategy`](oleo_controller::Strategy), counted from 0.
     pub strategy: u8,
     /// 0 lockstep, 1 real time.
     pub clock: u8,

@@ -10,6 +10,7 @@ use std::process::ExitCode;
 use clap::ValueEnum;
 use oleo_plant_sim::handling::HandlingParameters;
 use oleo_plant_sim::vehicle::VehicleParameters;
+use strum::IntoStaticStr;
 
 use crate::failure::Failure;
 use course::Course;
@@ -90,7 +91,8 @@ pub(crate) enum Model {
     Both,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum, IntoStaticStr)]
+#[strum(serialize_all = "kebab-case")]
 pub(crate) enum Setting {
     /// All valves open
     Soft,
@@ -103,13 +105,9 @@ pub(crate) enum Setting {
 }
 
 impl Setting {
+    /// As on the command line.
     pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Soft => "soft",
-            Self::Stiff => "stiff",
-            Self::Controlled => "controlled",
-            Self::Baseline => "baseline",
-        }
+        self.into()
     }
 }
 

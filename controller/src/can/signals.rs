@@ -174,8 +174,8 @@ impl CommandMessage {
         Some(Self {
             command: ValveCommand::from_word(word as u16),
             echo_tick: field(bits, 36, 16) as u16,
-            mode: Mode::from_raw(field(bits, 52, 4) as u8)?,
-            fault: FaultCode::from_raw(field(bits, 56, 8) as u8)?,
+            mode: Mode::from_repr(field(bits, 52, 4) as u8)?,
+            fault: FaultCode::from_repr(field(bits, 56, 8) as u8)?,
         })
     }
 }
@@ -219,8 +219,8 @@ impl StatusMessage {
     pub fn decode(data: &[u8; FRAME_BYTES]) -> Option<Self> {
         let bits = u64::from_le_bytes(*data);
         Some(Self {
-            mode: Mode::from_raw(field(bits, 12, 4) as u8)?,
-            fault: FaultCode::from_raw(field(bits, 16, 8) as u8)?,
+            mode: Mode::from_repr(field(bits, 12, 4) as u8)?,
+            fault: FaultCode::from_repr(field(bits, 16, 8) as u8)?,
             handling: field(bits, 24, 1) == 1,
             rollover_guard: field(bits, 25, 1) == 1,
             lateral_rms_m_s2: field(bits, 28, 10) as u16 as f32 * ACCELERATION_STEP_M_S2,

@@ -26,9 +26,9 @@ mod vote;
 
 use oleo_interface::{Corner, Corners, Gauge, PressurePoint, StrutPressures};
 
-use crate::configuration::Configuration;
 use crate::reading::Inputs;
 use crate::sensor_message::SensorMessage;
+use crate::vehicle::VehicleDescription;
 use limits::{DISPLACEMENT, PRESSURE};
 use oil_balance::OilBalance;
 use reading_check::ReadingCheck;
@@ -36,6 +36,23 @@ use stuck::Stuck;
 pub use trusted::Trusted;
 use verdict::Verdicts;
 use vote::Vote;
+
+/// Parameters of the checks that have any.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    oil_balance: oil_balance::Parameters,
+    vote: vote::Parameters,
+}
+
+impl Parameters {
+    /// From a description that has been checked.
+    pub(crate) fn new(vehicle: &VehicleDescription) -> Self {
+        Self {
+            oil_balance: oil_balance::Parameters::new(vehicle),
+            vote: vote::Parameters::default(),
+        }
+    }
+}
 
 /// Memory of all checks.
 #[derive(Clone, Copy, Debug, Default)]
@@ -58,7 +75,7 @@ pub struct Context {
 
 impl State {
     /// One tick.
-    pub fn step(&mut self, c: &Configuration, inputs: &Inputs, context: &Context) -> Trusted {
+    pub fn step(&mut self, parameters: &Parameters, inputs: &Inputs, context: &Context) -> Trusted {
         let mut trusted = Trusted::default();
         let mut verdicts = Corners::<Verdicts>::default();
 
@@ -82,9 +99,14 @@ impl State {
         self.stuck.step(&trusted, context.spring_settled_open, &mut verdicts);
         for corner in Corner::ALL {
             let (pressure, verdict) = (&trusted.pressure[corner], &mut verdicts[corner]);
-            self.vote[corner].step(c, pressure, context.spring_settled_open[corner], verdict);
-            trusted.charge[corner] =
-                self.oil[corner].step(c, trusted.displacement_m[corner], pressure, context.learning, verdict);
+            self.vote[corner].step(&parameters.vote, pressure, context.spring_settled_open[corner], verdict);
+            trusted.charge[corner] = self.oil[corner].step(
+                &parameters.oil_balance,
+                trusted.displacement_m[corner],
+                pressure,
+                context.learning,
+                verdict,
+            );
         }
 
         trusted.judge(&verdicts, inputs);

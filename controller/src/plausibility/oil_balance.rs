@@ -15,15 +15,42 @@
 use oleo_interface::{Absolute, Gauge, StrutPressures};
 
 use super::verdict::{Verdicts, blame};
-use crate::configuration::Configuration;
 use crate::failsafe::FaultCode;
-use crate::filter::at_least;
+use crate::filter::{LowPass, at_least};
+use crate::vehicle::VehicleDescription;
 
 const WRONG_M: f32 = 0.04;
 const CONFIRM_TICKS: u8 = 40;
 const CHARGE_PA: (f32, f32) = (0.3e6, 15.0e6);
 /// An accumulator is never emptier than this, Pa absolute; keeps the quotient finite.
 const LEAST_PA: f32 = 2.0e4;
+
+/// Dimensions and filters of the balance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    piston_area_m2: f32,
+    per_piston_area: f32,
+    gas_volume_1_m3: f32,
+    gas_volume_2_m3: f32,
+    residual: LowPass,
+    charge_start: LowPass,
+    charge_drift: LowPass,
+}
+
+impl Parameters {
+    /// From a description that has been checked.
+    pub fn new(vehicle: &VehicleDescription) -> Self {
+        Self {
+            piston_area_m2: vehicle.piston_area_m2,
+            per_piston_area: 1.0 / vehicle.piston_area_m2,
+            gas_volume_1_m3: vehicle.gas_volume_1_m3,
+            gas_volume_2_m3: vehicle.gas_volume_2_m3,
+            residual: LowPass::from_time_constant_s(1.0),
+            charge_start: LowPass::from_time_constant_s(0.02),
+            charge_drift: LowPass::from_time_constant_s(60.0),
+        }
+    }
+}
 
 /// State for one strut.
 #[derive(Clone, Copy, Debug, Default)]
@@ -39,7 +66,7 @@ impl OilBalance {
     /// One tick; returns the charge pressure.
     pub fn step(
         &mut self,
-        c: &Configuration,
+        c: &Parameters,
         displacement_m: f32,
         pressure: &StrutPressures<Gauge<f32>>,
         learning: bool,
@@ -49,7 +76,7 @@ impl OilBalance {
             .iter()
             .all(|&fault| fault == FaultCode::None);
         if measured {
-            let [v1, v2] = c.gas_volume_m3;
+            let (v1, v2) = (c.gas_volume_1_m3, c.gas_volume_2_m3);
             let least = |p: Gauge<f32>| at_least(p.absolute().pa(), LEAST_PA);
             let s = v1 / least(pressure.p2) + v2 / least(pressure.p4);
             let now_pa = (v1 + v2 - c.piston_area_m2 * displacement_m) / s;
@@ -63,7 +90,7 @@ impl OilBalance {
                 self.residual_m = 0.0;
             } else {
                 c.charge_drift.step(&mut self.charge_pa, now_pa);
-                c.vote.step(&mut self.residual_m, residual);
+                c.residual.step(&mut self.residual_m, residual);
             }
             let wrong = self.residual_m.abs() > WRONG_M || self.charge_pa < CHARGE_PA.0 || self.charge_pa > CHARGE_PA.1;
             self.wrong = if wrong {

@@ -9,11 +9,25 @@
 use oleo_interface::{Gauge, PressurePoint, StrutPressures};
 
 use super::verdict::{Verdicts, blame};
-use crate::configuration::Configuration;
 use crate::failsafe::FaultCode;
+use crate::filter::LowPass;
 
 const DISAGREE_PA: f32 = 1.0e6;
 const CONFIRM_TICKS: u8 = 40;
+
+/// The lag of the compared pressures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    lag: LowPass,
+}
+
+impl Default for Parameters {
+    fn default() -> Self {
+        Self {
+            lag: LowPass::from_time_constant_s(1.0),
+        }
+    }
+}
 
 /// State for one strut.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,7 +42,7 @@ impl Vote {
     /// One tick. `p4_follows`: valve 3 has been open for long enough.
     pub fn step(
         &mut self,
-        c: &Configuration,
+        parameters: &Parameters,
         pressure: &StrutPressures<Gauge<f32>>,
         p4_follows: bool,
         verdict: &mut Verdicts,
@@ -43,7 +57,7 @@ impl Vote {
                 self.lagged = agreed(pressure);
             }
             for (Gauge(lagged), pressure) in self.lagged.each_mut().zip(*pressure).into_array() {
-                c.vote.step(lagged, pressure.pa());
+                parameters.lag.step(lagged, pressure.pa());
             }
             // Behind a closed valve 3 p4 is no witness; when the valve has opened, its disagreement begins anew.
             if !p4_follows {
@@ -101,7 +115,7 @@ mod tests {
 
     /// Votes on a strut that is shaken through closed dampers: p1 swings by 2 MPa about p2 at 8 Hz.
     fn shaken(vote: &mut Vote, ticks: core::ops::Range<u16>, offset_pa: f32) -> Option<u16> {
-        let c = Configuration::defender110();
+        let parameters = Parameters::default();
         for tick in ticks {
             let swing = 2.0e6
                 * libm::cosf(2.0 * core::f32::consts::PI * 8.0 * f32::from(tick) * oleo_interface::tick::TICK_S_F32);
@@ -112,7 +126,7 @@ mod tests {
                 p3: 4.0e6 + offset_pa,
                 p4: 4.0e6,
             };
-            vote.step(&c, &pressure.map(Gauge), false, &mut verdict);
+            vote.step(&parameters, &pressure.map(Gauge), false, &mut verdict);
             if outvoted(&verdict) {
                 return Some(tick);
             }
@@ -130,14 +144,14 @@ mod tests {
 
     #[test]
     fn begins_again_from_agreement_after_silence() {
-        let c = Configuration::defender110();
+        let parameters = Parameters::default();
         let mut vote = Vote::default();
         assert_eq!(shaken(&mut vote, 0..500, 0.0), None);
         let mut silent = Verdicts {
             pressure: StrutPressures::splat(FaultCode::MessageLost),
             ..Verdicts::default()
         };
-        vote.step(&c, &StrutPressures::default(), false, &mut silent);
+        vote.step(&parameters, &StrutPressures::default(), false, &mut silent);
         assert_eq!(shaken(&mut vote, 0..1000, 0.0), None);
     }
 
@@ -150,7 +164,7 @@ mod tests {
 
     #[test]
     fn oil_trapped_behind_valve_3_is_no_disagreement_when_the_valve_has_opened() {
-        let c = Configuration::defender110();
+        let parameters = Parameters::default();
         let mut vote = Vote::default();
         for tick in 0..1500 {
             // Trapped 3 MPa apart for 2.5 s; equal once the valve is settled open.
@@ -161,7 +175,7 @@ mod tests {
                 p4,
                 ..StrutPressures::splat(4.0e6)
             };
-            vote.step(&c, &pressure.map(Gauge), open, &mut verdict);
+            vote.step(&parameters, &pressure.map(Gauge), open, &mut verdict);
             assert!(!outvoted(&verdict), "tick {tick}");
         }
     }

@@ -16,8 +16,7 @@ mod plant_loop;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use oleo_controller::strategy::Strategy;
-use oleo_controller::{Configuration, FaultCode, Mode};
+use oleo_controller::{Builder, Configuration, ConfigurationError, FaultCode, Mode};
 use oleo_interface::tick::{TICK_MS, TICK_S};
 use oleo_plant_sim::road;
 use oleo_plant_sim::strut::{Strut, StrutModel};
@@ -46,6 +45,9 @@ pub enum RunError {
     /// The road is wrong.
     #[error(transparent)]
     Road(#[from] oleo_plant_sim::road::RoadError),
+    /// The controller cannot be configured.
+    #[error(transparent)]
+    Configuration(#[from] ConfigurationError),
     /// The bus failed.
     #[error(transparent)]
     Bus(#[from] BusError),
@@ -146,10 +148,16 @@ impl Plant {
 }
 
 /// The controller's configuration for a scenario.
-pub fn configuration(scenario: &Scenario) -> Configuration {
-    Configuration::defender110()
-        .with_strategy(scenario.strategy)
-        .with_damper_policy(scenario.damper_policy)
+///
+/// # Errors
+/// A value outside the range for which the controller was designed.
+pub fn configuration(scenario: &Scenario) -> Result<Configuration, ConfigurationError> {
+    let mut builder = Builder {
+        strategy: scenario.strategy,
+        ..Builder::default()
+    };
+    builder.tuning.strategy.ride_handling.dampers.policy = scenario.damper_policy;
+    builder.build()
 }
 
 /// What a run with a plant leaves behind.
@@ -198,7 +206,7 @@ pub fn both(scenario: &Scenario, plant: Plant, threads: usize, watch: Watch) -> 
     let (plant_end, controller_end) = both_ends(scenario)?;
     let real_time = scenario.clock == Clock::RealTime;
     let mut plant = PlantNode::new(plant_end, scenario, &plant.parameters, plant.vehicle, real_time);
-    let mut controller = ControllerNode::new(controller_end, configuration(scenario), scenario.ticks as usize);
+    let mut controller = ControllerNode::new(controller_end, configuration(scenario)?, scenario.ticks as usize);
     let started = Instant::now();
     let mut lateness = Vec::new();
     let end = if real_time {
@@ -262,7 +270,7 @@ pub fn plant_alone(scenario: &Scenario, plant: Plant, watch: Watch) -> Result<Ou
 /// See [`RunError`].
 pub fn controller_alone(scenario: &Scenario) -> Result<ControllerOutcome, RunError> {
     let bus = scenario.bus.open()?.ok_or(RunError::NoOtherProcess)?;
-    let mut controller = ControllerNode::new(bus, configuration(scenario), scenario.ticks as usize);
+    let mut controller = ControllerNode::new(bus, configuration(scenario)?, scenario.ticks as usize);
     handshake(
         controller.bus(),
         &scenario.bus.to_string(),
@@ -310,12 +318,8 @@ fn both_ends(scenario: &Scenario) -> Result<Ends, RunError> {
 }
 
 fn terms(scenario: &Scenario) -> Terms {
-    let position = Strategy::ALL
-        .iter()
-        .position(|(_, strategy)| *strategy == scenario.strategy)
-        .unwrap_or(0);
     Terms {
-        strategy: position as u8,
+        strategy: scenario.strategy as u8,
         clock: scenario.clock as u8,
     }
 }
@@ -390,13 +394,13 @@ mod tests {
     fn a_controller_that_falls_silent_costs_four_ticks_of_open_valves() {
         let scenario = Scenario {
             partner_timeout_s: 0.1,
-            strategy: Strategy::AlwaysSoft,
+            strategy: oleo_controller::Strategy::AlwaysSoft,
             ..short("belgian", 200)
         };
         let (a, b) = in_process_pair();
         let parts = Plant::build(&scenario).unwrap();
         let mut plant = PlantNode::new(a, &scenario, &parts.parameters, parts.vehicle, false);
-        let mut controller = ControllerNode::new(b, configuration(&scenario), 200);
+        let mut controller = ControllerNode::new(b, configuration(&scenario).unwrap(), 200);
         let mut turns = 0;
         let mut turn = || {
             turns += 1;
@@ -424,7 +428,7 @@ mod tests {
         let (a, b) = in_process_pair();
         let parts = Plant::build(&scenario).unwrap();
         let mut plant = PlantNode::new(a, &scenario, &parts.parameters, parts.vehicle, false);
-        let mut controller = ControllerNode::new(b, configuration(&scenario), 200);
+        let mut controller = ControllerNode::new(b, configuration(&scenario).unwrap(), 200);
         for _ in 0..100 {
             plant.send_sensors().unwrap();
             plant.send_done().unwrap();

@@ -3,14 +3,15 @@
 //! Values that can be wrong keep their place in the text until they are checked, so that every complaint names its line.
 
 use std::path::Path;
+use std::str::FromStr;
 
-use oleo_controller::strategy::{DamperPolicy, Strategy};
 use serde::Deserialize;
+use strum::VariantNames;
 use toml::Spanned;
 
 use super::check::{Check, Comparison, Metric};
 use super::fault_entry::FaultEntry;
-use super::{Clock, OnControllerLoss, Scenario, TICK_S};
+use super::{Scenario, TICK_S};
 
 /// Longest run, s: an hour, so that a slip of a zero does not fill the memory.
 pub const LONGEST_S: f64 = 3600.0;
@@ -96,8 +97,8 @@ pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Scenario, Scenario
         road: located(raw.road.as_ref(), folder, &oleo_plant_sim::road::NAMES),
         speed_m_s: speed_km_h / 3.6,
         ticks,
-        strategy: reader.one_of("strategy", raw.strategy.as_ref(), &Strategy::ALL)?,
-        damper_policy: reader.one_of("damper_policy", raw.damper_policy.as_ref(), &DamperPolicy::ALL)?,
+        strategy: reader.one_of("strategy", raw.strategy.as_ref())?,
+        damper_policy: reader.one_of("damper_policy", raw.damper_policy.as_ref())?,
         strut: located(raw.strut.as_deref().unwrap_or(DEFENDER), folder, &[DEFENDER]),
         vehicle: located(raw.vehicle.as_deref().unwrap_or(DEFENDER), folder, &[DEFENDER]),
         seed: raw
@@ -112,12 +113,8 @@ pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Scenario, Scenario
                 .map_err(|e| reader.error(bus.span().start, format!("bus {e}")))?,
             None => Default::default(),
         },
-        clock: reader.one_of("clock", raw.clock.as_ref(), &Clock::ALL)?,
-        on_controller_loss: reader.one_of(
-            "on_controller_loss",
-            raw.on_controller_loss.as_ref(),
-            &[("continue", OnControllerLoss::Continue), ("end", OnControllerLoss::End)],
-        )?,
+        clock: reader.one_of("clock", raw.clock.as_ref())?,
+        on_controller_loss: reader.one_of("on_controller_loss", raw.on_controller_loss.as_ref())?,
         partner_timeout_s: timeout.unwrap_or(3.0),
         faults: raw
             .fault
@@ -186,22 +183,22 @@ impl Reader<'_> {
     }
 
     /// A value by its name; the type's default where the key is absent.
-    fn one_of<T: Copy + Default>(
+    fn one_of<T: Default + FromStr + VariantNames>(
         &self,
         key: &str,
         name: Option<&Spanned<String>>,
-        all: &[(&str, T)],
     ) -> Result<T, ScenarioError> {
         let Some(name) = name else { return Ok(T::default()) };
-        all.iter()
-            .find_map(|(n, value)| (n == name.as_ref()).then_some(*value))
-            .ok_or_else(|| {
-                let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
-                self.error(
-                    name.span().start,
-                    format!("{key} is {:?}: must be one of {}", name.as_ref(), names.join(", ")),
-                )
-            })
+        name.as_ref().parse().map_err(|_| {
+            self.error(
+                name.span().start,
+                format!(
+                    "{key} is {:?}: must be one of {}",
+                    name.as_ref(),
+                    T::VARIANTS.join(", ")
+                ),
+            )
+        })
     }
 
     fn check(&self, entry: Spanned<CheckEntry>) -> Result<Check, ScenarioError> {

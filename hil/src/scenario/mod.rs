@@ -10,8 +10,9 @@ pub mod file;
 
 use std::path::Path;
 
-use oleo_controller::strategy::{DamperPolicy, Strategy};
+use oleo_controller::{DamperPolicy, Strategy};
 use oleo_interface::tick::TICK_S;
+use strum::{EnumString, IntoStaticStr, VariantNames};
 
 use crate::bus::BusAddress;
 pub use check::{Check, Comparison};
@@ -19,7 +20,8 @@ pub use fault::{Fault, FaultKind};
 pub use file::ScenarioError;
 
 /// How time passes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, EnumString, IntoStaticStr, VariantNames)]
+#[strum(serialize_all = "lowercase")]
 pub enum Clock {
     /// Plant and controller exchange tick n before either goes on: deterministic, as fast as it goes.
     #[default]
@@ -29,27 +31,15 @@ pub enum Clock {
 }
 
 impl Clock {
-    /// Names, as on the command line.
-    pub const ALL: [(&'static str, Self); 2] = [("lockstep", Self::Lockstep), ("realtime", Self::RealTime)];
-
-    /// By name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL
-            .into_iter()
-            .find_map(|(n, clock)| (n == name).then_some(clock))
-    }
-
-    /// As on the command line.
+    /// As on the command line: `lockstep` or `realtime`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Lockstep => "lockstep",
-            Self::RealTime => "realtime",
-        }
+        self.into()
     }
 }
 
 /// What the plant does when the controller is gone for good.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, EnumString, VariantNames)]
+#[strum(serialize_all = "lowercase")]
 pub enum OnControllerLoss {
     /// Goes on to the end with de-energised valves.
     #[default]
@@ -104,14 +94,6 @@ impl Scenario {
     /// Length of road needed, m, with room for the smooth entry and the rear axle.
     pub fn road_length_m(&self) -> f64 {
         self.speed_m_s * self.duration_s() + 20.0
-    }
-
-    /// Name of the strategy.
-    pub fn strategy_name(&self) -> &'static str {
-        Strategy::ALL
-            .into_iter()
-            .find_map(|(name, s)| (s == self.strategy).then_some(name))
-            .unwrap_or("?")
     }
 
     /// First tick of the first fault, and the first tick after the last one, where there is any.
@@ -183,7 +165,7 @@ mod tests {
             );
         }
         let default = named("belgian").unwrap();
-        assert_eq!((default.ticks, default.strategy_name()), (4000, "ride-handling"));
+        assert_eq!((default.ticks, default.strategy.name()), (4000, "ride-handling"));
         assert!((default.speed_m_s - 60.0 / 3.6).abs() < 1e-12);
     }
 

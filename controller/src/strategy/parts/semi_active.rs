@@ -17,12 +17,11 @@
 //! than that the acceleration comes from the wheels, and high damping would only pass on more of it.
 
 use oleo_interface::Corners;
+use strum::{EnumString, IntoStaticStr, VariantNames};
 
-use super::DamperPolicy;
-use crate::configuration::Configuration;
 use crate::estimate::Estimate;
-use crate::filter::at_least;
-use crate::plausibility::Trusted;
+use crate::filter::{LowPass, at_least};
+use crate::range::{ConfigurationError, within};
 
 /// Square of the body velocity below which Karnopp's rule is not asked, m2/s2.
 const LEAST_VELOCITY_2: f32 = 0.08 * 0.08;
@@ -33,47 +32,140 @@ const DEAD_BAND_M_S: f32 = 0.02;
 /// Compression from which damping is high going further in, and extension from which it is high going further out, m: the stops are harder than any damper.
 const NEAR_STOP_M: (f32, f32) = (0.06, 0.11);
 
+/// How dampers are switched in ride mode. The names are those of the command line: `hoelscher-huang`.
+///
+/// ```
+/// use oleo_controller::DamperPolicy;
+/// assert_eq!("low".parse(), Ok(DamperPolicy::Low));
+/// assert_eq!(DamperPolicy::HoelscherHuang.name(), "hoelscher-huang");
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, EnumString, IntoStaticStr, VariantNames)]
+#[strum(serialize_all = "kebab-case")]
+pub enum DamperPolicy {
+    /// Low damping always.
+    Low,
+    /// High where the damper's force opposes the body's velocity (skyhook in two stages).
+    #[default]
+    Karnopp,
+    /// High where the damper's force opposes the body's acceleration.
+    HoelscherHuang,
+}
+
+impl DamperPolicy {
+    /// Name on the command line and in scenario files.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+}
+
+/// Policy and thresholds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// Which rule decides.
+    pub policy: DamperPolicy,
+    /// Body velocity over the running RMS of vertical acceleration that Karnopp's rule needs to act, s, 0 to 10.
+    pub body_velocity_share_s: f32,
+    /// Body acceleration below 4 Hz over the running RMS that Hoelscher and Huang's rule needs to act, 0 to 100.
+    pub body_acceleration_share: f32,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self {
+            policy: DamperPolicy::Karnopp,
+            body_velocity_share_s: 0.35,  // measured: docs/controller.md
+            body_acceleration_share: 2.2, // measured: docs/controller.md
+        }
+    }
+}
+
+impl Tuning {
+    /// Whether every value is within its range.
+    pub(crate) fn check(&self) -> Result<(), ConfigurationError> {
+        within(
+            "tuning.strategy.ride_handling.dampers.body_velocity_share_s",
+            self.body_velocity_share_s,
+            0.0,
+            10.0,
+        )?;
+        within(
+            "tuning.strategy.ride_handling.dampers.body_acceleration_share",
+            self.body_acceleration_share,
+            0.0,
+            100.0,
+        )
+    }
+}
+
+/// Policy, squared thresholds and the filter of strut speed and body acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    policy: DamperPolicy,
+    body_band: LowPass,
+    body_velocity_share_2: f32,
+    body_acceleration_share_2: f32,
+}
+
+impl Parameters {
+    /// From a tuning that has been checked.
+    pub(crate) fn new(tuning: &Tuning) -> Self {
+        let square = |x: f32| x * x;
+        Self {
+            policy: tuning.policy,
+            // Body frequencies only: the valves cannot follow the wheel.
+            body_band: LowPass::from_corner_hz(4.0),
+            body_velocity_share_2: square(tuning.body_velocity_share_s),
+            body_acceleration_share_2: square(tuning.body_acceleration_share),
+        }
+    }
+}
+
 /// State of the four corners.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct SemiActive {
-    corners: Corners<Corner>,
+pub struct State {
+    corners: Corners<CornerState>,
 }
 
 /// State of one corner.
 #[derive(Clone, Copy, Debug, Default)]
-struct Corner {
+struct CornerState {
     speed_m_s: f32,
     acceleration_m_s2: f32,
     high: bool,
 }
 
-impl SemiActive {
-    /// One tick; low damping wanted, by corner.
-    pub fn step(&mut self, c: &Configuration, estimate: &Estimate, trusted: &Trusted) -> Corners<bool> {
+impl State {
+    /// One tick; whether low damping is wanted at each corner.
+    pub fn step(
+        &mut self,
+        parameters: &Parameters,
+        estimate: &Estimate,
+        displacement_m: &Corners<f32>,
+    ) -> Corners<bool> {
+        let band = &parameters.body_band;
         for (corner, state) in self.corners.iter_mut() {
             let speed = estimate.strut_speed_m_s[corner];
-            let extension = -c.body_band.step(&mut state.speed_m_s, speed);
-            let body_acceleration = c
-                .body_band
-                .step(&mut state.acceleration_m_s2, estimate.corner_acceleration_m_s2[corner]);
-            let (body, least_2) = match c.damper_policy {
+            let extension = -band.step(&mut state.speed_m_s, speed);
+            let acceleration = estimate.corner_acceleration_m_s2[corner];
+            let body_acceleration = band.step(&mut state.acceleration_m_s2, acceleration);
+            let (body, least_2) = match parameters.policy {
                 DamperPolicy::Low => (0.0, f32::MAX),
                 DamperPolicy::Karnopp => (
                     estimate.corner_velocity_m_s[corner],
                     at_least(
-                        c.body_velocity_share_2 * estimate.vertical_mean_square,
+                        parameters.body_velocity_share_2 * estimate.vertical_mean_square,
                         LEAST_VELOCITY_2,
                     ),
                 ),
                 DamperPolicy::HoelscherHuang => (
                     body_acceleration,
                     at_least(
-                        c.body_acceleration_share_2 * estimate.vertical_mean_square,
+                        parameters.body_acceleration_share_2 * estimate.vertical_mean_square,
                         LEAST_ACCELERATION_2,
                     ),
                 ),
             };
-            let x = trusted.displacement_m[corner];
+            let x = displacement_m[corner];
             let (jounce, rebound) = NEAR_STOP_M;
             let near_stop = (x > jounce && speed > 0.0) || (x < -rebound && speed < 0.0);
             let opposes = if body < 0.0 { -extension } else { extension };
@@ -94,21 +186,20 @@ mod tests {
     use super::*;
 
     fn settled(policy: DamperPolicy, extension_m_s: f32, velocity: f32, acceleration: f32, x_m: f32) -> bool {
-        let c = Configuration::defender110().with_damper_policy(policy);
+        let parameters = Parameters::new(&Tuning {
+            policy,
+            ..Tuning::default()
+        });
         let estimate = Estimate {
             strut_speed_m_s: Corners::splat(-extension_m_s),
             corner_velocity_m_s: Corners::splat(velocity),
             corner_acceleration_m_s2: Corners::splat(acceleration),
             ..Estimate::default()
         };
-        let trusted = Trusted {
-            displacement_m: Corners::splat(x_m),
-            ..Trusted::default()
-        };
-        let mut state = SemiActive::default();
+        let mut state = State::default();
         let mut low = Corners::splat(false);
         for _ in 0..100 {
-            low = state.step(&c, &estimate, &trusted);
+            low = state.step(&parameters, &estimate, &Corners::splat(x_m));
         }
         let [one, ..] = low.into_array();
         assert_eq!(low, Corners::splat(one));

@@ -12,7 +12,7 @@
 //!      record, trace --> metrics --> checks --> output (summary, logs, CSV, JUnit, page)
 //! ```
 //!
-//! * [`bus`]: what carries frames, and decorators around it; [`sync`]: how two nodes keep in step; [`clock`]: real time.
+//! * [`bus`]: what carries frames, and decorators around it; [`sync`] and [`handshake`]: how two nodes keep in step; [`clock`]: real time.
 //! * [`scenario`]: what is driven, what goes wrong, what must hold; [`run`]: a scenario to a recording.
 //! * [`metrics`], [`output`]: a recording to figures and files; [`bit_timing`]: what a wire would have made of it.
 #![forbid(unsafe_code)]
@@ -23,6 +23,7 @@ pub mod candump;
 pub mod clock;
 pub mod controller_node;
 pub mod frame;
+pub mod handshake;
 pub mod instruments;
 pub mod metrics;
 pub mod output;

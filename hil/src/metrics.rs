@@ -63,27 +63,27 @@ struct Answer {
 impl Metrics {
     /// Works everything out.
     pub fn of(scenario: &Scenario, outcome: &Outcome) -> Self {
-        let remains = &outcome.remains;
-        let samples = &remains.recording.samples;
+        let plant = &outcome.plant;
+        let samples = &plant.recording.samples;
         let ticks = samples.len() as u32;
-        let account = controller_account(&remains.trace, samples.len());
-        let bits = trace_bits(&remains.trace);
+        let account = controller_account(&plant.trace, samples.len());
+        let bits = trace_bits(&plant.trace);
         let mut meters = [
-            RideMeter::new(remains.recording.step_s),
-            RideMeter::new(remains.recording.step_s),
+            RideMeter::new(plant.recording.step_s),
+            RideMeter::new(plant.recording.step_s),
         ];
-        for felt in &remains.recording.seat_acceleration_m_s2 {
+        for felt in &plant.recording.seat_acceleration_m_s2 {
             meters.iter_mut().zip(felt).for_each(|(meter, a)| meter.add(*a));
         }
         Self {
             ticks,
             ticks_missing: scenario.ticks.saturating_sub(ticks),
             seats: meters.each_ref().map(RideMeter::measures),
-            valve_switches: remains.recording.valve_switches(),
-            frames_lost: remains.bus_frames_lost + remains.injected.dropped,
-            bus_frames_lost: remains.bus_frames_lost,
-            e2e_errors: remains.e2e_errors,
-            wires: bus_load::BIT_RATES.map(|rate| WireModel::of(&remains.trace, &bits, rate, TICK_US, ticks)),
+            valve_switches: plant.recording.valve_switches(),
+            frames_lost: plant.bus_frames_lost + plant.injected.dropped,
+            bus_frames_lost: plant.bus_frames_lost,
+            e2e_errors: plant.e2e_errors,
+            wires: bus_load::BIT_RATES.map(|rate| WireModel::of(&plant.trace, &bits, rate, TICK_US, ticks)),
             extremes: Extremes::of(samples),
             answer: scenario
                 .fault_ticks()

@@ -141,7 +141,7 @@ impl Summary {
         };
         let [driver, rear_left] = metrics.seats;
         let simulated_s = f64::from(metrics.ticks) * TICK_S;
-        let BusCounters { back_offs, .. } = outcome.remains.counters;
+        let BusCounters { back_offs, .. } = outcome.plant.counters;
         Self {
             schema: 1,
             scenario: scenario.name.clone(),
@@ -156,11 +156,11 @@ impl Summary {
             simulated_s,
             wall_s: outcome.wall_s,
             real_time_factor: simulated_s / outcome.wall_s.max(1e-9),
-            command_hash: command_hash(outcome.remains.recording.words()),
-            frames_sent: outcome.remains.frames_sent,
+            command_hash: command_hash(outcome.plant.recording.words()),
+            frames_sent: outcome.plant.frames_sent,
             frames_lost: metrics.frames_lost,
             bus_frames_lost: metrics.bus_frames_lost,
-            foreign_frames: outcome.remains.foreign_frames,
+            foreign_frames: outcome.plant.foreign_frames,
             e2e_errors: metrics.e2e_errors,
             bus_load_500k: metrics.wires[0].utilisation,
             bus_load_1m: metrics.wires[1].utilisation,
@@ -291,7 +291,7 @@ fn candump(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics) -> Vec<u8>
         crate::bus::BusAddress::SocketCan(interface) => interface.as_str(),
         _ => "vcan0",
     };
-    let trace = &outcome.remains.trace;
+    let trace = &outcome.plant.trace;
     let real_time = scenario.clock == crate::scenario::Clock::RealTime;
     let mut timed: Vec<(u64, usize)> = match real_time {
         true => trace
@@ -312,8 +312,8 @@ fn candump(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics) -> Vec<u8>
 
 /// Time histories at ticks, by column.
 fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<f64>)> {
-    let samples = &outcome.remains.recording.samples;
-    let steps = outcome.remains.recording.seat_acceleration_m_s2.len() / samples.len().max(1);
+    let samples = &outcome.plant.recording.samples;
+    let steps = outcome.plant.recording.seat_acceleration_m_s2.len() / samples.len().max(1);
     let mut columns: Vec<(String, Vec<f64>)> = Vec::with_capacity(64);
     let mut column = |name: &str, value: &dyn Fn(usize) -> f64| {
         columns.push((name.to_owned(), (0..samples.len()).map(value).collect()));
@@ -337,7 +337,7 @@ fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<f64>)> {
     let felt = |i: usize, seat: usize| {
         // At the beginning of a tick: the last step of the one before.
         let index = (i * steps).checked_sub(1);
-        index.map_or(0.0, |at| outcome.remains.recording.seat_acceleration_m_s2[at][seat])
+        index.map_or(0.0, |at| outcome.plant.recording.seat_acceleration_m_s2[at][seat])
     };
     column("driver_acceleration_m_s2", &|i| felt(i, 0));
     column("rear_left_acceleration_m_s2", &|i| felt(i, 1));

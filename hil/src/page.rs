@@ -134,7 +134,7 @@ struct Time<'a> {
 
 impl<'a> Time<'a> {
     fn of(scenario: &'a Scenario, outcome: &Outcome) -> Self {
-        let s = (0..outcome.remains.recording.samples.len())
+        let s = (0..outcome.plant.recording.samples.len())
             .map(|tick| tick as f64 * TICK_S)
             .collect();
         Self {
@@ -173,7 +173,7 @@ fn fault_label(fault: &Fault) -> &'static str {
 }
 
 fn road(page: &mut Page, outcome: &Outcome, time: &Time) {
-    let samples = &outcome.remains.recording.samples;
+    let samples = &outcome.plant.recording.samples;
     let mut curves = time.curves("Road under the front wheels");
     curves.panel(Axis::new("Height", "mm"));
     for side in Side::ALL {
@@ -188,7 +188,7 @@ fn road(page: &mut Page, outcome: &Outcome, time: &Time) {
 }
 
 fn body(page: &mut Page, outcome: &Outcome, time: &Time) {
-    let recording = &outcome.remains.recording;
+    let recording = &outcome.plant.recording;
     let samples = &recording.samples;
     let mut curves = time.curves("Sprung mass");
     let mut panel = |axis: Axis, name: &str, value: &dyn Fn(usize) -> f64| {
@@ -220,7 +220,7 @@ fn body(page: &mut Page, outcome: &Outcome, time: &Time) {
 }
 
 fn struts(page: &mut Page, outcome: &Outcome, time: &Time) {
-    let samples = &outcome.remains.recording.samples;
+    let samples = &outcome.plant.recording.samples;
     page.section("Struts").text(
         "Compression is positive; pressures are gauge. Valves 1 and 2 bypass the dampers (open: low damping), valve 3 connects the \
          0.4 l accumulator (open: soft spring).",
@@ -269,7 +269,7 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
     curves.panel(Axis::new("Mode", "").ticks(names).range(-0.4, 4.4));
     curves.series(Style::Step, "mode", &time.s, &mode);
     time.mark(&mut curves);
-    let status = status_messages(&outcome.remains.trace);
+    let status = status_messages(&outcome.plant.trace);
     let status_s: Vec<f64> = status.iter().map(|(tick, _)| f64::from(*tick) * TICK_S).collect();
     let of = |value: &dyn Fn(&oleo_controller::can::StatusMessage) -> f64| -> Vec<f64> {
         status.iter().map(|(_, message)| value(message)).collect()
@@ -325,8 +325,8 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
 }
 
 fn bus(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &Summary) {
-    let counters = &outcome.remains.counters;
-    let injected = &outcome.remains.injected;
+    let counters = &outcome.plant.counters;
+    let injected = &outcome.plant.injected;
     let mut table = Table::new([Column::text("Frames"), Column::number("Count")]);
     for (name, count) in [
         ("messages on the wire, both directions", summary.frames_sent),

@@ -173,12 +173,12 @@ impl<B: Bus> PlantNode<B> {
     }
 
     /// What is left of a run.
-    pub fn into_remains(mut self) -> PlantRemains {
+    pub fn into_result(mut self) -> PlantResult {
         let trace = self.bus.inner_mut();
         let received = trace.messages_received() as u16;
         let (lost_by_controller, e2e_by_controller) = self.tally;
         let bus_lost = u64::from(self.controller_sent.wrapping_sub(received)) + u64::from(lost_by_controller);
-        PlantRemains {
+        PlantResult {
             frames_sent: trace.messages_sent() + trace.messages_received(),
             bus_frames_lost: bus_lost,
             foreign_frames: trace.foreign(),
@@ -193,7 +193,7 @@ impl<B: Bus> PlantNode<B> {
 
 /// What a plant node knows at the end of a run.
 #[derive(Debug)]
-pub struct PlantRemains {
+pub struct PlantResult {
     /// Samples of the run.
     pub recording: Recording,
     /// Frames on the wire.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use oleo_controller::Mode;
 use oleo_interface::tick::TICK_S;
 
-use super::{TICK, guard};
+use super::waiting::{TICK, partner_timeout};
 use crate::bus::{Bus, BusError};
 use crate::clock::{Lateness, RealTime};
 use crate::controller_node::{ControllerNode, Heard};
@@ -21,7 +21,7 @@ pub(super) fn in_lockstep<B: Bus>(
     controller: &mut ControllerNode<B>,
     scenario: &Scenario,
 ) -> Result<Option<PlantLost>, BusError> {
-    let wait = guard(scenario);
+    let wait = partner_timeout(scenario);
     loop {
         match controller.listen(wait) {
             Ok(Heard::Tick) => {

@@ -4,12 +4,17 @@ use std::time::{Duration, Instant};
 
 use oleo_interface::tick::TICK_S;
 
-use super::{Outcome, RunError, TICK, Watch, guard};
+use super::error::RunError;
+use super::outcome::Outcome;
+use super::waiting::{TICK, partner_timeout};
 use crate::bus::{Bus, BusError};
 use crate::clock::{Lateness, RealTime};
 use crate::plant_node::{Answer, PlantNode};
 use crate::scenario::{OnControllerLoss, Scenario};
 use crate::sync::Role;
+
+/// Called every few ticks with the number of ticks done; `false` ends the run early.
+pub type Watch<'a> = &'a mut dyn FnMut(u32) -> bool;
 
 /// Ticks between two calls of [`Watch`].
 pub(super) const WATCH_TICKS: u32 = 50;
@@ -31,7 +36,7 @@ impl PlantEnd {
     ) -> Outcome {
         lateness.extend(self.lateness.map(|late| (Role::Plant, late)));
         Outcome {
-            remains: plant.into_remains(),
+            plant: plant.into_result(),
             wall_s: (self.stopped - started).as_secs_f64(),
             lateness,
             controller_lost_at: self.controller_lost_at,
@@ -47,7 +52,7 @@ pub(super) fn in_lockstep<B: Bus>(
     partner: &mut dyn FnMut() -> Result<(), BusError>,
     watch: Watch,
 ) -> Result<PlantEnd, RunError> {
-    let wait = guard(scenario);
+    let wait = partner_timeout(scenario);
     let (mut controller_lost_at, mut interrupted) = (None, false);
     while plant.tick() < scenario.ticks {
         // A bus whose other end was closed has no controller on it either.
@@ -121,7 +126,7 @@ pub(super) fn in_real_time<B: Bus>(
     let stopped = Instant::now();
     if controller_lost_at.is_none() {
         plant.send_end()?;
-        plant.listen(guard(scenario))?;
+        plant.listen(partner_timeout(scenario))?;
     }
     Ok(PlantEnd {
         stopped,

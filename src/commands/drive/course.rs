@@ -11,8 +11,8 @@ use oleo_plant_sim::road::{self, Road};
 use oleo_plant_sim::vehicle::suspension::{CoilElement, SuspensionElement};
 use oleo_plant_sim::vehicle::{BaselineVehicle, RideModel, RideVehicle, VehicleParameters};
 
+use super::arguments::{Args, Kind, Model, Setting};
 use super::suspension::{Valves, struts};
-use super::{Args, Kind, Model, Setting};
 use crate::failure::Failure;
 
 /// Time before a step of steer, s.

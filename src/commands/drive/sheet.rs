@@ -11,7 +11,7 @@ use oleo_plant_sim::measures::RideMeter;
 use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Style, Table, significant};
 use serde_json::{Map, Value, json};
 
-use super::Setting;
+use super::arguments::Setting;
 use super::course::Course;
 use crate::failure::Failure;
 

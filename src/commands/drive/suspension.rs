@@ -5,7 +5,7 @@ use oleo_interface::{Corners, Gauge, StrutPressures, StrutValves};
 use oleo_plant_sim::strut::{ModelError, Strut, StrutModel, StrutOutput};
 use oleo_plant_sim::vehicle::VehicleParameters;
 
-use super::Setting;
+use super::arguments::Setting;
 
 /// Where the valves' signals come from.
 pub enum Valves {

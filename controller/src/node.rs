@@ -128,8 +128,8 @@ impl Node {
 
     /// One period: decides, and returns what to send. Call it every [`TICK_MS`].
     pub fn tick(&mut self) -> (Outputs, Vec<Frame, MAX_SENT>) {
-        let inputs = self.end_of_reception();
-        let outputs = tick(&self.configuration, &mut self.state, &inputs);
+        self.end_of_reception();
+        let outputs = tick(&self.configuration, &mut self.state, &self.inputs);
 
         let mut frames = Vec::new();
         let mut send = |id: u16, mut data: [u8; FRAME_BYTES], protector: &mut Protector| {
@@ -146,33 +146,31 @@ impl Node {
         send(COMMAND.id, command.encode(), &mut self.command);
         if self.status_countdown == 0 {
             self.status_countdown = STATUS_TICKS;
-            let status = status(&outputs, inputs.lost_messages);
+            let status = status(&outputs, self.inputs.lost_messages);
             send(STATUS.id, status.encode(), &mut self.status);
         }
         self.status_countdown = self.status_countdown.saturating_sub(1);
         (outputs, frames)
     }
 
-    /// The inputs of the tick that begins: what was received last, and nothing of messages that are lost.
-    fn end_of_reception(&mut self) -> Inputs {
-        let mut inputs = self.inputs;
-        for message in SensorMessage::ALL {
-            if !self.receivers.get_mut(message).end_of_tick() {
-                continue;
+    /// Makes the readings of lost messages invalid. A message's next usable frame brings new ones.
+    fn end_of_reception(&mut self) {
+        let inputs = &mut self.inputs;
+        inputs.lost_messages = MessageSet::EMPTY;
+        for (corner, receiver) in self.receivers.pressure.iter_mut() {
+            if receiver.end_of_tick() {
+                inputs.lost_messages.insert(SensorMessage::Pressure(corner));
+                inputs.pressure[corner] = StrutPressures::splat(Reading::INVALID);
             }
-            inputs.lost_messages.insert(message);
-            match message {
-                SensorMessage::Pressure(corner) => {
-                    inputs.pressure[corner] = StrutPressures::splat(Reading::INVALID);
-                }
-                SensorMessage::Displacement(axle) => {
-                    for side in Side::ALL {
-                        inputs.displacement[axle.corner(side)] = Reading::INVALID;
-                    }
+        }
+        for (axle, receiver) in self.receivers.displacement.iter_mut() {
+            if receiver.end_of_tick() {
+                inputs.lost_messages.insert(SensorMessage::Displacement(axle));
+                for side in Side::ALL {
+                    inputs.displacement[axle.corner(side)] = Reading::INVALID;
                 }
             }
         }
-        inputs
     }
 
     /// Bus statistics since the start.

@@ -300,6 +300,11 @@ impl<T> Axles<T> {
     pub fn iter(&self) -> impl Iterator<Item = (Axle, &T)> {
         [(Axle::Front, &self.front), (Axle::Rear, &self.rear)].into_iter()
     }
+
+    /// Axle and value to change, front first.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = (Axle, &mut T)> {
+        [(Axle::Front, &mut self.front), (Axle::Rear, &mut self.rear)].into_iter()
+    }
 }
 
 impl<T> Index<Axle> for Axles<T> {

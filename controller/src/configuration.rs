@@ -11,7 +11,7 @@ use crate::spring;
 use crate::strategy::{self, Strategy};
 use crate::vehicle::VehicleDescription;
 
-/// What a person may choose about the parts of the controller.
+/// What a person may choose about the parts of the controller. See [`strategy::Tuning`] for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tuning {
     /// Of the estimated motion.

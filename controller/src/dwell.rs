@@ -20,15 +20,15 @@ const BYPASS_BITS: u16 = 0b011_011_011_011;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Dwell {
     open: ValveCommand,
-    /// Ticks so far. It wraps after 248 days; a valve that last moved just then rests once more.
+    /// Number of ticks so far. It wraps after 248 days; a valve that last moved exactly then rests once more.
     now: u32,
     /// Value of `now` at the last change of each valve.
     changed_at: Corners<StrutValves<u32>>,
 }
 
 impl Dwell {
-    /// One tick: the bypass signals of `wanted` as far as the valves have rested; the spring valves stay closed in the
-    /// answer. `at_once` lets a closing pass without rest.
+    /// One tick: takes over the bypass signals of `wanted` whose valves have rested, and returns all of them. The spring
+    /// valves are closed in what it returns. `at_once` lets a closing pass without rest.
     pub fn step(&mut self, wanted: ValveCommand, at_once: bool) -> ValveCommand {
         self.now = self.now.wrapping_add(1);
         if (wanted.word() ^ self.open.word()) & BYPASS_BITS != 0 {
@@ -37,7 +37,7 @@ impl Dwell {
         self.open
     }
 
-    /// The usual tick changes nothing and does not come here.
+    /// Called in ticks in which some bypass valve is wanted elsewhere; most ticks have none.
     #[inline(never)]
     fn change(&mut self, wanted: ValveCommand, at_once: bool) {
         for corner in Corner::ALL {
@@ -97,7 +97,7 @@ mod tests {
                 .with(Corner::RearLeft, Valve::Bypass2, true)
         );
         assert_eq!(dwell.step(ValveCommand::SAFE, false), ValveCommand::SAFE);
-        // The spring valves are not this module's.
+        // The spring valves are not decided here.
         assert_eq!(
             dwell.step(ValveCommand::from_word(!BYPASS_BITS), true),
             ValveCommand::SAFE

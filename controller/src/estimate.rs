@@ -1,9 +1,9 @@
 //! Motion of the body and the struts, from displacements and pressures alone.
 //!
-//! There is no accelerometer. A strut's force is its main pressure times the piston area, and the struts carry the whole body, so their sum
-//! says how the body accelerates, and their differences how it is turned. With `F` the four forces, `W` their
-//! slow mean (the static load, measured, so that payload needs no parameter), `y` and `x` the struts' places to the left and ahead of
-//! the centre of gravity and `phi_f`, `phi_r` the roll relative to each axle:
+//! There is no accelerometer. A strut's force is its main pressure times the piston area, and the struts carry the whole body. So
+//! the sum of their forces tells how the body accelerates, and the differences tell how it is turned. With `F` the four forces,
+//! `W` their slow mean (the static load; it is measured, so that the payload needs no parameter), `y` and `x` the distances of
+//! the struts to the left of and ahead of the centre of gravity, and `phi_f` and `phi_r` the roll relative to each axle:
 //!
 //! ```text
 //!   heave       z''     = g (sum F / sum W - 1)
@@ -13,12 +13,13 @@
 //!   corner      z_i''   = z'' + y_i phi'' - x_i theta''
 //! ```
 //!
-//! Newton and Euler for the sprung mass, small angles; the lateral line is the moment balance about the roll axis at low frequency, where
-//! `J_x phi''` vanishes. Signs: x forward, y left, z up; roll positive right side down, pitch positive nose down, so a left turn
-//! (positive `a_y`) rolls the body positive.
+//! Source: Newton and Euler for the sprung mass at small angles. The line for `a_y` is the moment balance about the roll axis at
+//! low frequency, where `J_x phi''` vanishes. Signs: x forward, y left, z up; roll is positive with the right side down, pitch
+//! with the nose down. So a left turn, in which `a_y` is positive, rolls the body in the positive direction.
 //!
-//! What this cannot know: a side slope looks like cornering (so it does to an accelerometer); seal friction, links, bushes and
-//! stops that press past the oil are not in p1; axle roll on the tyres is missing from `phi`. Figures in `docs/controller.md`.
+//! Limits: a side slope looks like cornering, as it does to an accelerometer. Forces that do not pass through the oil are not in
+//! p1: seal friction, links, bushes and stops. `phi` lacks the roll of the axles on the tyres. Figures are in
+//! `docs/controller.md`.
 
 use oleo_interface::tick::TICKS_PER_SECOND;
 use oleo_interface::{Axles, Corners};
@@ -31,11 +32,12 @@ use crate::vehicle::VehicleDescription;
 /// Standard gravity, m/s2 (ISO 80000-3).
 pub const GRAVITY_M_S2: f32 = 9.806_65;
 
-/// Largest lateral offset that is learnt as uneven load or sensor bias, m/s2: a long bend must not be learnt away.
+/// Largest lateral offset that is learnt as uneven load or sensor bias, m/s2. The bound keeps a long bend from being learnt as a
+/// bias.
 const MAX_BIAS_M_S2: f32 = 0.5;
 
-/// Corner frequency of the strut speed's differentiating filter, Hz: above wheel hop's use for valves of 40 to 90 ms, low
-/// enough for the 0.01 mm step of the displacement signal (`vehicle.md`: 15 to 20 Hz).
+/// Corner frequency of the filter that differentiates the strut displacement, Hz. It is high enough for everything that valves of
+/// 40 to 90 ms can follow, and low enough for the 0.01 mm steps of the displacement signal (`vehicle.md`: 15 to 20 Hz).
 const SPEED_CORNER_HZ: f32 = 18.0;
 const _: () = assert!(
     SPEED_CORNER_HZ * 8.0 <= TICKS_PER_SECOND as f32,
@@ -43,6 +45,13 @@ const _: () = assert!(
 );
 
 /// What a person may choose about the estimate.
+///
+/// ```
+/// use oleo_controller::{Builder, estimate};
+/// let mut builder = Builder::default();
+/// builder.tuning.estimate = estimate::Tuning { running_rms_s: 0.5, ..estimate::Tuning::default() };
+/// assert!(builder.build().is_ok());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
     /// Corner frequency of the lateral surrogate's two lags, Hz, 0.1 to 5: below the body's roll resonance.
@@ -68,7 +77,7 @@ impl Tuning {
     }
 }
 
-/// Dimensions and filters, as the equations above use them.
+/// Dimensions and filters, as the equations above use them. See [`State`] for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
     piston_area_m2: f32,
@@ -113,7 +122,8 @@ impl Parameters {
     }
 }
 
-/// Estimated motion. Body quantities are about its centre of gravity, x forward, y left, z up; struts compression positive.
+/// Estimated motion. Quantities of the body are those of its centre of gravity, with x forward, y left and z up; compression of a
+/// strut is positive. See [`estimate::State`](State) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// Strut speed, m/s, compression positive.
@@ -147,9 +157,9 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Whether all arithmetic gave numbers.
+    /// Whether every quantity is a finite number.
     pub fn is_finite(&self) -> bool {
-        // Every quantity above enters one of these sums, and NaN or infinity survives addition.
+        // Every quantity above enters one of these sums, and a value that is not finite makes its sum not finite.
         let corners: f32 = self
             .strut_speed_m_s
             .values()
@@ -169,6 +179,22 @@ impl Estimate {
 }
 
 /// Memory of the estimator.
+///
+/// ```
+/// use oleo_controller::plausibility::Trusted;
+/// use oleo_controller::{Configuration, Corners, Gauge, StrutPressures, estimate};
+/// let parameters = Configuration::defender110().estimate;
+/// let mut state = estimate::State::default();
+/// let under = |pressure_pa: f32| Trusted {
+///     pressure: Corners::splat(StrutPressures::splat(Gauge(pressure_pa))),
+///     ..Trusted::default()
+/// };
+/// // The first tick takes the load for the static load: the body is at rest.
+/// assert_eq!(state.step(&parameters, &under(2.0e6)).vertical_acceleration_m_s2, 0.0);
+/// // A tenth more force at every strut accelerates the body upwards by a tenth of gravity.
+/// let estimate = state.step(&parameters, &under(2.2e6));
+/// assert!((estimate.vertical_acceleration_m_s2 - 0.980_665).abs() < 1e-3);
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct State {
     speed: Corners<DerivativeState>,
@@ -182,7 +208,7 @@ pub struct State {
 }
 
 impl State {
-    /// One tick from readings that may be used.
+    /// One tick; returns the motion that follows from readings that may be used.
     pub fn step(&mut self, c: &Parameters, trusted: &Trusted) -> Estimate {
         let speeds = self.speed.each_mut().zip(trusted.displacement_m);
         let strut_speed_m_s = speeds.map(|(state, x)| c.strut_speed.step(state, x));
@@ -195,7 +221,7 @@ impl State {
             self.static_load_n = force;
         }
         for (load, force) in self.static_load_n.each_mut().zip(force).into_array() {
-            // A strut without load (jacked up, empty) must not divide by nothing.
+            // A strut without load (jacked up, or empty) must not lead to a division by zero.
             *load = at_least(c.static_load.step(load, force), 1.0);
         }
         let weight: f32 = self.static_load_n.values().sum();
@@ -249,7 +275,7 @@ impl State {
     }
 }
 
-/// Body relative to the axles, from strut displacements (or rates, from strut speeds).
+/// Motion of the body relative to the axles: positions from strut displacements, or rates from strut speeds.
 struct Relative {
     heave_m: f32,
     roll_rad: f32,

@@ -29,6 +29,15 @@ pub const MAX_SENT: usize = 2;
 const STATUS_TICKS: u32 = STATUS.period_ms / TICK_MS;
 
 /// What has been seen on the bus, for statistics. The counters wrap.
+///
+/// ```
+/// use oleo_controller::{Configuration, Node};
+/// let mut node = Node::new(Configuration::defender110());
+/// node.receive(0x7DF, &[0; 8]); // a frame of somebody else
+/// node.receive(0x110, &[0; 8]); // a sensor message with a wrong check value
+/// let counters = node.counters();
+/// assert_eq!((counters.foreign, counters.received, counters.wrong_crc), (1, 1, 1));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BusCounters {
     /// Frames of the controller's messages.
@@ -44,6 +53,26 @@ pub struct BusCounters {
 }
 
 /// A controller with its configuration and state, behind both directions of the bus.
+///
+/// ```
+/// use oleo_controller::can::PlantEnd;
+/// use oleo_controller::{Configuration, Corners, Gauge, Inputs, Mode, Node, StrutPressures};
+/// let mut node = Node::new(Configuration::defender110());
+/// let mut plant = PlantEnd::new(); // stands for the sensors and the output stage
+/// let at_rest = Inputs::from_values(Corners::splat(0.0), Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
+/// let mut mode = Mode::StartUp;
+/// for tick in 0..40 {
+///     for frame in plant.encode(tick, &at_rest) {
+///         node.receive(frame.id, &frame.data);
+///     }
+///     let (outputs, frames) = node.tick();
+///     for frame in frames {
+///         plant.receive(frame.id, &frame.data);
+///     }
+///     mode = outputs.mode;
+/// }
+/// assert_eq!(mode, Mode::Normal);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Node {
     configuration: Configuration,
@@ -58,7 +87,7 @@ pub struct Node {
 }
 
 impl Node {
-    /// A node that has heard nothing: valves closed, mode start-up.
+    /// A node that has received nothing: all valves are closed, and the mode is [`Mode::StartUp`](crate::Mode::StartUp).
     pub fn new(configuration: Configuration) -> Self {
         Self {
             state: State::new(),
@@ -76,8 +105,11 @@ impl Node {
         }
     }
 
-    /// Takes a frame from the bus, any number of times between ticks. Foreign identifiers are ignored. Returns the plant
-    /// tick if the frame is a rear displacement message with the right CRC, which completes a set in lockstep.
+    /// Takes a frame from the bus: its standard identifier, 0 to 0x7FF, and its data. Call it any number of times between
+    /// ticks; frames with other identifiers are counted and ignored.
+    ///
+    /// Returns the sender's tick if the frame is a rear displacement message with the right CRC. That message is the last
+    /// of a tick, so a simulation in lockstep knows that the readings are complete.
     pub fn receive(&mut self, id: u16, data: &[u8]) -> Option<u16> {
         let Some(message) = sensor_message(id) else {
             self.counters.foreign = self.counters.foreign.wrapping_add(1);
@@ -121,12 +153,12 @@ impl Node {
         }
     }
 
-    /// The output stage failed to switch a solenoid: the next tick latches.
+    /// Reports that the output stage could not switch a solenoid. The next tick latches.
     pub fn report_solenoid_failure(&mut self) {
         self.inputs.solenoid_failed = true;
     }
 
-    /// One period: decides, and returns what to send. Call it every [`TICK_MS`].
+    /// One period: decides, and returns the frames to send. Call it every [`TICK_MS`].
     pub fn tick(&mut self) -> (Outputs, Vec<Frame, MAX_SENT>) {
         self.end_of_reception();
         let outputs = tick(&self.configuration, &mut self.state, &self.inputs);

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-/// A value outside the range for which the controller was designed.
+/// A value outside the range for which the controller was designed. See [`Builder`](crate::Builder) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConfigurationError {
     /// Name of the value: its field in [`Builder`](crate::Builder).
@@ -39,7 +39,15 @@ pub(crate) fn within(name: &'static str, value: f32, least: f32, most: f32) -> R
     }
 }
 
-/// Two thresholds: a state begins above the one and ends below the other, so that it does not change every tick.
+/// Two thresholds: a state begins above one and ends below the other, so that it does not change every tick.
+///
+/// ```
+/// use oleo_controller::{Builder, Hysteresis};
+/// let mut builder = Builder::default();
+/// builder.tuning.strategy.ride_handling.running_rms.ratio = Hysteresis { begin: 0.8, end: 1.0 };
+/// let error = builder.build().unwrap_err();
+/// assert_eq!((error.value, error.range), (1.0, (0.05, 0.8))); // the end is above the begin
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hysteresis {
     /// The state begins above this value.

@@ -1,13 +1,20 @@
-//! What the controller may know: twenty sensor readings, each with its validity.
+//! What the controller is told: twenty sensor readings, each with its validity.
 //!
-//! A number whose sensor or frame is not trusted must not be usable by accident, so the value is only reachable together
-//! with the question whether it is valid.
+//! A number whose sensor or frame is not trusted must not be used by accident. So a value can only be had together with the answer
+//! whether it is valid.
 
 use oleo_interface::{Corners, Gauge, StrutPressures};
 
 use crate::sensor_message::MessageSet;
 
 /// One sensor reading. A value that is not finite is never valid.
+///
+/// ```
+/// use oleo_controller::Reading;
+/// assert_eq!(Reading::new(0.012).value(), Some(0.012));
+/// assert_eq!(Reading::new(f32::NAN), Reading::INVALID);
+/// assert_eq!(Reading::INVALID.value(), None);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reading {
     value: f32,
@@ -15,7 +22,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// A reading that says nothing.
+    /// A reading without a value.
     pub const INVALID: Self = Self {
         value: 0.0,
         valid: false,
@@ -30,7 +37,7 @@ impl Reading {
         }
     }
 
-    /// The value where it is valid.
+    /// The value, if it is valid.
     pub fn value(self) -> Option<f32> {
         self.valid.then_some(self.value)
     }

@@ -2,7 +2,7 @@
 
 use crate::can::{CheckStatus, Checker, Contract, FRAME_BYTES};
 
-/// Bad frames, less good ones, at which a message is no longer trusted.
+/// Number of bad frames, less the good ones, at which a message is no longer trusted.
 const TRUST_LIMIT: u8 = 5;
 
 /// What is known of one sensor message.
@@ -56,5 +56,24 @@ impl Receiver {
             self.age = self.age.saturating_add(1);
         }
         self.untrusted || self.age >= self.timeout_ticks
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sensor_message::SensorMessage;
+
+    /// A frame of another length is checked as if it were this one.
+    #[test]
+    fn a_frame_full_of_ones_has_a_wrong_crc_under_every_identifier() {
+        for message in SensorMessage::ALL {
+            let mut receiver = Receiver::new(&message.contract());
+            assert_eq!(
+                receiver.receive(&[0xFF; FRAME_BYTES]),
+                CheckStatus::WrongCrc,
+                "{message:?}"
+            );
+        }
     }
 }

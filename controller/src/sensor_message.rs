@@ -3,6 +3,13 @@
 use oleo_interface::{Axle, Axles, Corner, Corners};
 
 /// A message by which sensors report, once a tick.
+///
+/// ```
+/// use oleo_controller::{Axle, SensorMessage};
+/// let last = SensorMessage::Displacement(Axle::Rear);
+/// assert_eq!(SensorMessage::ALL.last(), Some(&last));
+/// assert_eq!(last.contract().name, "DISPLACEMENT_REAR");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SensorMessage {
     /// The four pressures of the strut at one corner.
@@ -62,7 +69,7 @@ impl MessageSet {
         self.0
     }
 
-    /// Put a message into the set.
+    /// Puts a message into the set.
     pub const fn insert(&mut self, message: SensorMessage) {
         self.0 |= 1 << message.bit();
     }
@@ -75,12 +82,13 @@ impl MessageSet {
 
 /// One value for each sensor message.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PerSensorMessage<T> {
+pub struct PerSensorMessage<T> {
     pub pressure: Corners<T>,
     pub displacement: Axles<T>,
 }
 
 impl<T> PerSensorMessage<T> {
+    /// The value of a message, to change it.
     pub fn get_mut(&mut self, message: SensorMessage) -> &mut T {
         match message {
             SensorMessage::Pressure(corner) => &mut self.pressure[corner],

@@ -1,14 +1,14 @@
-//! Twelve solenoids behind twelve output pins, high = energised = open.
+//! Twelve solenoids behind twelve output pins: a high pin energises the solenoid and opens the valve.
 //!
-//! Whatever ends the controller must leave the valves closed, so the output stage de-energises when it is made, when a pin
-//! reports an error, and when it is dropped. A failed pin never stops the others from being switched.
+//! Whatever ends the controller must leave the valves closed. So the output stage de-energises all of them when it is made, when a
+//! pin reports an error, and when it is dropped. A failed pin never keeps the others from being switched.
 
 use embedded_hal::digital::OutputPin;
 use oleo_interface::{Corners, StrutValves};
 
 use crate::valves::ValveCommand;
 
-/// Some pins could not be switched.
+/// Some output pins could not be switched. The message names their valves. See [`Solenoids`] for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SolenoidError {
     /// Whether each valve's pin failed.
@@ -34,6 +34,34 @@ impl core::fmt::Display for SolenoidError {
 impl core::error::Error for SolenoidError {}
 
 /// The output stage: one pin for each valve.
+///
+/// ```
+/// use embedded_hal::digital::{ErrorKind, ErrorType, OutputPin};
+/// use oleo_controller::{Corners, Solenoids, StrutValves, ValveCommand};
+///
+/// struct BrokenPin;
+/// impl ErrorType for BrokenPin {
+///     type Error = ErrorKind;
+/// }
+/// impl OutputPin for BrokenPin {
+///     fn set_low(&mut self) -> Result<(), ErrorKind> {
+///         Ok(())
+///     }
+///     fn set_high(&mut self) -> Result<(), ErrorKind> {
+///         Err(ErrorKind::Other)
+///     }
+/// }
+///
+/// let pins = Corners::from_fn(|_| StrutValves::from_fn(|_| BrokenPin));
+/// let mut solenoids = Solenoids::new(pins).expect("these pins can be low");
+/// let error = solenoids.drive(ValveCommand::from_word(0b100)).unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "solenoids: the output pins of front-left valve 3 could not be switched: check the output stage"
+/// );
+/// // Now it only de-energises.
+/// assert!(solenoids.drive(ValveCommand::SOFT).is_ok());
+/// ```
 #[derive(Debug)]
 pub struct Solenoids<P: OutputPin> {
     pins: Corners<StrutValves<P>>,
@@ -41,21 +69,21 @@ pub struct Solenoids<P: OutputPin> {
 }
 
 impl<P: OutputPin> Solenoids<P> {
-    /// Takes the pins and de-energises them all.
+    /// Takes the pins and de-energises all of them.
     ///
     /// # Errors
-    /// If a pin cannot be switched; all others are low and the stage is dropped.
+    /// If a pin cannot be switched. All others are low then, and the stage is dropped.
     pub fn new(pins: Corners<StrutValves<P>>) -> Result<Self, SolenoidError> {
         let mut stage = Self { pins, latched: false };
         stage.write(ValveCommand::SAFE)?;
         Ok(stage)
     }
 
-    /// Drives all pins. After an error every further call only de-energises: a stage that failed once is not trusted
+    /// Drives all pins. After an error every further call only de-energises, because a stage that failed once is not trusted
     /// again.
     ///
     /// # Errors
-    /// The pins that could not be switched.
+    /// Names the pins that could not be switched. All others are low then.
     pub fn drive(&mut self, command: ValveCommand) -> Result<(), SolenoidError> {
         let result = self.write(if self.latched { ValveCommand::SAFE } else { command });
         if result.is_err() {
@@ -65,11 +93,11 @@ impl<P: OutputPin> Solenoids<P> {
         result
     }
 
-    /// All pins low, as far as they obey.
+    /// Sets all pins low. A pin that cannot be switched is passed over.
     pub fn de_energise(&mut self) {
         for strut in self.pins.values_mut() {
             for pin in strut.each_mut().into_array() {
-                // Nothing is left to do for a pin that will not go low.
+                // Nothing more can be done for a pin that does not go low.
                 let _ = pin.set_low();
             }
         }

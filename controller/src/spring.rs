@@ -1,8 +1,9 @@
 //! Valve 3 at any displacement: when to close and open it, and what its closing traps.
 //!
-//! The report's first model could change springs at the reference position only. The reason is oil: closing valve 3 keeps in
-//! accumulator 2 whatever is in it then, and opening it joins two volumes of different pressure. Both follow from the
-//! measured pressures (absolute; `k` charge pressure, `V1`, `V2` gas volumes at static position, `A` piston area, isothermal as in the report):
+//! The report's first model could change springs at the reference position only. The reason is the oil: closing valve 3 keeps
+//! in accumulator 2 whatever oil is in it then, and opening it joins two volumes of different pressure. Both effects follow
+//! from the measured pressures (absolute; `k` charge pressure, `V1`, `V2` gas volumes at static position, `A` piston area,
+//! isothermal as in the report):
 //!
 //! ```text
 //!   closing   gas left behind        V4 = V2 k / p4
@@ -11,14 +12,17 @@
 //!             force step             dF = A (p - p1) = A (p4 - p1) V4 / (V1' + V4)
 //! ```
 //!
-//! Rules, for each strut. The pressures are taken where they will be when the valve acts, 60 ms ahead.
+//! The rules for each strut use the pressures extrapolated by 60 ms, to the time at which the valve acts.
 //!
-//! - Close when `|x_t|` is below its bound (8 mm); handling waits up to 150 ms for that, a roll-over guard not at all, comfort 1 s.
-//! - Open when `|dF|` is below its bound (5 % of static load) at both struts of the axle, so that left and right change together; after 1 s
-//!   open anyway, but throttled: valve 2 stays closed, so that the volumes equalise through damper 2, until p3 and p4 are within 0.2 MPa.
-//! - Not again within 0.5 s, except to close in an emergency.
+//! - A valve closes when `|x_t|` is below its bound (8 mm). It waits for that up to 150 ms in handling mode and 1 s for
+//!   comfort, and not at all under the roll-over guard.
+//! - A valve opens when `|dF|` is below its bound (5 % of the static load) at both struts of the axle, so that left and right
+//!   change together. After 1 s it opens anyway, but throttled: valve 2 stays closed, so that the volumes equalise through
+//!   damper 2, until p3 and p4 are within 0.2 MPa of each other.
+//! - A valve does not move again within 0.5 s, except to close in an emergency.
 //!
-//! What an emergency traps is not bounded; it is reported ([`Springs::trapped_shift_m`]) and goes at the next opening.
+//! The shift that a closing in an emergency traps has no bound. [`Springs::trapped_shift_m`] reports it, and the next opening
+//! releases it.
 
 use oleo_interface::{Absolute, Corners, Gauge, StrutPressures};
 
@@ -29,14 +33,15 @@ use crate::strategy::Urgency;
 use crate::timing::ticks;
 use crate::vehicle::VehicleDescription;
 
-/// Where pressures are extrapolated to: the middle of the valves' 40 to 90 ms.
+/// Time over which pressures are extrapolated, s: the middle of the valves' response times of 40 to 90 ms.
 const AHEAD_S: f32 = 0.06;
 const HANDLING_PATIENCE_TICKS: u16 = ticks(150);
 const COMFORT_PATIENCE_TICKS: u16 = ticks(1_000);
 const DWELL_TICKS: u16 = ticks(500);
-/// After this p4 follows an opened valve.
+/// Time after which p4 follows p1 through an opened valve.
 const SETTLE_TICKS: u16 = ticks(200);
-/// A throttled opening ends here even where the pressures stay apart (a sensor's offset must not hold the damper for ever).
+/// Time after which a throttled opening ends even where the pressures stay apart: a sensor's offset must not keep the damper
+/// hard for ever.
 const LONGEST_THROTTLE_TICKS: u16 = ticks(1_000);
 /// Pressures closer than this count as equal, Pa.
 const EQUAL_PA: f32 = 0.2e6;
@@ -44,6 +49,13 @@ const EQUAL_PA: f32 = 0.2e6;
 const LEAST_PA: f32 = 2.0e4;
 
 /// What a person may choose about the spring valves.
+///
+/// ```
+/// use oleo_controller::{Builder, spring};
+/// let mut builder = Builder::default();
+/// builder.tuning.spring = spring::Tuning { trapped_shift_m: 0.012, ..spring::Tuning::default() };
+/// assert!(builder.build().is_ok());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
     /// Largest shift of the ride height that closing valve 3 may trap, m, 1e-4 to 0.1.
@@ -69,7 +81,7 @@ impl Tuning {
     }
 }
 
-/// Dimensions, bounds and the filter of the pressures' rates.
+/// Dimensions, bounds and the filter of the pressures' rates. See [`Springs`] for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
     piston_area_m2: f32,
@@ -102,9 +114,9 @@ impl Parameters {
 struct SpringValve {
     open: bool,
     throttled: bool,
-    /// Ticks since the last change, saturating.
+    /// Number of ticks since the last change; it saturates.
     since: u16,
-    /// Ticks for which a change has been wanted.
+    /// Number of ticks for which a change has been wanted; it saturates.
     waiting: u16,
     p1_rate: DerivativeState,
     p4_rate: DerivativeState,
@@ -113,14 +125,34 @@ struct SpringValve {
 }
 
 /// State of the four spring valves.
+///
+/// ```
+/// use oleo_controller::plausibility::Trusted;
+/// use oleo_controller::spring::Springs;
+/// use oleo_controller::strategy::Urgency;
+/// use oleo_controller::{Absolute, Configuration, Corners, Gauge, StrutPressures};
+/// let parameters = Configuration::defender110().spring;
+/// // Struts at rest under 2 MPa, charged for exactly that.
+/// let trusted = Trusted {
+///     pressure: Corners::splat(StrutPressures::splat(Gauge(2.0e6))),
+///     charge: Corners::splat(Absolute(2_101_325.0)),
+///     ..Trusted::default()
+/// };
+/// let (load_n, wanted) = (Corners::splat(3927.0), Corners::splat(true));
+/// let mut springs = Springs::default();
+/// // The pressures are equal, so all valves open as soon as they have rested for 0.5 s.
+/// let mut tick = || springs.step(&parameters, &trusted, &load_n, wanted, Urgency::Comfort);
+/// assert_eq!((0..99).map(|_| tick()).last(), Some(Corners::splat(false)));
+/// assert_eq!(tick(), Corners::splat(true));
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Springs {
     valves: Corners<SpringValve>,
 }
 
 impl Springs {
-    /// One tick: whether valve 3 is to be open at each corner, where the strategy wants it open at `wanted`. Not to be
-    /// called while the mode machine keeps all closed: that is [`Springs::forced_closed`].
+    /// One tick: returns whether valve 3 is to be open at each corner; `wanted` says where the strategy wants it open. While
+    /// the mode machine keeps all valves closed, call [`Springs::forced_closed`] instead.
     pub fn step(
         &mut self,
         c: &Parameters,
@@ -146,7 +178,7 @@ impl Springs {
         self.valves.map(|valve| valve.open)
     }
 
-    /// All valves are closed by the mode machine: nothing is decided, and the next opening is careful.
+    /// One tick in which the mode machine keeps all valves closed. Their next opening obeys the rules above.
     pub fn forced_closed(&mut self, c: &Parameters, trusted: &Trusted) {
         self.observe(c, trusted, Corners::splat(false));
         for valve in self.valves.values_mut() {
@@ -162,20 +194,20 @@ impl Springs {
         }
     }
 
-    /// Corners whose opening is throttled through damper 2: valve 2 is to stay closed.
+    /// Corners at which valve 3 opens throttled through damper 2, so that valve 2 is to stay closed.
     pub fn throttled(&self) -> Corners<bool> {
         self.valves.each_ref().map(|valve| valve.throttled)
     }
 
-    /// Corners whose valve 3 has been open for long enough that p4 follows p1.
+    /// Corners at which valve 3 has been open for so long that p4 follows p1.
     pub fn settled_open(&self) -> Corners<bool> {
         self.valves
             .each_ref()
             .map(|valve| valve.open && valve.since >= SETTLE_TICKS && !valve.throttled)
     }
 
-    /// Shift of the ride height that the oil behind each closed valve 3 causes, m, lower positive; what closing would
-    /// trap where the valve is open.
+    /// Shift of the ride height by the oil behind each closed valve 3, m, positive where the corner is lower. Where the valve
+    /// is open it is the shift that closing it would trap.
     pub fn trapped_shift_m(&self) -> Corners<f32> {
         self.valves.each_ref().map(|valve| valve.trapped_shift_m)
     }

@@ -6,7 +6,8 @@ use oleo_interface::Axles;
 
 use crate::range::{ConfigurationError, within};
 
-/// Dimensions of struts and vehicle, in SI units. `Default` is the Land Rover Defender 110 of the seed report.
+/// Dimensions of struts and vehicle, in SI units. `Default` is the Land Rover Defender 110 of the seed report. See
+/// [`Builder`](crate::Builder) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VehicleDescription {
     /// Piston area of every strut, m2, 1e-4 to 1e-1.

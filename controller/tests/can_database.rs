@@ -4,8 +4,8 @@
 
 use can_dbc::{AttributeValue, ByteOrder, Dbc, Message, MessageId, NumericValue, Signal, ValueType};
 use oleo_controller::can::{
-    COMMAND, CommandMessage, DISPLACEMENT, DisplacementMessage, MESSAGES, PRESSURE, PressureMessage, Protector, STATUS,
-    StatusMessage, bus_load, signals,
+    self, COMMAND, CommandMessage, DISPLACEMENT, DisplacementMessage, MESSAGES, PRESSURE, PressureMessage, Protector,
+    STATUS, StatusMessage, bus_load,
 };
 use oleo_controller::{
     Axle, Corner, FaultCode, MessageSet, Mode, PressurePoint, Reading, StrutPressures, Valve, ValveCommand,
@@ -123,19 +123,16 @@ fn scaling_is_the_code_s() {
         for p in &message(&dbc, contract.id).signals[2..] {
             assert_eq!(
                 (p.factor, p.offset),
-                (
-                    f64::from(signals::PRESSURE_STEP_PA),
-                    f64::from(signals::PRESSURE_OFFSET_PA)
-                )
+                (f64::from(can::PRESSURE_STEP_PA), f64::from(can::PRESSURE_OFFSET_PA))
             );
             assert_eq!(p.unit, "Pa");
-            let most = f64::from(signals::PRESSURE_RAW_MAX) * p.factor + p.offset;
+            let most = f64::from(can::PRESSURE_RAW_MAX) * p.factor + p.offset;
             assert_eq!(p.max, NumericValue::Uint(most as u64));
         }
     }
     for contract in DISPLACEMENT.into_array() {
         let x = signal(message(&dbc, contract.id), "DisplacementLeft");
-        assert_eq!((x.factor as f32, x.offset), (signals::DISPLACEMENT_STEP_M, 0.0));
+        assert_eq!((x.factor as f32, x.offset), (can::DISPLACEMENT_STEP_M, 0.0));
         assert_eq!(x.unit, "m");
     }
 }

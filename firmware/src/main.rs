@@ -20,8 +20,7 @@ mod watchdog;
 
 use cortex_m::peripheral::{SCB, SYST, syst::SystClkSource};
 use cortex_m_rt::entry;
-use oleo_controller::port::Port;
-use oleo_controller::{Configuration, Node, Solenoids};
+use oleo_controller::{Configuration, Node, Port, Solenoids};
 use oleo_interface::tick::TICK_MS;
 use stm32f4::stm32f405::Peripherals;
 

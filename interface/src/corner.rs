@@ -8,6 +8,12 @@ use core::ops::{Index, IndexMut};
 use strum::{EnumString, IntoStaticStr, VariantArray};
 
 /// An axle of the vehicle.
+///
+/// ```
+/// use oleo_interface::{Axle, Corner, Side};
+/// assert_eq!(Axle::Rear.corner(Side::Left), Corner::RearLeft);
+/// assert_eq!("rear".parse(), Ok(Axle::Rear));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
 #[strum(serialize_all = "snake_case")]
 pub enum Axle {
@@ -17,7 +23,7 @@ pub enum Axle {
     Rear,
 }
 
-/// A side of the vehicle, seen in the direction of travel.
+/// A side of the vehicle, seen in the direction of travel. See [`Axle`] for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
 #[strum(serialize_all = "snake_case")]
 pub enum Side {
@@ -28,6 +34,13 @@ pub enum Side {
 }
 
 /// A corner of the vehicle, where one strut stands.
+///
+/// ```
+/// use oleo_interface::{Axle, Corner, Side};
+/// let corner = Corner::FrontRight;
+/// assert_eq!((corner.axle(), corner.side()), (Axle::Front, Side::Right));
+/// assert_eq!((corner.name(), corner.key()), ("front-right", "front_right"));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
 #[strum(serialize_all = "snake_case")]
 pub enum Corner {
@@ -242,6 +255,13 @@ impl<T> IndexMut<Corner> for Corners<T> {
 }
 
 /// One value for each axle.
+///
+/// ```
+/// use oleo_interface::{Axle, Axles};
+/// let distance_m = Axles::new(1.389, 1.405);
+/// assert_eq!(distance_m[Axle::Rear], 1.405);
+/// assert_eq!(distance_m.map(|m| m > 1.4), Axles { front: false, rear: true });
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Axles<T> {
     /// Value of the front axle.

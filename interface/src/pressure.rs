@@ -16,11 +16,11 @@ use core::ops::{Add, Sub};
 /// Standard atmosphere, Pa (ISO 2533). `f32` holds it exactly.
 pub const ATMOSPHERE_PA: f32 = 101_325.0;
 
-/// Pressure above the atmosphere, Pa. Negative below it.
+/// Pressure above the atmosphere, Pa; negative below it. See the [module](self) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct Gauge<T>(pub T);
 
-/// Pressure above vacuum, Pa.
+/// Pressure above vacuum, Pa. See the [module](self) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct Absolute<T>(pub T);
 

@@ -11,7 +11,7 @@ use core::ops::{Index, IndexMut};
 
 use strum::{EnumString, IntoStaticStr, VariantArray};
 
-/// A place in the strut at which the oil pressure is measured.
+/// A place in the strut at which the oil pressure is measured. See [`StrutPressures`] for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
 #[strum(serialize_all = "snake_case")]
 pub enum PressurePoint {

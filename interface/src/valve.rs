@@ -4,7 +4,7 @@ use core::ops::{Index, IndexMut};
 
 use strum::{EnumString, IntoStaticStr, VariantArray};
 
-/// A solenoid valve of a strut. Open means energised.
+/// A solenoid valve of a strut. Open means energised. See [`StrutValves`] for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
 pub enum Valve {
     /// Valve 1 bypasses damper 1. Open: low damping in the path to the 0.1 l accumulator.

@@ -1,8 +1,8 @@
-//! One line for every message: identifier, period, protection and what silence means.
+//! One line for every message: its identifier, its period, its protection, and when its silence is a fault.
 //!
-//! Sender and receiver must agree on these; the mode machine, the bus-load computation and the database test all read this table, so it cannot say two things.
-//! Identifiers are priorities on CAN: the command comes first (it can only make things safer in time), then the sensors in the order in which
-//! the controller needs them, status last.
+//! Sender and receiver must agree on all of this. Node, plant end, bus load and the test of the database read this one table.
+//! Identifiers are priorities on CAN. The command has the highest, because it is what closes valves in time; then come the sensors
+//! in the order in which the controller needs them, and the status last.
 
 use oleo_interface::tick::TICK_MS;
 use oleo_interface::{Axle, Axles, Corner, Corners};
@@ -10,23 +10,29 @@ use oleo_interface::{Axle, Axles, Corner, Corners};
 use super::frame::FRAME_BYTES;
 use crate::sensor_message::SensorMessage;
 
-/// The agreement about one message.
+/// What sender and receiver of a message agree on.
+///
+/// ```
+/// use oleo_controller::can::{COMMAND, MESSAGES};
+/// assert_eq!((COMMAND.id, COMMAND.period_ms, COMMAND.timeout_ticks), (0x0A0, 5, 4));
+/// assert!(MESSAGES.iter().all(|contract| contract.id >= COMMAND.id)); // it wins every arbitration
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contract {
     /// Name in the database.
     pub name: &'static str,
-    /// Standard (11-bit) identifier; lower wins arbitration.
+    /// Standard identifier, 0 to 0x7FF. The lower one wins arbitration.
     pub id: u16,
-    /// Data length, bytes.
+    /// Number of data bytes.
     pub length: usize,
     /// Sending period, ms.
     pub period_ms: u32,
-    /// Data identifiers of AUTOSAR profile 2, by counter: never sent, part of the CRC, so that a frame under the wrong
-    /// identifier fails its check.
+    /// Data identifiers of AUTOSAR profile 2, by counter. They are never sent but are part of the CRC, so that a frame under
+    /// the wrong identifier fails its check.
     pub data_ids: [u8; 16],
-    /// Lost frames in a row that the counter check tolerates, plus one (`MaxDeltaCounterInit`).
+    /// Number of lost frames in a row that the counter check tolerates, plus one (`MaxDeltaCounterInit`).
     pub max_delta: u8,
-    /// Ticks without an accepted frame after which the content is no longer substituted by the last value but invalid.
+    /// Number of ticks without an accepted frame after which the message is lost. Until then its last values are used.
     pub timeout_ticks: u8,
 }
 
@@ -64,7 +70,7 @@ pub const DISPLACEMENT: Axles<Contract> = Axles::new(
     contract(5, "DISPLACEMENT_REAR", 0x115, TICK_MS),
 );
 
-/// The valve command, controller to output stage.
+/// The valve command, from the controller to the output stage.
 pub const COMMAND: Contract = contract(6, "COMMAND", 0x0A0, TICK_MS);
 
 /// The controller's state, for people and loggers.
@@ -86,7 +92,7 @@ pub const MESSAGES: [Contract; 8] = {
 };
 
 impl SensorMessage {
-    /// The agreement about this message.
+    /// What sender and receiver of this message agree on.
     pub const fn contract(self) -> Contract {
         let [front_left, front_right, rear_left, rear_right] = *PRESSURE.as_array();
         match self {
@@ -100,7 +106,14 @@ impl SensorMessage {
     }
 }
 
-/// The sensor message with an identifier, if there is one.
+/// The sensor message with a standard identifier, if there is one.
+///
+/// ```
+/// use oleo_controller::can::sensor_message;
+/// use oleo_controller::{Corner, SensorMessage};
+/// assert_eq!(sensor_message(0x112), Some(SensorMessage::Pressure(Corner::RearLeft)));
+/// assert_eq!(sensor_message(0x0A0), None); // the command
+/// ```
 pub fn sensor_message(id: u16) -> Option<SensorMessage> {
     SensorMessage::ALL
         .into_iter()

@@ -1,7 +1,7 @@
-//! The other end of the bus: sensors out, valve command in.
+//! The other end of the bus: it sends the sensor messages and receives the valve command.
 //!
-//! Simulations, benches and tests all have to stand opposite the controller. They use this, so that what
-//! they send is what the database says.
+//! Simulations, benchmarks and tests need a node opposite the controller. They all use this one, so that what they send is what the
+//! database says.
 
 use oleo_interface::{Axle, Axles, Corner, Corners, Side};
 
@@ -12,7 +12,8 @@ use super::signals::{CommandMessage, DisplacementMessage, PressureMessage};
 use crate::reading::Inputs;
 use crate::sensor_message::SensorMessage;
 
-/// Sensor side of the bus: six protectors and the checker of the command.
+/// The node opposite the controller: it protects six sensor messages and checks the command. See
+/// [`Node`](crate::Node) for an example.
 #[derive(Clone, Copy, Debug)]
 pub struct PlantEnd {
     pressure: Corners<Protector>,
@@ -27,7 +28,7 @@ impl Default for PlantEnd {
 }
 
 impl PlantEnd {
-    /// Nothing sent, nothing received.
+    /// A node that has sent and received nothing.
     pub fn new() -> Self {
         Self {
             pressure: PRESSURE.map(|contract| Protector::new(&contract)),
@@ -36,8 +37,8 @@ impl PlantEnd {
         }
     }
 
-    /// The six frames of one tick in sending order. `plant_tick` is the tick modulo 65536; readings that are invalid are
-    /// sent as such.
+    /// The six frames of one tick in sending order. `plant_tick` is the tick modulo 65536. Invalid readings are sent as sensor
+    /// errors.
     pub fn encode(&mut self, plant_tick: u16, inputs: &Inputs) -> [Frame; 6] {
         SensorMessage::ALL.map(|message| {
             let (mut data, protector) = match message {
@@ -54,9 +55,9 @@ impl PlantEnd {
         })
     }
 
-    /// A received frame: the command if it is one, with the outcome of its check; `None` for any other identifier. The
-    /// message is `Some` where its CRC and complement are right, so that a first or late command's echo
-    /// can be seen; drive valves only where the status is usable or initial.
+    /// Takes a received frame. Returns `None` for any identifier but the command's, and otherwise the outcome of its check and
+    /// its content. The content is `Some` whenever CRC and complement are right, so that the echo of a first or late command
+    /// can be seen; drive valves only if the status is usable or [`CheckStatus::Initial`].
     pub fn receive(&mut self, id: u16, data: &[u8]) -> Option<(CheckStatus, Option<CommandMessage>)> {
         if id != COMMAND.id {
             return None;
@@ -73,7 +74,7 @@ impl PlantEnd {
         Some((status, message))
     }
 
-    /// A tick without a command.
+    /// Notes that a tick has passed without a command.
     pub fn no_command(&mut self) {
         self.command.no_new_data();
     }

@@ -1,20 +1,20 @@
-//! Which readings may be used, and what stands in for those that may not.
+//! Which readings may be used, and what replaces those that may not.
 //!
-//! A wrong number is worse than none, since it opens valves. Each reading passes, in this order, the checks below; what fails is
-//! replaced and its corner is reported *affected*, which the mode machine turns into permission.
+//! A wrong number is worse than none, because it opens valves. Each reading passes the checks below in this order. One that fails
+//! is replaced, and its corner is reported as *affected*; the mode machine then decides what the controller may still do.
 //!
 //! | check | what it sees | detected within (ticks) | file |
 //! |---|---|---|---|
-//! | range, NaN, flagged invalid | broken wire, dead sensor | 3 | `reading_check` |
-//! | rate | spikes, bit errors before protection | 3 | `reading_check` |
-//! | stuck | frozen value while the strut moves | 200 | `stuck` |
-//! | vote | one pressure off by over 1 MPa | about 2 s / offset (MPa) | `vote` |
-//! | oil balance | displacement against gas volumes, off by over 40 mm | 600 | `oil_balance` |
-//! | link (from the node) | late or untrusted message | at once | `reading_check` |
+//! | range, not a number, flagged invalid | a broken wire, a dead sensor | 3 | `reading_check` |
+//! | rate | spikes, bit errors before the message was protected | 3 | `reading_check` |
+//! | stuck | a value that does not change while the strut moves | 200 | `stuck` |
+//! | vote | a pressure that is off by over 1 MPa | about 2 s / offset (MPa) | `vote` |
+//! | oil balance | a displacement that disagrees with the gas volumes by over 40 mm | 600 | `oil_balance` |
+//! | link (from the node) | a late or untrusted message | at once | `reading_check` |
 //!
-//! Substitutes: while a check makes up its mind, the last good value. After that: a displacement from the other three (the body is
-//! rigid, the axles assumed unmoved); p1 from p2 or p3 (equal at rest); p2, p3 from p1; p4 keeps its last value, and the
-//! mode machine forbids spring switching anyway.
+//! While a check is undecided, the last good value is used. After that a displacement follows from the other three (the body is
+//! rigid, and the axles are assumed not to move), p1 from p2 or p3 (which are equal at rest), and p2 and p3 from p1. p4 keeps
+//! its last value; springs are not switched then, because the mode machine keeps them closed.
 
 mod limits;
 mod oil_balance;
@@ -37,7 +37,8 @@ pub use trusted::Trusted;
 use verdict::Verdicts;
 use vote::Vote;
 
-/// Parameters of the checks that have any.
+/// Parameters of the checks on the oil balance and of the vote; the other checks have constants only. See
+/// [`State`] for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
     oil_balance: oil_balance::Parameters,
@@ -55,6 +56,25 @@ impl Parameters {
 }
 
 /// Memory of all checks.
+///
+/// ```
+/// use oleo_controller::plausibility::{Context, State};
+/// use oleo_controller::{Configuration, Corner, Corners, FaultCode, Gauge, Inputs, Reading, StrutPressures};
+/// let parameters = Configuration::defender110().plausibility;
+/// let (mut state, context) = (State::default(), Context::default());
+/// let good = Inputs::from_values(Corners::splat(0.01), Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
+/// let mut cable = good;
+/// cable.displacement[Corner::FrontLeft] = Reading::INVALID;
+///
+/// // Readings are believed after 12 good samples.
+/// let trusted = (0..12).map(|_| state.step(&parameters, &good, &context)).last().unwrap();
+/// assert_eq!((trusted.invalid_readings, trusted.health.cause), (0, FaultCode::None));
+/// // A broken cable is found in the third tick; the other three displacements replace the reading.
+/// let trusted = (0..3).map(|_| state.step(&parameters, &cable, &context)).last().unwrap();
+/// assert_eq!((trusted.invalid_readings, trusted.health.cause), (1, FaultCode::SensorRange));
+/// assert!(trusted.health.affected[Corner::FrontLeft]);
+/// assert_eq!(trusted.displacement_m[Corner::FrontLeft], 0.01);
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct State {
     displacement: Corners<ReadingCheck>,
@@ -64,17 +84,17 @@ pub struct State {
     oil: Corners<OilBalance>,
 }
 
-/// What the checks must know of the commands: p4 follows only through an open valve 3.
+/// What the checks must know of the valves and the mode. See [`State`] for an example.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Context {
-    /// Valve 3 has been open for long enough that p4 follows.
+    /// Whether valve 3 of each corner has been open for so long that p4 follows p1. Behind a closed valve it does not.
     pub spring_settled_open: Corners<bool>,
-    /// The vehicle has not been in `Normal` yet: gas charges are being learnt.
+    /// Whether the gas charges are still being learnt, because the mode has not been normal yet.
     pub learning: bool,
 }
 
 impl State {
-    /// One tick.
+    /// One tick: returns all readings, measured or replaced, and their health.
     pub fn step(&mut self, parameters: &Parameters, inputs: &Inputs, context: &Context) -> Trusted {
         let mut trusted = Trusted::default();
         let mut verdicts = Corners::<Verdicts>::default();

@@ -1,16 +1,17 @@
-//! Displacement against the gas volumes: the oil that the piston displaced must be in the accumulators.
+//! Displacement against the gas volumes: the oil that the piston has displaced must be in the accumulators.
 //!
-//! With `S = V1 / p2 + V2 / p4` (absolute pressures), gas volumes `V1`, `V2` at static position and charge pressure `k`, isothermal gas and
-//! incompressible oil (report, "based on isothermal compression") give
+//! With `S = V1 / p2 + V2 / p4` (absolute pressures), gas volumes `V1` and `V2` at static position and charge pressure `k`,
+//! isothermal gas and incompressible oil (report, "based on isothermal compression") give
 //!
 //! ```text
 //!   A x = V1 + V2 - k S
 //! ```
 //!
-//! which holds for any valve position and any load, also with oil trapped behind valve 3. `k` is not configured but learnt
-//! while the controller starts, from the same equation, and then follows the gas temperature slowly (60 s). What remains, lagged by 1 s,
-//! is expected within 25 mm (gas 30 K warmer: 10 % of 0.255 m); 40 mm for 40 ticks condemns the displacement reading. A charge outside
-//! 0.3 to 15 MPa is not a suspension.
+//! which holds for any valve position and any load, also with oil trapped behind valve 3. The charge pressure `k` is not
+//! configured. It is learnt from the same equation while the controller starts, and then follows the gas temperature slowly
+//! (60 s). The residual, lagged by 1 s, is expected to stay within 25 mm (gas that is 30 K warmer: 10 % of 0.255 m). At 40 mm for
+//! 40 ticks the displacement reading is called wrong, and so it is if the charge is outside 0.3 to 15 MPa, which no suspension
+//! has.
 
 use oleo_interface::{Absolute, Gauge, StrutPressures};
 
@@ -22,7 +23,7 @@ use crate::vehicle::VehicleDescription;
 const WRONG_M: f32 = 0.04;
 const CONFIRM_TICKS: u8 = 40;
 const CHARGE_PA: (f32, f32) = (0.3e6, 15.0e6);
-/// An accumulator is never emptier than this, Pa absolute; keeps the quotient finite.
+/// Lowest pressure that is counted with, Pa absolute. It keeps the quotient finite where an accumulator is empty.
 const LEAST_PA: f32 = 2.0e4;
 
 /// Dimensions and filters of the balance.
@@ -52,7 +53,7 @@ impl Parameters {
     }
 }
 
-/// State for one strut.
+/// State of the balance of one strut.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OilBalance {
     charge_pa: f32,
@@ -63,7 +64,7 @@ pub struct OilBalance {
 }
 
 impl OilBalance {
-    /// One tick; returns the charge pressure.
+    /// One tick; returns the charge pressure as learnt so far.
     pub fn step(
         &mut self,
         c: &Parameters,

@@ -1,15 +1,18 @@
 //! Readings that do not change while they must.
 //!
-//! A frozen sensor stays in range and never jumps. What gives it away is its neighbours: in windows of 0.5 s the span (largest less
-//! smallest) of every reading is compared with the spans of those that must move with it. On a smooth road nothing moves
-//! and nothing is said.
+//! A stuck sensor stays in range and never jumps; only its neighbours show that it is stuck. In windows of 0.5 s the span
+//! (largest less smallest value) of every reading is compared with the spans of those that must move with it. On a smooth road
+//! nothing moves, and nothing can be concluded.
 //!
-//! - Displacement: span below 0.03 mm, and either the strut's own p1 spans 0.3 MPa (in the stiff setting 0.03 mm are about
-//!   1 kPa), or p1 spans 50 kPa while two other struts span 5 mm. A strut that its seals hold fast shows neither.
-//! - p1 to p3: span of one step (5 kPa) or less while the strut's displacement spans 5 mm (about 40 kPa in the soft setting).
-//! - p4: the same with 20 mm, and only if valve 3 was open during the whole window; behind a closed valve it is trapped.
+//! - A displacement is stuck if its span is below 0.03 mm and either the strut's own p1 spans 0.3 MPa (in the stiff setting
+//!   0.03 mm are about 1 kPa), or p1 spans 50 kPa while two other struts span 5 mm. A strut that its seals hold fast shows
+//!   neither.
+//! - p1, p2 or p3 is stuck if it spans one step (5 kPa) or less while the strut's displacement spans 5 mm (about 40 kPa in the
+//!   soft setting).
+//! - p4 is stuck by the same rule with 20 mm, but only if valve 3 was open during the whole window: behind a closed valve its
+//!   pressure is trapped.
 //!
-//! Two windows, 200 ticks, at the most from freezing to verdict. A window in which the reading moves clears it.
+//! A stuck reading is found within two windows, which are 200 ticks. A window in which the reading moves clears the verdict.
 
 use oleo_interface::{Corners, PressurePoint, StrutPressures};
 
@@ -67,7 +70,7 @@ struct CornerWindow {
 pub struct Stuck {
     ticks: u16,
     corners: Corners<CornerWindow>,
-    /// Any reading of any corner is found stuck: spares the usual tick the look.
+    /// Whether any reading of any corner is stuck, so that most ticks need not look at each.
     any: bool,
 }
 
@@ -89,11 +92,12 @@ impl Default for Stuck {
 }
 
 impl Stuck {
-    /// One tick. `spring_settled_open`: valve 3 has been open for long enough that p4 follows.
+    /// One tick. `spring_settled_open` says where valve 3 has been open for so long that p4 follows p1.
     pub fn step(&mut self, trusted: &Trusted, spring_settled_open: Corners<bool>, verdicts: &mut Corners<Verdicts>) {
         for (corner, window) in self.corners.iter_mut() {
             let verdict = &verdicts[corner];
-            // What stands in for a reading (at first, zero) does not move with it: a parked vehicle would be called broken.
+            // A value that replaces a reading (at first, zero) does not move with the strut. It must not count, or a parked
+            // vehicle would be called broken.
             if verdict.displacement == FaultCode::None {
                 window.displacement.add(trusted.displacement_m[corner]);
             }

@@ -1,4 +1,4 @@
-//! Readings that may be used, and what stands in for those that may not.
+//! Readings that may be used, and the values that replace those that may not.
 
 use oleo_interface::{Absolute, Corners, Gauge, StrutPressures};
 
@@ -8,16 +8,17 @@ use crate::failsafe::{FaultCode, Health};
 use crate::reading::Inputs;
 use crate::sensor_message::MessageSet;
 
-/// Readings that may be used: measured or substituted, always finite and within range.
+/// Readings that may be used, measured or replaced: always finite and within their range.
+/// See [`State`](super::State) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Trusted {
-    /// Displacements, m, compression positive.
+    /// Strut displacement from the static position, m, compression positive, -0.25 to 0.25.
     pub displacement_m: Corners<f32>,
-    /// Pressures p1 to p4.
+    /// Pressures p1 to p4 of each strut, Pa, -4.9e6 to 35e6.
     pub pressure: Corners<StrutPressures<Gauge<f32>>>,
-    /// Gas charge pressure at static position, learnt at start-up.
+    /// Gas pressure of each strut at its static position, Pa, learnt at start-up.
     pub charge: Corners<Absolute<f32>>,
-    /// For the mode machine.
+    /// Health of the readings, for the mode machine.
     pub health: Health,
     /// Number of readings that were replaced, 0 to 20.
     pub invalid_readings: u8,
@@ -52,7 +53,7 @@ impl Trusted {
             .each_ref()
             .map(|verdict| verdict.displacement == FaultCode::None);
         let [fl, fr, rl, rr] = self.displacement_m.into_array();
-        // Rigid body: the two axles' left-right differences are equal.
+        // The body is rigid: left and right differ equally at both axles.
         self.displacement_m = Corners::from_array(match good.into_array() {
             [false, true, true, true] => [fr + rl - rr, fr, rl, rr],
             [true, false, true, true] => [fl, fl + rr - rl, rl, rr],

@@ -1,10 +1,10 @@
 //! The pressures of one strut against each other.
 //!
-//! At rest p1 = p2 = p3, and = p4 behind an open valve 3: dampers and orifices take pressure only from moving oil. In motion the *means* over
-//! a second still agree but for the asymmetry of the damper packs (rebound takes about twice jounce: estimated 0.4 MPa at 0.5 m/s).
-//! So lagged pressures are compared, and the one that is more than 1 MPa off two that agree is wrong. An offset of
-//! `d` is seen after `tau ln(d / (d - 1 MPa))` and 40 ticks of confirmation: 1.1 s for 1.7 MPa, 0.5 s for 4 MPa.
-//! Smaller offsets are not seen by this check.
+//! At rest p1, p2 and p3 are equal, and p4 too behind an open valve 3, because dampers and orifices cause a pressure drop only
+//! while oil moves. In motion the *means* over a second still agree, except for the asymmetry of the damper packs (rebound takes
+//! about twice as much as jounce, estimated 0.4 MPa at 0.5 m/s). So lagged pressures are compared, and one that differs by more
+//! than 1 MPa from two that agree is wrong. An offset of `d` is seen after `tau ln(d / (d - 1 MPa))` and 40 ticks of
+//! confirmation, which is 1.1 s for 1.7 MPa and 0.5 s for 4 MPa. This check does not see offsets below 1 MPa.
 
 use oleo_interface::{Gauge, PressurePoint, StrutPressures};
 
@@ -29,7 +29,7 @@ impl Default for Parameters {
     }
 }
 
-/// State for one strut.
+/// State of the vote on one strut.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Vote {
     lagged: StrutPressures<Gauge<f32>>,
@@ -39,7 +39,7 @@ pub struct Vote {
 }
 
 impl Vote {
-    /// One tick. `p4_follows`: valve 3 has been open for long enough.
+    /// One tick. `p4_follows` says whether valve 3 has been open for so long that p4 follows p1.
     pub fn step(
         &mut self,
         parameters: &Parameters,
@@ -49,7 +49,8 @@ impl Vote {
     ) {
         let healthy = verdict.pressure == StrutPressures::splat(FaultCode::None);
         if !healthy {
-            // Held values are no witnesses; begin again when all four speak. A verdict already reached stands.
+            // A replaced value says nothing about the others: start again when all four are measured. A verdict that was
+            // reached before stays.
             self.started = false;
         } else {
             if !self.started {
@@ -59,7 +60,7 @@ impl Vote {
             for (Gauge(lagged), pressure) in self.lagged.each_mut().zip(*pressure).into_array() {
                 parameters.lag.step(lagged, pressure.pa());
             }
-            // Behind a closed valve 3 p4 is no witness; when the valve has opened, its disagreement begins anew.
+            // Behind a closed valve 3 the pressure p4 need not agree; when the valve has opened, the comparison starts again.
             if !p4_follows {
                 self.lagged.p4 = self.lagged.p3;
             }
@@ -73,7 +74,7 @@ impl Vote {
             p3: d13 && d23 && !d12,
             p4: p4_follows && apart(p4, p3) && !(d13 && d23),
         };
-        // The usual tick: no pressure is or was outvoted. A flag falls when its count reaches 0, so none is up.
+        // Most ticks end here: no pressure is or was outvoted. A flag falls when its count reaches 0, so none is set.
         if self.outvoted == StrutPressures::splat(0) && !(healthy && wrong != StrutPressures::splat(false)) {
             return;
         }
@@ -98,9 +99,9 @@ impl Vote {
     }
 }
 
-/// What the lags start from when witnesses (again) speak: agreement, so that disagreement has to build up as it has after an offset
-/// begins. One sample of a strut in motion would not do: through closed dampers its pressures are 2 MPa apart, and the
-/// lag would take a second to forget that.
+/// What the lags start from: agreement at the mean of the pressures, so that a disagreement has to build up as it does after an
+/// offset begins. A single sample of a strut in motion would not do, because through closed dampers its pressures are 2 MPa
+/// apart, and the lag would need a second to forget that.
 fn agreed(&StrutPressures { p1, p2, p3, .. }: &StrutPressures<Gauge<f32>>) -> StrutPressures<Gauge<f32>> {
     StrutPressures::splat(Gauge((p1.pa() + p2.pa() + p3.pa()) * (1.0 / 3.0)))
 }
@@ -113,7 +114,8 @@ mod tests {
         verdict.all().any(|fault| fault == FaultCode::SensorVote)
     }
 
-    /// Votes on a strut that is shaken through closed dampers: p1 swings by 2 MPa about p2 at 8 Hz.
+    /// The first tick in which a pressure is outvoted, on a strut that is shaken through closed dampers: p1 swings by 2 MPa
+    /// about p2 at 8 Hz, and p3 has an offset.
     fn shaken(vote: &mut Vote, ticks: core::ops::Range<u16>, offset_pa: f32) -> Option<u16> {
         let parameters = Parameters::default();
         for tick in ticks {

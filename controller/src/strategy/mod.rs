@@ -46,6 +46,13 @@ macro_rules! strategies {
         }
 
         /// What a person may choose about each strategy, whether it is the one in use or not.
+        ///
+        /// ```
+        /// use oleo_controller::{Builder, DamperPolicy};
+        /// let mut builder = Builder::default();
+        /// builder.tuning.strategy.ride_handling.dampers.policy = DamperPolicy::Low;
+        /// assert!(builder.build().is_ok());
+        /// ```
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
         pub struct Tuning {
             $(
@@ -62,7 +69,7 @@ macro_rules! strategies {
             }
         }
 
-        /// Which strategy is in use, and the parameters of each.
+        /// Which strategy is in use, and the parameters of each. See [`State`] for an example.
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub struct Parameters {
             strategy: Strategy,
@@ -80,13 +87,22 @@ macro_rules! strategies {
         }
 
         /// Memory of each strategy.
+        ///
+        /// ```
+        /// use oleo_controller::plausibility::Trusted;
+        /// use oleo_controller::{Configuration, Estimate, Strategy, ValveCommand, strategy};
+        /// let parameters = Configuration::defender110().with_strategy(Strategy::AlwaysSoft).strategy;
+        /// let mut state = strategy::State::default();
+        /// let demand = state.step(&parameters, &Estimate::default(), &Trusted::default());
+        /// assert_eq!(demand.valves, ValveCommand::SOFT);
+        /// ```
         #[derive(Clone, Copy, Debug, Default)]
         pub struct State {
             $($field: <$strategy as Decide>::State,)*
         }
 
         impl State {
-            /// One tick of the strategy in use.
+            /// One tick of the strategy in use; returns what it wants.
             pub fn step(&mut self, parameters: &Parameters, estimate: &Estimate, trusted: &Trusted) -> Demand {
                 match parameters.strategy {
                     $(Strategy::$variant => parameters.$field.step(&mut self.$field, estimate, trusted),)*
@@ -104,7 +120,7 @@ impl Strategy {
 }
 
 impl Parameters {
-    /// Put another strategy into use.
+    /// Puts another strategy into use.
     pub(crate) fn choose(&mut self, strategy: Strategy) {
         self.strategy = strategy;
     }

@@ -1,4 +1,4 @@
-//! Ride mode or handling mode, by which acceleration dominates, with a roll-over guard.
+//! Ride mode or handling mode, by which acceleration is larger, with a roll-over guard.
 //!
 //! | | springs | dampers |
 //! |---|---|---|
@@ -15,7 +15,7 @@ use crate::range::ConfigurationError;
 use crate::valves::ValveCommand;
 use crate::vehicle::VehicleDescription;
 
-/// Tuning of the three parts.
+/// Tuning of the three parts. See [`strategy::Tuning`](super::Tuning) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tuning {
     /// When handling mode begins and ends.
@@ -26,7 +26,7 @@ pub struct Tuning {
     pub dampers: semi_active::Tuning,
 }
 
-/// Parameters of the strategy.
+/// Parameters of the strategy. See [`Decide`] for an example of a strategy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RideHandling {
     running_rms: running_rms::Parameters,
@@ -34,7 +34,7 @@ pub struct RideHandling {
     dampers: semi_active::Parameters,
 }
 
-/// What the three parts remember.
+/// What the three parts remember. See [`strategy::State`](super::State) for an example.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct State {
     mode: running_rms::State,

@@ -1,7 +1,7 @@
-//! Roll-over prevention: stiff at once, whatever the running means say.
+//! Roll-over prevention: everything stiff at once, whatever the running means say.
 //!
-//! Running means are a second behind. The guard looks at the roll angle relative to the axles, extrapolated over the slowest
-//! valve's response, together with a lateral surrogate to the same side (a one-sided bump rolls the body without it):
+//! The running means are a second behind. The guard looks at the roll angle relative to the axles, extrapolated over the slowest
+//! valve's response, and requires a lateral acceleration to the same side, because a one-sided bump also rolls the body:
 //!
 //! ```text
 //!   raise     |phi + 0.09 s phi'| > 4.6 deg   and   a_y sign(phi + ...) > 3 m/s2
@@ -18,13 +18,13 @@ use crate::timing::ticks;
 const HORIZON_S: f32 = 0.09;
 const RELEASE_TICKS: u16 = ticks(500);
 
-/// Thresholds of the guard.
+/// Thresholds of the guard. See [`strategy::Tuning`](crate::strategy::Tuning) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
     /// Predicted roll angle relative to the axles above which the guard acts, and roll angle below which it lets go, rad,
     /// 0.005 to 1.
     pub roll_rad: Hysteresis,
-    /// Lateral surrogate to the same side that must come with it, m/s2, 0.5 to 10.
+    /// Estimated lateral acceleration to the same side above which the guard acts, m/s2, 0.5 to 10.
     pub lateral_m_s2: f32,
 }
 
@@ -53,12 +53,12 @@ impl Tuning {
 
 /// State of the guard.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct State {
+pub(crate) struct State {
     hold: u16,
 }
 
 impl State {
-    /// One tick; whether the guard is active. The thresholds are used as they are.
+    /// One tick; returns whether the guard is active.
     pub fn step(&mut self, tuning: &Tuning, estimate: &Estimate) -> bool {
         let ahead = estimate.roll_rad + HORIZON_S * estimate.roll_rate_rad_s;
         let outward = if ahead < 0.0 {

@@ -1,4 +1,4 @@
-//! Ride mode or handling mode, by which acceleration dominates.
+//! Ride mode or handling mode, by which acceleration is larger.
 //!
 //! On rough ground the body shakes vertically and hardly turns; in a lane change it is the other way round. With running
 //! mean squares over about 1 s (exponentially weighted) of the lateral surrogate `L` and the vertical acceleration `V`:
@@ -9,17 +9,17 @@
 //! ```
 //!
 //! Source: the comparison of running RMS values is Els' (*recalled*, see `vehicle.md`); floors and hysteresis are this
-//! project's, since on a smooth straight both values are near zero and their ratio means nothing. Squares are compared: no
-//! root is needed.
+//! project's, because on a smooth straight both values are near zero and their ratio means nothing. Squares are compared, so
+//! that no root is needed.
 
 use crate::estimate::Estimate;
 use crate::range::{ConfigurationError, Hysteresis};
 use crate::timing::ticks;
 
-/// Shortest stay in handling mode: a lane change has two bends with a moment of no acceleration between.
+/// Shortest stay in handling mode: a lane change has two bends, and between them a moment without lateral acceleration.
 const HANDLING_DWELL_TICKS: u16 = ticks(1_500);
 
-/// Thresholds of the decision.
+/// Thresholds of the decision. See [`strategy::Tuning`](crate::strategy::Tuning) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
     /// Lateral over vertical running RMS at which handling mode begins and ends, 0.05 to 20.
@@ -49,7 +49,7 @@ impl Tuning {
 
 /// The thresholds, squared.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameters {
+pub(crate) struct Parameters {
     ratio_2: Hysteresis,
     floor_2: Hysteresis,
 }
@@ -66,13 +66,13 @@ impl Parameters {
 
 /// State of the mode decision.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct State {
+pub(crate) struct State {
     handling: bool,
     dwell: u16,
 }
 
 impl State {
-    /// One tick; whether in handling mode.
+    /// One tick; returns whether the vehicle is in handling mode.
     pub fn step(&mut self, parameters: &Parameters, estimate: &Estimate) -> bool {
         let (lateral, vertical) = (estimate.lateral_mean_square, estimate.vertical_mean_square);
         let Parameters { ratio_2, floor_2 } = parameters;
@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn lateral_must_dominate_and_be_worth_it() {
+    fn lateral_must_dominate_and_exceed_its_floor() {
         let parameters = Parameters::new(&Tuning::default());
         for (lateral, vertical, handling) in [
             (0.0, 0.0, false),

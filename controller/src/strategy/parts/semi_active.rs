@@ -1,20 +1,21 @@
-//! Damper switching in ride mode: high where it calms the body.
+//! Damper switching in ride mode: high damping where it calms the body.
 //!
-//! A damper can only oppose the relative motion of body and wheel. Let `w` be the extension speed of the strut (minus its
-//! compression speed), `v` and `a` the body's vertical velocity and acceleration over it. High damping helps
+//! A damper can only oppose the relative motion of body and wheel. Let `w` be the extension speed of the strut (the negative of its
+//! compression speed), and `v` and `a` the body's vertical velocity and acceleration above it. High damping helps where
 //!
 //! ```text
 //!   Karnopp             v w > 0      the damper pulls against the body's velocity (skyhook, two stages)
 //!   Hoelscher & Huang   a w > 0      the damper's force reduces |a|
 //! ```
 //!
-//! Sources: Karnopp, Crosby & Harwood, "Vibration control using semi-active force generators", J. Eng. Ind. 96 (1974); Hoelscher & Huang
-//! as described by Nell & Steyn (report, reference 16). Both *recalled*.
+//! Sources: Karnopp, Crosby & Harwood, "Vibration control using semi-active force generators", J. Eng. Ind. 96 (1974);
+//! Hoelscher & Huang as described by Nell & Steyn (report, reference 16). Both are *recalled*.
 //!
-//! Valves of 40 to 90 ms lag 14 to 65 degrees at 1 to 2 Hz and cannot follow the wheel at all, so `w` is lagged at 4 Hz and switching has
-//! a dead band and a least body motion: where the body hardly moves the damping stays low and the valves rest. The least motion grows with
-//! the running RMS of the vertical acceleration: a body that swings at 1.5 Hz has `v = a / 9.4 s`, so where the velocity is much less
-//! than that the acceleration comes from the wheels, and high damping would only pass on more of it.
+//! Valves of 40 to 90 ms lag by 14 to 65 degrees at 1 to 2 Hz and cannot follow the wheel at all. So `w` is lagged at 4 Hz, and
+//! switching has a dead band and needs a least body motion: where the body hardly moves, the damping stays low and the valves
+//! rest. The least motion grows with the running RMS of the vertical acceleration. A body that swings at 1.5 Hz has
+//! `v = a / 9.4 s`; where its velocity is much less than that, the acceleration comes from the wheels, and high damping would
+//! only pass on more of it.
 
 use oleo_interface::Corners;
 use strum::{EnumString, IntoStaticStr, VariantNames};
@@ -23,13 +24,14 @@ use crate::estimate::Estimate;
 use crate::filter::{LowPass, at_least};
 use crate::range::{ConfigurationError, within};
 
-/// Square of the body velocity below which Karnopp's rule is not asked, m2/s2.
+/// Square of the body velocity below which Karnopp's rule asks for low damping, m2/s2.
 const LEAST_VELOCITY_2: f32 = 0.08 * 0.08;
-/// Square of the body acceleration below which Hoelscher and Huang's rule is not asked, m2/s4.
+/// Square of the body acceleration below which Hoelscher and Huang's rule asks for low damping, m2/s4.
 const LEAST_ACCELERATION_2: f32 = 0.5 * 0.5;
 /// Half width of the dead band of the relative speed, m/s.
 const DEAD_BAND_M_S: f32 = 0.02;
-/// Compression from which damping is high going further in, and extension from which it is high going further out, m: the stops are harder than any damper.
+/// Compression above which damping is high while the strut moves further in, and extension above which it is high while the
+/// strut moves further out, m: the stops are harder than any damper.
 const NEAR_STOP_M: (f32, f32) = (0.06, 0.11);
 
 /// How dampers are switched in ride mode. The names are those of the command line: `hoelscher-huang`.
@@ -58,7 +60,7 @@ impl DamperPolicy {
     }
 }
 
-/// Policy and thresholds.
+/// Policy and thresholds. See [`strategy::Tuning`](crate::strategy::Tuning) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
     /// Which rule decides.
@@ -99,7 +101,7 @@ impl Tuning {
 
 /// Policy, squared thresholds and the filter of strut speed and body acceleration.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Parameters {
+pub(crate) struct Parameters {
     policy: DamperPolicy,
     body_band: LowPass,
     body_velocity_share_2: f32,
@@ -122,7 +124,7 @@ impl Parameters {
 
 /// State of the four corners.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct State {
+pub(crate) struct State {
     corners: Corners<CornerState>,
 }
 
@@ -135,7 +137,7 @@ struct CornerState {
 }
 
 impl State {
-    /// One tick; whether low damping is wanted at each corner.
+    /// One tick; returns whether low damping is wanted at each corner.
     pub fn step(
         &mut self,
         parameters: &Parameters,

@@ -37,13 +37,13 @@ fn has_example(attributes: &[Attribute]) -> bool {
         let Meta::NameValue(meta) = &attribute.meta else {
             return false;
         };
-        let text = quote_of(&meta.value);
+        let text = text_of(&meta.value);
         attribute.path().is_ident("doc") && (text.contains("```") || text.contains("for an example"))
     })
 }
 
 /// The text of a doc comment.
-fn quote_of(value: &syn::Expr) -> String {
+fn text_of(value: &syn::Expr) -> String {
     match value {
         syn::Expr::Lit(syn::ExprLit {
             lit: syn::Lit::Str(text),

@@ -35,6 +35,11 @@ impl Bench {
     }
 
     fn step(&mut self, x: Corners<f32>, soft: bool, urgency: Urgency) -> Corners<bool> {
+        self.step_each(x, Corners::splat(soft), urgency)
+    }
+
+    /// With a wanted spring for each corner by itself.
+    fn step_each(&mut self, x: Corners<f32>, wanted: Corners<bool>, urgency: Urgency) -> Corners<bool> {
         let mut trusted = Trusted {
             displacement_m: x,
             charge: Corners::splat(Absolute(CHARGE_PA)),
@@ -43,7 +48,6 @@ impl Bench {
         for (corner, pressure) in trusted.pressure.iter_mut() {
             *pressure = self.struts[corner].pressures(x[corner], self.open[corner]);
         }
-        let wanted = Corners::splat(soft);
         self.open = self
             .springs
             .step(&Configuration::defender110().spring, &trusted, &LOAD_N, wanted, urgency);
@@ -153,4 +157,21 @@ fn opening_waits_for_equal_pressures_and_both_sides() {
     }
     assert_eq!(bench.step(FRONT_LEFT_IN, true, Urgency::Comfort), OPEN);
     assert_eq!(bench.springs.throttled(), CLOSED);
+}
+
+#[test]
+fn each_corner_opens_and_closes_by_itself() {
+    let mut bench = Bench::new();
+    let mut wanted = CLOSED;
+    wanted[Corner::FrontLeft] = true;
+    for _ in 0..400 {
+        bench.step_each(Corners::splat(0.0), wanted, Urgency::Comfort);
+    }
+    assert_eq!(bench.open, wanted);
+    // The right corner follows and the left one closes.
+    let other = wanted.map(|open| !open);
+    for _ in 0..400 {
+        bench.step_each(Corners::splat(0.0), other, Urgency::Comfort);
+    }
+    assert_eq!(bench.open, other);
 }

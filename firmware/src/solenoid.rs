@@ -1,7 +1,7 @@
 //! Twelve solenoids on one port: PE4..PE15, high = energised, each with a pull-down resistor on the board.
 //!
-//! They share a port so that one write turns all of them off, from wherever something goes wrong. At reset the pins
-//! are inputs, so the resistors keep the valves closed: stiff spring, high damping.
+//! They share a port, so that one write turns all of them off wherever something goes wrong. At reset the pins are inputs,
+//! and the resistors keep the valves closed, which is a stiff spring and high damping.
 
 use core::convert::Infallible;
 use embedded_hal::digital::{ErrorType, OutputPin};
@@ -14,7 +14,7 @@ const FIRST_PIN: u8 = 4;
 const PINS: core::ops::Range<u8> = FIRST_PIN..16;
 const ALL: u32 = (ValveCommand::SOFT.word() as u32) << FIRST_PIN;
 
-/// One solenoid driver input; off until told otherwise.
+/// One input of the solenoid drivers. It is off until it is switched on.
 pub struct Solenoid {
     mask: u32,
 }
@@ -35,7 +35,7 @@ pub fn take(_port: GPIOE, rcc: &RCC) -> Corners<StrutValves<Solenoid>> {
     })
 }
 
-/// Turns all twelve off with a single write. For fault handlers too: needs no state and cannot fail.
+/// Turns all twelve off with a single write. It needs no state and cannot fail, so fault handlers use it too.
 pub fn all_off() {
     write(ALL << 16);
 }
@@ -56,7 +56,8 @@ impl OutputPin for Solenoid {
     }
 }
 
-/// The bit set/reset register changes only the pins whose bits are one: no reading back, so no race with a handler.
+/// Writes the bit set/reset register, which changes only the pins whose bits are one. Nothing is read back, so there is no race
+/// with a handler.
 fn write(bits: u32) {
     #[allow(unsafe_code)]
     // SAFETY: every pattern is valid in BSRR; only the masks of PE4..PE15 are ever passed.

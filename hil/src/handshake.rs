@@ -1,33 +1,33 @@
 //! How two nodes on a bus find each other, whichever was started first, and agree on the run.
 //!
-//! Each repeats its `Hello` until it has heard the other's and knows that it was heard itself.
+//! Each repeats its `Hello` until it has received the other's and knows that its own was received.
 
 use std::time::{Duration, Instant};
 
 use crate::bus::{Bus, BusError};
 use crate::sync::{Role, Sync, Terms};
 
-/// Why two nodes did not find together.
+/// Why two nodes did not start a run together.
 #[derive(Debug, thiserror::Error)]
 pub enum HandshakeError {
-    /// Nobody answered.
+    /// The other node did not answer.
     #[error("no {} answers on {bus} within {waited_s:.0} s: start `oleo hil --node {} --bus {bus}` as well", .partner.name(), .partner.name())]
     Alone {
-        /// Who was expected.
+        /// The node that was expected.
         partner: Role,
-        /// Where.
+        /// Address of the bus.
         bus: String,
-        /// For how long, s.
+        /// Time for which it was waited for, s.
         waited_s: f64,
     },
-    /// They want different runs.
+    /// The two nodes want different runs.
     #[error("the {} on {bus} runs another {what}: give both nodes the same scenario, --strategy and --clock", .partner.name())]
     Terms {
-        /// Who is there.
+        /// The node that answered.
         partner: Role,
-        /// Where.
+        /// Address of the bus.
         bus: String,
-        /// What differs.
+        /// What differs: `strategy` or `clock`.
         what: &'static str,
     },
     /// The bus failed.
@@ -41,7 +41,7 @@ const HELLO_PERIOD: Duration = Duration::from_millis(50);
 /// Finds the partner, whichever was started first.
 ///
 /// # Errors
-/// Nobody there within `patience`, or somebody who wants another run.
+/// The partner did not answer within `patience`, wants another run, or the bus failed.
 pub fn handshake(
     bus: &mut dyn Bus,
     name: &str,
@@ -89,7 +89,7 @@ pub fn handshake(
             }
         }
     }
-    // The partner may not have heard that it was heard.
+    // The partner may not know yet that its own `Hello` was received.
     bus.send(&Sync::Hello { terms, heard: true }.encode(role))?;
     Ok(())
 }

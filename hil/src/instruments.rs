@@ -1,4 +1,4 @@
-//! The plant's electronics: sensors that may lie, and an output stage that may not obey.
+//! The plant's electronics: its sensors and its output stage, with their faults.
 //!
 //! ```text
 //!   vehicle -> Instruments (sensor faults) -> frames
@@ -12,17 +12,18 @@ use oleo_plant_sim::strut::StrutOutput;
 
 use crate::scenario::fault::{Fault, FaultKind, Sensor, SensorFault, SensorPlace, ValvePlace};
 
-/// Ticks without a usable command after which the output stage de-energises all valves: the command's own contract.
+/// Number of ticks without a usable command after which the output stage de-energises all valves. It is the time-out of the
+/// command's contract.
 pub const WATCHDOG_TICKS: u32 = COMMAND.timeout_ticks as u32;
 
-/// Four displacement and sixteen pressure sensors.
+/// The four displacement sensors and sixteen pressure sensors.
 #[derive(Clone, Debug)]
 pub struct Instruments {
     faults: Vec<(Fault, SensorPlace, SensorFault, Option<f32>)>,
 }
 
 impl Instruments {
-    /// Sensors with the sensor faults among `faults`.
+    /// Sensors that have the sensor faults among `faults`.
     pub fn new(faults: &[Fault]) -> Self {
         let of_sensors = |fault: &Fault| match fault.kind {
             FaultKind::Sensor { place, fault: kind } => Some((*fault, place, kind, None)),
@@ -33,7 +34,7 @@ impl Instruments {
         }
     }
 
-    /// What the sensors say in a tick. Displacement in m, compression positive.
+    /// What the sensors say in a tick, from the true displacements (m, compression positive) and pressures.
     pub fn read(&mut self, tick: u32, displacement_m: Corners<f64>, struts: Corners<StrutOutput>) -> Inputs {
         let mut displacement_m = displacement_m.map(|x| x as f32);
         let mut pressure_pa = struts.map(|strut| StrutPressures::from_array(strut.pressure_pa.map(|p| p as f32)));
@@ -57,7 +58,7 @@ impl Instruments {
     }
 }
 
-/// Twelve solenoid drivers behind a watchdog.
+/// The twelve solenoid drivers, behind a watchdog.
 #[derive(Clone, Debug)]
 pub struct OutputStage {
     command: ValveCommand,
@@ -68,7 +69,7 @@ pub struct OutputStage {
 }
 
 impl OutputStage {
-    /// De-energised, with the solenoid faults among `faults`.
+    /// A de-energised output stage that has the solenoid faults among `faults`.
     pub fn new(faults: &[Fault]) -> Self {
         let of_solenoids = |fault: &Fault| match fault.kind {
             FaultKind::SolenoidStuck { place, open } => Some((*fault, place, open)),
@@ -84,7 +85,7 @@ impl OutputStage {
         }
     }
 
-    /// A received command with the outcome of its check.
+    /// Takes a received command with the outcome of its check.
     pub fn receive(&mut self, status: CheckStatus, message: Option<CommandMessage>) {
         self.errors += u64::from(status.is_error());
         if let Some(message) = message
@@ -95,7 +96,7 @@ impl OutputStage {
         }
     }
 
-    /// Ends the reception of a tick. Whether a usable command came.
+    /// Ends the reception of a tick; returns whether a usable command came.
     pub fn end_of_tick(&mut self) -> bool {
         if std::mem::take(&mut self.fresh) {
             self.age = 0;
@@ -108,12 +109,12 @@ impl OutputStage {
         false
     }
 
-    /// What the drivers are told.
+    /// The command that the drivers obey.
     pub fn command(&self) -> ValveCommand {
         self.command
     }
 
-    /// Where the valves' signals are, stuck ones included.
+    /// Positions of the valves' signals, stuck valves included.
     pub fn energised(&self, tick: u32) -> ValveCommand {
         let active = self.stuck.iter().filter(|(fault, ..)| fault.is_active(tick));
         active.fold(self.command, |word, (_, place, open)| {
@@ -121,12 +122,12 @@ impl OutputStage {
         })
     }
 
-    /// Ticks since the last usable command.
+    /// Number of ticks since the last usable command.
     pub fn ticks_without_command(&self) -> u32 {
         self.age
     }
 
-    /// Commands that failed their end-to-end check.
+    /// Number of commands that failed their end-to-end check.
     pub fn errors(&self) -> u64 {
         self.errors
     }

@@ -1,7 +1,6 @@
-//! A recording to figures: ride measures, extremes, and how many ticks the answer to a fault took.
+//! From a recording to figures: ride measures, extremes, and the number of ticks that the answer to a fault took.
 //!
-//! Everything here is a function of what the run left in memory, so that it costs the loop nothing and is the same whichever bus carried
-//! the frames.
+//! Everything here is computed from what the run left in memory. So it costs the loop nothing, and it is the same for every bus.
 
 use oleo_controller::can::bus_load;
 use oleo_controller::{FaultCode, Mode};
@@ -15,24 +14,24 @@ use crate::run::Outcome;
 use crate::scenario::Scenario;
 use crate::scenario::check::{Figure, Metric};
 
-/// Figures of a run, and what they were worked out from.
+/// Figures of a run, and what they were computed from.
 #[derive(Debug)]
 pub struct Metrics {
-    /// Ticks run.
+    /// Number of ticks that were run.
     pub ticks: u32,
-    /// Ticks of the scenario that were not run.
+    /// Number of ticks of the scenario that were not run.
     pub ticks_missing: u32,
-    /// Driver's and left rear passenger's seat.
+    /// Ride measures at the driver's and at the left rear passenger's seat.
     pub seats: [RideMeasures; 2],
-    /// Edges of each valve signal.
+    /// Number of changes of each valve's signal.
     pub valve_switches: Corners<StrutValves<u64>>,
-    /// Frames sent and not received, injected drops included.
+    /// Number of frames that were sent and not received, injected drops included.
     pub frames_lost: u64,
-    /// Of these, lost by the bus itself.
+    /// How many of them the bus itself lost.
     pub bus_frames_lost: u64,
-    /// Frames that failed their end-to-end check.
+    /// Number of frames that failed their end-to-end check, at either end.
     pub e2e_errors: u64,
-    /// Mode and cause in each tick, as the controller said.
+    /// Mode and first cause in each tick, as the controller's frames say.
     pub account: Vec<Option<(Mode, FaultCode)>>,
     /// The traced frames on a wire of 500 kbit/s and of 1 Mbit/s.
     pub wires: [WireModel; 2],
@@ -51,7 +50,7 @@ struct Extremes {
     lifted_ticks: u64,
 }
 
-/// Ticks from the first fault, or from the end of the last.
+/// Numbers of ticks from the first fault, and of `recover` from the end of the last one; `None` for what did not happen.
 #[derive(Debug, Default)]
 struct Answer {
     detect: Option<u32>,
@@ -61,7 +60,7 @@ struct Answer {
 }
 
 impl Metrics {
-    /// Works everything out.
+    /// Computes all figures of a run.
     pub fn of(scenario: &Scenario, outcome: &Outcome) -> Self {
         let plant = &outcome.plant;
         let samples = &plant.recording.samples;
@@ -93,7 +92,7 @@ impl Metrics {
         }
     }
 
-    /// One figure.
+    /// The figure of one metric.
     pub fn figure(&self, metric: Metric) -> Figure {
         let degrees = |rad: f64| Figure::Number(rad.to_degrees());
         let count = |n: u64| Figure::Number(n as f64);
@@ -135,7 +134,7 @@ impl Metrics {
                 Figure::Word(last.map_or(Mode::StartUp, |(mode, _)| *mode).name())
             }
             Metric::FirstFault => {
-                // Before the first complete set of sensors the bus is rightly called silent.
+                // Before the first complete set of readings the controller rightly calls the bus silent.
                 let begin = self
                     .account
                     .iter()
@@ -152,7 +151,7 @@ impl Metrics {
         }
     }
 
-    /// After start-up is over for the first time; the numbers on the bus grow with restriction.
+    /// The most restricted mode after the first start-up. The order of the modes is that of their restriction.
     fn worst_mode(&self) -> &'static str {
         let modes = self
             .account
@@ -198,7 +197,7 @@ impl Answer {
                 .get(tick as usize)
                 .is_some_and(|sample| sample.energised.word() == 0)
         };
-        // The last open tick while the fault lasts; from the next on, all stay closed.
+        // The last tick of the fault in which a valve is open. From the next one on all stay closed.
         let last_open = (from..until.min(end)).rev().find(|tick| !closed(*tick));
         let closed_from = last_open.map_or(from, |tick| tick + 1);
         Self {

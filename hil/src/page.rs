@@ -14,10 +14,10 @@ use crate::scenario::Scenario;
 use crate::scenario::fault::{Fault, FaultKind};
 use crate::sync::Role;
 
-/// All figures of a page zoom together.
+/// Figures with this link zoom their time axes together.
 const LINK: &str = "time";
 
-/// The page of a run; `command` is what makes it again.
+/// The page of a run. `command` is the command line that makes it again.
 pub fn page(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summary: &Summary, command: &str) -> Page {
     let mut page = Page::new(&format!("Hardware-in-the-loop: {}", scenario.name), command);
     page.fact("Scenario", &scenario.description);
@@ -48,7 +48,7 @@ pub fn page(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summary: 
     page
 }
 
-/// How the run came out, for the terminal and the page.
+/// Table of the run's figures, for the terminal and the page.
 pub fn outcome_table(summary: &Summary) -> Table {
     let mut table = Table::new([Column::text("Quantity"), Column::number("Value"), Column::text("Unit")]);
     let mut row = |quantity: &str, value: String, unit: &str| {
@@ -113,7 +113,7 @@ pub fn outcome_table(summary: &Summary) -> Table {
     table
 }
 
-/// The checks, for the terminal and the page.
+/// Table of the checks, for the terminal and the page.
 pub fn check_table(summary: &Summary) -> Table {
     let mut table = Table::new([Column::text("Check"), Column::number("Figure"), Column::text("Met")]);
     for check in &summary.checks {
@@ -126,7 +126,7 @@ pub fn check_table(summary: &Summary) -> Table {
     table
 }
 
-/// The common axis, and the faults on it.
+/// The common time axis, and the faults to be marked on it.
 struct Time<'a> {
     s: Vec<f64>,
     faults: &'a [Fault],
@@ -149,7 +149,7 @@ impl<'a> Time<'a> {
         curves
     }
 
-    /// Marks the faults in the panel added last.
+    /// Marks the faults in the panel that was added last.
     fn mark(&self, curves: &mut Curves) {
         let end_s = self.s.last().copied().unwrap_or(0.0);
         for fault in self.faults {
@@ -204,7 +204,7 @@ fn body(page: &mut Page, outcome: &Outcome, time: &Time) {
         samples[i].body.pitch_rad.to_degrees()
     });
     page.section("Body motion")
-        .text("Heave up, roll left side up and pitch nose down are positive.")
+        .text("Heave is positive upwards, roll with the left side up, and pitch with the nose down.")
         .figure(curves);
 
     let step_s: Vec<f64> = (1..=recording.seat_acceleration_m_s2.len())
@@ -222,8 +222,8 @@ fn body(page: &mut Page, outcome: &Outcome, time: &Time) {
 fn struts(page: &mut Page, outcome: &Outcome, time: &Time) {
     let samples = &outcome.plant.recording.samples;
     page.section("Struts").text(
-        "Compression is positive; pressures are gauge. Valves 1 and 2 bypass the dampers (open: low damping), valve 3 connects the \
-         0.4 l accumulator (open: soft spring).",
+        "Compression is positive, and pressures are gauge pressures. Valves 1 and 2 bypass the dampers: open, they give low damping. Valve 3 \
+         connects the 0.4 l accumulator: open, it gives the soft spring.",
     );
     for corner in Corner::ALL {
         let column = |value: &dyn Fn(usize) -> f64| (0..samples.len()).map(value).collect::<Vec<f64>>();
@@ -243,7 +243,7 @@ fn struts(page: &mut Page, outcome: &Outcome, time: &Time) {
         }
         curves.panel(Axis::new("Force", "kN"));
         curves.line("force", &time.s, &column(&|i| 1e-3 * samples[i].strut[corner].force_n));
-        // Three signals one above the other: closed at the label, open above it.
+        // The three signals lie above each other. A signal is at its label when closed, and above it when open.
         curves.panel(
             Axis::new("Open", "")
                 .ticks([(0.0, "valve 1"), (1.5, "valve 2"), (3.0, "valve 3")])
@@ -289,7 +289,7 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
         &of(&|m| f64::from(u8::from(m.handling))),
     );
     page.section("Controller")
-        .text("As the controller's own frames say, before injected faults.")
+        .text("This is what the controller's own frames say, before any injected fault.")
         .figure(curves);
 
     let mut table = Table::new([
@@ -348,8 +348,9 @@ fn bus(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &Summary)
     for wire in &metrics.wires {
         let rate = wire.bit_rate / 1000;
         page.text(&format!(
-            "A wire of {rate} kbit/s would be busy {} % of the time, {} % in the busiest tick (stuff bits counted as they occurred). \
-             Latency from ready to sent, in microseconds; the bound is the response-time analysis of Davis et al. (2007) with worst-case stuffing:",
+            "A wire of {rate} kbit/s would be busy for {} % of the time, and for {} % of the busiest tick, with the stuff bits that occurred. \
+             The table gives the latency from ready to sent in microseconds. Its bound is that of the response-time analysis of Davis \
+             et al. (2007) with worst-case stuffing.",
             significant(100.0 * wire.utilisation, 3),
             significant(100.0 * wire.peak_utilisation, 3),
         ));

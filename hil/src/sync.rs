@@ -1,8 +1,9 @@
-//! Frames that keep two nodes in step. They are machinery of the simulation, not messages of the vehicle.
+//! Frames that keep two nodes in step. They belong to the simulation and are no messages of the vehicle.
 //!
-//! A node in lockstep must know that the other has said all it has to say in a tick, also when a fault has eaten the
-//! last message. So each ends its tick with a `TickDone` that no fault touches and that counts what was sent, which shows
-//! frames that a slow reader lost. Wall-clock time decides nothing, except that a partner silent for seconds is gone.
+//! A node in lockstep must know when the other has sent everything in a tick, even if a fault has dropped the last message. So each
+//! ends its tick with a `TickDone`, which no injected fault touches. It carries the number of frames sent so far, which shows
+//! frames that a slow reader has lost. Wall-clock time decides nothing, except that a partner that is silent for seconds is taken
+//! to be gone.
 //!
 //! ```text
 //!   plant                                 controller
@@ -14,7 +15,7 @@
 //!                                    <-     Tally               what the controller's side of the bus lost
 //! ```
 //!
-//! Identifiers are extended and of the lowest priority, so no vehicle message can be mistaken for one.
+//! The identifiers are extended and have the lowest priority, so that no message of the vehicle can be mistaken for one.
 
 use strum::{EnumString, IntoStaticStr, VariantNames};
 
@@ -25,7 +26,7 @@ use crate::frame::extended;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, EnumString, IntoStaticStr, VariantNames)]
 #[strum(serialize_all = "lowercase")]
 pub enum Role {
-    /// Sensors, vehicle and valves.
+    /// The plant: sensors, vehicle and valves.
     Plant,
     /// The suspension controller.
     Controller,
@@ -49,7 +50,7 @@ impl Role {
 const PLANT_ID: u32 = 0x1FFF_01E0;
 const CONTROLLER_ID: u32 = 0x1FFF_01E1;
 
-/// Version of this exchange; nodes of different versions do not start.
+/// Version of this exchange. Nodes of different versions do not start.
 const VERSION: u8 = 1;
 
 /// What the nodes must agree on before they start.
@@ -57,39 +58,39 @@ const VERSION: u8 = 1;
 pub struct Terms {
     /// Number of the [`Strategy`](oleo_controller::Strategy), counted from 0.
     pub strategy: u8,
-    /// 0 lockstep, 1 real time.
+    /// Number of the clock: 0 lockstep, 1 real time.
     pub clock: u8,
 }
 
-/// Content of a sync frame.
+/// Content of a frame that keeps nodes in step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sync {
-    /// "I am here", and whether the other one was heard.
+    /// The sender is there.
     Hello {
-        /// What the run needs both to agree on.
+        /// What both must agree on.
         terms: Terms,
-        /// The sender has had a `Hello` of the receiver.
+        /// Whether the sender has received a `Hello` of the receiver.
         heard: bool,
     },
     /// All frames of a tick are on the bus.
     TickDone {
-        /// Which tick.
+        /// Number of the tick.
         tick: u32,
-        /// Frames sent since the start, modulo 65536, without sync frames.
+        /// Number of messages sent since the start, modulo 65536, without frames of this exchange.
         sent: u16,
     },
     /// The plant's run is over.
     End {
-        /// As in `TickDone`.
+        /// Number of messages sent, as in `TickDone`.
         sent: u16,
     },
     /// The controller's answer to `End`.
     Tally {
-        /// As in `TickDone`.
+        /// Number of messages sent, as in `TickDone`.
         sent: u16,
-        /// Frames that did not reach the controller, saturating.
+        /// Number of frames that did not reach the controller; it saturates.
         lost: u16,
-        /// Frames that failed its end-to-end check, saturating.
+        /// Number of frames that failed the controller's end-to-end check; it saturates.
         e2e_errors: u16,
     },
 }
@@ -100,7 +101,7 @@ pub fn is_sync(frame: &Frame) -> bool {
 }
 
 impl Sync {
-    /// As a frame of `role`.
+    /// The frame by which `role` sends this.
     pub fn encode(self, role: Role) -> Frame {
         let id = match role {
             Role::Plant => PLANT_ID,

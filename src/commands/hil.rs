@@ -1,4 +1,4 @@
-//! `oleo hil`: reads what is to be run, lets `oleo_hil` run it, writes what it leaves.
+//! `oleo hil`: reads what is to be run, lets `oleo_hil` run it, and writes the results.
 
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -22,12 +22,13 @@ use crate::failure::Failure;
 
 /// Drive the vehicle with controller and plant talking only through CAN frames.
 ///
-/// Without arguments: 20 s of Belgian block at 60 km/h with the ride/handling strategy, in this process, as fast as it goes.
+/// Without arguments it drives over 20 s of Belgian block at 60 km/h with the ride/handling strategy, in this process and as fast
+/// as the machine can.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   oleo hil --out belgian                                    the default scenario, with report.html
-  oleo hil --scenario bus-silence                           a built-in fault scenario (--list names them)
+  oleo hil --scenario bus-silence                           a built-in fault scenario (--list shows all)
   oleo hil --road ../shared/roads/belgian_block.crg         on a measured surface
   oleo hil --bus socketcan:vcan0                            over a real CAN interface
   oleo hil --clock realtime --duration 5                    against the wall clock
@@ -36,16 +37,16 @@ Examples:
 
 Exit status: 0 all checks met; 1 a check failed or the plant was lost; 2 bad input.")]
 pub struct Args {
-    /// Built-in scenario or a TOML file
+    /// Built-in scenario, or a scenario file
     #[arg(long, value_name = "FILE|NAME", default_value = "belgian")]
     scenario: String,
     /// List the built-in scenarios and end
     #[arg(long)]
     list: bool,
-    /// Where frames go: inproc, socketcan:IFACE, slcan:DEVICE, slcan:tcp:HOST:PORT
-    #[arg(long)]
+    /// Bus that carries the frames: inproc, socketcan:IFACE, slcan:DEVICE or slcan:tcp:HOST:PORT
+    #[arg(long, value_name = "BUS")]
     bus: Option<String>,
-    /// How time passes
+    /// How time passes: both nodes in step and as fast as the machine can, or against the wall clock
     #[arg(long, value_parser = by_name::<Clock>())]
     clock: Option<Clock>,
     /// Built-in road (belgian, apg-left, iso-c, flat, ...) or a .crg or .csv file
@@ -63,16 +64,16 @@ pub struct Args {
     /// How dampers are switched in ride mode
     #[arg(long, value_name = "NAME", value_parser = by_name::<DamperPolicy>())]
     damper_policy: Option<DamperPolicy>,
-    /// Strut model, as oleo diagnose writes it
+    /// Strut model, as oleo diagnose writes it [default: the scenario's]
     #[arg(long, value_name = "MODEL.toml")]
     strut: Option<String>,
-    /// Vehicle parameters
+    /// Vehicle parameters [default: the scenario's]
     #[arg(long, value_name = "VEHICLE.toml")]
     vehicle: Option<String>,
-    /// Of random roads and injected faults
+    /// Seed of random roads and injected faults
     #[arg(long)]
     seed: Option<u64>,
-    /// Run only this node; the other one is another process on the same bus
+    /// Run only this node; the other node is another process on the same bus
     #[arg(long, value_parser = by_name::<Role>())]
     node: Option<Role>,
     /// Threads for the two nodes, 1 or 2 (real time always takes 2)
@@ -92,11 +93,11 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     if args.node == Some(Role::Controller) {
         return controller(&scenario, args.out);
     }
-    // Refused before the run, not after it.
+    // A folder that cannot be written to is refused before the run.
     let staged = args.out.as_ref().map(OutputDirectory::stage).transpose()?;
     let plant = Plant::build(&scenario)?;
     let progress = Progress::new(&scenario.name, scenario.ticks.into());
-    // In real time Ctrl-C ends the run in order; what has been driven is reported.
+    // In real time Ctrl-C ends the run, and what has been driven is reported.
     let graceful = (scenario.clock == Clock::RealTime).then(Graceful::begin);
     let mut watch = |ticks: u32| {
         progress.set(ticks.into());
@@ -119,7 +120,7 @@ fn list() -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The scenario with what the command line changes.
+/// The scenario, with the changes of the command line.
 fn chosen(args: &Args) -> Result<Scenario, Failure> {
     let mut chosen = scenario::named(&args.scenario)?;
     let own = |given: &Option<String>, value: &mut String| {
@@ -196,7 +197,7 @@ fn command_line() -> String {
         .join(" ")
 }
 
-/// The controller's node: no plant, no road; its account of the run goes to standard output and, if wanted, to `summary.json`.
+/// Runs the controller's node alone. Its results go to standard output and, if a folder is given, to `summary.json`.
 fn controller(scenario: &Scenario, out: Option<PathBuf>) -> Result<ExitCode, Failure> {
     let staged = out.map(OutputDirectory::stage).transpose()?;
     let ended = run::controller_alone(scenario)?;
@@ -269,7 +270,7 @@ fn controller_summary(ended: &ControllerOutcome) -> ControllerSummary {
     }
 }
 
-/// A reader that went away (`oleo hil | head`) is no failure.
+/// Writes to standard output. If its reader has gone away (`oleo hil | head`), that is no failure.
 fn say(text: &str) {
     let _ = std::io::stdout().write_all(text.as_bytes());
 }

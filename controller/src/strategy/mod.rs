@@ -135,3 +135,24 @@ strategies! {
     #[default]
     RideHandling, ride_handling: ride_handling::RideHandling;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use strum::{VariantArray, VariantNames};
+
+    #[test]
+    fn every_strategy_has_a_name_and_decides() {
+        let tuning = Tuning::default();
+        assert_eq!(tuning.check(), Ok(()));
+        for (strategy, name) in <Strategy as VariantArray>::VARIANTS
+            .iter()
+            .zip(<Strategy as VariantNames>::VARIANTS)
+        {
+            assert_eq!((strategy.name(), name.parse()), (*name, Ok(*strategy)));
+            let parameters = Parameters::new(*strategy, &VehicleDescription::default(), &tuning);
+            let demand = State::default().step(&parameters, &Estimate::default(), &Trusted::default());
+            assert!(!demand.rollover_guard, "{name} at rest");
+        }
+    }
+}

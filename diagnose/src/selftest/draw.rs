@@ -1,5 +1,8 @@
 //! Random numbers of the self-test: one stream a campaign, named by text, so that a campaign is the same whatever else is run.
 
+use std::hash::Hasher;
+
+use fnv::FnvHasher;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -10,11 +13,9 @@ impl Draw {
     /// The stream of this name: same name, same numbers, on every machine.
     #[must_use]
     pub fn named(name: &str) -> Self {
-        // Fowler, Noll and Vo's hash, variant 1a, 64 bit.
-        let seed = name.bytes().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-        });
-        Self(ChaCha8Rng::seed_from_u64(seed))
+        let mut hash = FnvHasher::default();
+        hash.write(name.as_bytes());
+        Self(ChaCha8Rng::seed_from_u64(hash.finish()))
     }
 
     /// Uniform in 0..1.

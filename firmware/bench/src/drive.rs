@@ -1,9 +1,9 @@
-//! A synthetic drive, the same to the bit on every machine: what the sensors say, tick by tick.
+//! A synthetic drive: what the sensors say in each tick, the same to the bit on every machine.
 //!
-//! Not a vehicle (that is plant-sim's, and needs f64 and std) but its shape, so that each part of the controller has work:
-//! four struts on a rough road, a slalom on a smooth one, sensor noise, and at the end readings that are missing or
-//! wrong. The gas follows the struts' valves as the report's isothermal law has it. Only integer arithmetic and
-//! +, -, *, / of f32, which have the same bits everywhere.
+//! It is not a model of a vehicle, which would need f64 and std, but it gives each part of the controller work: four struts on a
+//! rough road, a slalom on a smooth one, sensor noise, and at the end readings that are missing or wrong. The gas follows the
+//! struts' valves by the report's isothermal law. It uses only integer arithmetic and +, -, *, / of f32, which have the same bits
+//! everywhere.
 
 use oleo_controller::{Absolute, Corner, Corners, Gauge, Inputs, Reading, Side, StrutPressures, Valve, ValveCommand};
 
@@ -29,7 +29,7 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// From the start; always the same.
+    /// A drive from its start. All drives are the same.
     pub fn new() -> Self {
         Drive {
             tick: 0,

@@ -16,7 +16,7 @@ pub enum RunError {
     /// The vehicle's parameters are wrong.
     #[error(transparent)]
     Vehicle(#[from] oleo_plant_sim::vehicle::ParameterError),
-    /// Strut and vehicle do not go together.
+    /// Strut and vehicle do not fit together.
     #[error(transparent)]
     Ride(#[from] oleo_plant_sim::vehicle::RideError),
     /// The road is wrong.
@@ -28,32 +28,32 @@ pub enum RunError {
     /// The bus failed.
     #[error(transparent)]
     Bus(#[from] BusError),
-    /// The nodes did not find together.
+    /// The two nodes did not find each other, or want different runs.
     #[error(transparent)]
     Handshake(#[from] HandshakeError),
     /// A file cannot be read.
     #[error("{path}: cannot be read: {source}; give {DEFENDER} or the path of a TOML file")]
     Unreadable {
-        /// Which.
+        /// Path of the file.
         path: String,
-        /// Why.
+        /// The system's reason.
         source: std::io::Error,
     },
     /// The integration step does not divide the tick.
     #[error("{vehicle}: solver.step_s is {step_s}: must divide the controller's tick of {TICK_S} s")]
     Step {
-        /// Parameter file.
+        /// Name of the vehicle or path of its parameter file.
         vehicle: String,
-        /// Its step, s.
+        /// Its integration step, s.
         step_s: f64,
     },
-    /// A bus with one end only.
+    /// The bus has only one end in this process.
     #[error("{bus} connects two programs: add --node plant or --node controller, and start the other one too")]
     OneEnd {
-        /// Address.
+        /// Address of the bus.
         bus: String,
     },
-    /// In memory, there is no other process.
+    /// A bus in memory cannot reach another process.
     #[error("--node needs a bus that another process can reach: add --bus socketcan:IFACE or --bus slcan:DEVICE")]
     NoOtherProcess,
 }

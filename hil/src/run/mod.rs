@@ -1,14 +1,15 @@
-//! One run: parts put together, a clock over them, an end in every case.
+//! One run: the nodes, the clock that paces them, and an end in every case.
 //!
 //! | run | nodes here | who waits for whom |
 //! |---|---|---|
 //! | lockstep, 1 thread | both | taking turns |
 //! | lockstep, 2 threads | both | each for the other's `TickDone` |
 //! | lockstep, `--node` | one | the same, across processes |
-//! | real time | both (2 threads) or one | nobody: deadlines |
+//! | real time | both (2 threads) or one | nobody: each keeps its deadlines |
 //!
-//! The first three give the same commands, bit for bit. A partner that stays silent for the scenario's `partner_timeout_s` is gone: the plant
-//! drives on with de-energised valves (or ends, as the scenario says), the controller ticks on until it is safe, and ends.
+//! The first three give the same commands, bit for bit. A partner that stays silent for the scenario's `partner_timeout_s` is
+//! taken to be gone. The plant then drives on with de-energised valves, or ends if the scenario says so; the controller ticks
+//! on until its mode is safe, and ends.
 
 mod controller_loop;
 mod error;
@@ -238,7 +239,7 @@ mod tests {
         assert!(outcome.wall_s >= 0.295, "{}", outcome.wall_s);
     }
 
-    /// A partner that stops answering, as a killed process does: the other end stays open and silent.
+    /// A partner that stops answering as a killed process does: its end of the bus stays open and is silent.
     #[test]
     fn a_controller_that_falls_silent_costs_four_ticks_of_open_valves() {
         let scenario = Scenario {

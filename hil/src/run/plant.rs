@@ -21,7 +21,7 @@ impl Plant {
     /// Makes road, struts and vehicle of a scenario.
     ///
     /// # Errors
-    /// Files that are missing or wrong; parts that do not go together.
+    /// A file is missing or wrong, or the parts do not fit together.
     pub fn build(scenario: &Scenario) -> Result<Self, RunError> {
         let read = |path: &str| {
             std::fs::read_to_string(path).map_err(|source| RunError::Unreadable {
@@ -45,7 +45,7 @@ impl Plant {
             DEFENDER => None,
             path => Some(StrutModel::from_toml(&read(path)?, path)?),
         };
-        // Each corner is charged for the load it carries, as one does in a workshop.
+        // Each strut is charged for the load that it carries, as in a workshop.
         let mut struts = Vec::with_capacity(4);
         for load_n in parameters.static_strut_load_n() {
             let model = match &model {

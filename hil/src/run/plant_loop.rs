@@ -1,4 +1,4 @@
-//! The plant's half of a run: ticks in lockstep or against the clock, with or without a controller.
+//! The plant's half of a run, in lockstep or in real time.
 
 use std::time::{Duration, Instant};
 
@@ -13,10 +13,10 @@ use crate::plant_node::{Answer, PlantNode};
 use crate::scenario::{OnControllerLoss, Scenario};
 use crate::sync::Role;
 
-/// Called every few ticks with the number of ticks done; `false` ends the run early.
+/// Is called every few ticks with the number of ticks done. It returns `false` to end the run early.
 pub type Watch<'a> = &'a mut dyn FnMut(u32) -> bool;
 
-/// Ticks between two calls of [`Watch`].
+/// Number of ticks between two calls of [`Watch`].
 pub(super) const WATCH_TICKS: u32 = 50;
 
 /// How the plant's loop ended.
@@ -45,7 +45,7 @@ impl PlantEnd {
     }
 }
 
-/// `partner` is what the other node does in this thread, if it is here.
+/// `partner` is what the other node does in a tick, if it runs in this thread.
 pub(super) fn in_lockstep<B: Bus>(
     plant: &mut PlantNode<B>,
     scenario: &Scenario,
@@ -55,7 +55,7 @@ pub(super) fn in_lockstep<B: Bus>(
     let wait = partner_timeout(scenario);
     let (mut controller_lost_at, mut interrupted) = (None, false);
     while plant.tick() < scenario.ticks {
-        // A bus whose other end was closed has no controller on it either.
+        // If the other end of the bus was closed, the controller is gone too.
         let exchange = |plant: &mut PlantNode<B>, partner: &mut dyn FnMut() -> Result<(), BusError>| {
             plant.send_sensors()?;
             plant.send_done()?;
@@ -105,7 +105,7 @@ pub(super) fn in_real_time<B: Bus>(
     let (mut controller_lost_at, mut interrupted) = (None, false);
     while plant.tick() < scenario.ticks {
         clock.wait(plant.tick());
-        // What was commanded in answer to the last tick holds from here: a tick of latency, as on a real bus.
+        // The command that answered the last tick holds from here on: one tick of latency, as on a real bus.
         match plant.listen(Duration::ZERO).and_then(|_| plant.send_sensors()) {
             Ok(()) => {}
             Err(BusError::Closed { .. }) => controller_lost_at = controller_lost_at.or(Some(plant.tick())),

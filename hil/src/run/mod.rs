@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 
 use oleo_controller::strategy::Strategy;
 use oleo_controller::{Configuration, FaultCode, Mode};
+use oleo_interface::StrutValves;
 use oleo_plant_sim::road;
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
@@ -33,12 +34,12 @@ use crate::sync::{HandshakeError, Role, Terms, handshake};
 /// Why a run did not come about.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// The strut model is wrong.
+    /// The file of the strut or of the vehicle is wrong.
     #[error(transparent)]
-    Strut(#[from] oleo_plant_sim::strut::ModelError),
-    /// The vehicle's parameters are wrong.
-    #[error(transparent)]
-    Vehicle(#[from] oleo_plant_sim::vehicle::ParameterError),
+    ModelFile(#[from] oleo_plant_sim::model_file::ModelFileError),
+    /// The strut cannot be charged for the load that its corner carries.
+    #[error("strut {0}")]
+    Strut(#[from] oleo_plant_sim::model_file::InvalidValue),
     /// Strut and vehicle do not go together.
     #[error(transparent)]
     Ride(#[from] oleo_plant_sim::vehicle::RideError),
@@ -132,7 +133,7 @@ impl Plant {
                     charged
                 }
             };
-            struts.push(Strut::at_rest(&model, [false; 3])?);
+            struts.push(Strut::at_rest(&model, StrutValves::default())?);
         }
         let Ok(struts) = <[Strut; 4]>::try_from(struts) else {
             unreachable!("four loads make four struts")

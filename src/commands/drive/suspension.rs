@@ -1,7 +1,9 @@
 //! The suspension as set on the command line: fixed valves, or the controller called directly, without a bus between.
 
 use oleo_controller::{Configuration, Inputs, State, tick};
-use oleo_plant_sim::strut::{ModelError, Strut, StrutModel, StrutOutput};
+use oleo_interface::StrutValves;
+use oleo_plant_sim::model_file::InvalidValue;
+use oleo_plant_sim::strut::{Strut, StrutModel, StrutOutput};
 use oleo_plant_sim::vehicle::VehicleParameters;
 
 use super::Setting;
@@ -49,8 +51,8 @@ impl Valves {
 }
 
 /// Four struts of the preset, each for its corner's static load.
-pub fn struts(parameters: &VehicleParameters, signals: [bool; 3]) -> Result<[Strut; 4], ModelError> {
+pub fn struts(parameters: &VehicleParameters, signals: [bool; 3]) -> Result<[Strut; 4], InvalidValue> {
     let [a, b, c, d] = parameters.static_strut_load_n();
-    let strut = |load_n: f64| Strut::at_rest(&StrutModel::defender110(load_n), signals);
+    let strut = |load_n: f64| Strut::at_rest(&StrutModel::defender110(load_n), StrutValves::from_array(signals));
     Ok([strut(a)?, strut(b)?, strut(c)?, strut(d)?])
 }

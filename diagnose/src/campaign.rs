@@ -152,7 +152,7 @@ struct ModelText {
 
 impl ModelText {
     fn new(text: String, source: String) -> Result<Self, DiagnoseError> {
-        let head = specimen_name(&text, &source).map_err(DiagnoseError::Model)?;
+        let head = specimen_name(&text, &source).map_err(|e| DiagnoseError::Model(e.to_string()))?;
         Ok(Self { text, source, head })
     }
 
@@ -170,14 +170,15 @@ impl ModelText {
     }
 
     fn cylinder(&self) -> Result<CylinderModel, DiagnoseError> {
-        CylinderModel::from_toml(&self.text, &self.source).map_err(DiagnoseError::Model)
+        CylinderModel::from_toml(&self.text, &self.source).map_err(|e| DiagnoseError::Model(e.to_string()))
     }
 
     /// Model and recordings put together, and what can be said of the recordings without any model fitted.
     fn specimen(&self, recordings: Vec<Recording>) -> Result<(Box<dyn Specimen>, Vec<String>), DiagnoseError> {
         match self.head.kind.as_str() {
             GAS_SPRING => {
-                let model = GasSpringModel::from_toml(&self.text, &self.source).map_err(DiagnoseError::Model)?;
+                let model = GasSpringModel::from_toml(&self.text, &self.source)
+                    .map_err(|e| DiagnoseError::Model(e.to_string()))?;
                 let remarks = gas_spring::corner_remarks(&model, &recordings);
                 Ok((Box::new(gas_spring::GasSpring::new(model, recordings)), remarks))
             }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use oleo_interface::StrutValves;
 use oleo_plant_sim::handling::{HandlingParameters, HandlingVehicle, Manoeuvre, Track};
 use oleo_plant_sim::road::{Flat, Road, belgian};
 use oleo_plant_sim::strut::{Strut, StrutModel};
@@ -39,7 +40,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let signals = [open; 3];
         let mut struts = Vec::new();
         for load in load {
-            struts.push(Strut::at_rest(&StrutModel::defender110(load), signals)?);
+            struts.push(Strut::at_rest(
+                &StrutModel::defender110(load),
+                StrutValves::from_array(signals),
+            )?);
         }
         let struts: [Strut; 4] = struts.try_into().map_err(|_| "four struts")?;
         let mut model = HandlingVehicle::new(&parameters, &handling, struts, road, speed_m_s)?;

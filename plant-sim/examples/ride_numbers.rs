@@ -6,6 +6,7 @@ use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
 
+use oleo_interface::StrutValves;
 use oleo_plant_sim::measures::RideMeter;
 use oleo_plant_sim::road::{Road, belgian, from_name_or_path, spectrum::SpectrumEstimator};
 use oleo_plant_sim::strut::{Strut, StrutModel};
@@ -30,7 +31,10 @@ fn struts(parameters: &VehicleParameters, signals: [bool; 3]) -> Result<[Strut; 
     let load = parameters.static_strut_load_n();
     let mut struts = Vec::new();
     for load_n in load {
-        struts.push(Strut::at_rest(&StrutModel::defender110(load_n), signals)?);
+        struts.push(Strut::at_rest(
+            &StrutModel::defender110(load_n),
+            StrutValves::from_array(signals),
+        )?);
     }
     Ok(struts.try_into().map_err(|_| "four struts")?)
 }

@@ -1,7 +1,17 @@
-//! `oleo-plant-sim`
+//! The plant: struts, vehicles, roads, driver, test rig, ride and handling measures, design studies.
+//!
+//! ```text
+//!   model_file --> strut --> specimen                road --> vehicle, handling --> measures --> study
+//!                    |                                            ^
+//!                    +--> rig, strut_first                        |
+//!                    +--------------------------------------------+
+//! ```
+//!
+//! Start with [`strut`] to use the strut alone; `examples/force_displacement.rs` shows how.
 
 pub mod handling;
 pub mod measures;
+pub mod model_file;
 pub mod rig;
 pub mod road;
 pub mod specimen;

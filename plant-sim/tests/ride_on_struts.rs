@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use oleo_interface::StrutValves;
 use oleo_plant_sim::measures::RideMeter;
 use oleo_plant_sim::road::{ApgObstacle, Flat, Road, Side, from_name_or_path};
 use oleo_plant_sim::strut::{Strut, StrutModel};
@@ -15,7 +16,7 @@ fn vehicle(step_s: f64, signals: [bool; 3], road: Arc<dyn Road>, speed_km_h: f64
     parameters.solver.step_s = step_s;
     let struts = parameters
         .static_strut_load_n()
-        .map(|load| Strut::at_rest(&StrutModel::defender110(load), signals).unwrap());
+        .map(|load| Strut::at_rest(&StrutModel::defender110(load), StrutValves::from_array(signals)).unwrap());
     RideVehicle::new(&parameters, struts, road, speed_km_h / 3.6).unwrap()
 }
 
@@ -39,7 +40,8 @@ fn rests_on_its_struts() {
 #[test]
 fn a_strut_charged_for_a_truck_is_refused_in_one_line() {
     let parameters = VehicleParameters::defender110();
-    let struts = [16e3; 4].map(|load| Strut::at_rest(&StrutModel::defender110(load), SOFT).unwrap());
+    let struts =
+        [16e3; 4].map(|load| Strut::at_rest(&StrutModel::defender110(load), StrutValves::from_array(SOFT)).unwrap());
     let error = RideVehicle::new(&parameters, struts, Arc::new(Flat), 1.0)
         .err()
         .unwrap();

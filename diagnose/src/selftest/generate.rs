@@ -8,6 +8,7 @@
 use std::sync::atomic::AtomicBool;
 
 use nalgebra::{DMatrix, DVector};
+use oleo_interface::Valve;
 use oleo_plant_sim::strut::{COLUMNS, Effects, Inputs, StrutModel, record_column, replay};
 
 use super::draw::Draw;
@@ -111,7 +112,7 @@ fn concealed(wanted: &[(&'static str, f64)], complete: &StrutModel, draw: &mut D
 }
 
 fn switching(inputs: &Inputs) -> [Vec<f64>; 3] {
-    std::array::from_fn(|v| inputs.signals.iter().map(|s| f64::from(u8::from(s[v]))).collect())
+    Valve::ALL.map(|valve| inputs.signals.iter().map(|s| f64::from(u8::from(s[valve]))).collect())
 }
 
 fn positions(inputs: &Inputs) -> Vec<f64> {

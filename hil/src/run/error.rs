@@ -10,12 +10,12 @@ use crate::scenario::file::DEFENDER;
 /// Why a run did not come about.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
-    /// The strut model is wrong.
+    /// The file of the strut or of the vehicle is wrong.
     #[error(transparent)]
-    Strut(#[from] oleo_plant_sim::strut::ModelError),
-    /// The vehicle's parameters are wrong.
-    #[error(transparent)]
-    Vehicle(#[from] oleo_plant_sim::vehicle::ParameterError),
+    ModelFile(#[from] oleo_plant_sim::model_file::ModelFileError),
+    /// The strut cannot be charged for the load that its corner carries.
+    #[error("strut {0}")]
+    Strut(#[from] oleo_plant_sim::model_file::InvalidValue),
     /// Strut and vehicle do not fit together.
     #[error(transparent)]
     Ride(#[from] oleo_plant_sim::vehicle::RideError),

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use oleo_interface::StrutValves;
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::road;
 use oleo_plant_sim::strut::{Strut, StrutModel};
@@ -56,7 +57,7 @@ impl Plant {
                     charged
                 }
             };
-            struts.push(Strut::at_rest(&model, [false; 3])?);
+            struts.push(Strut::at_rest(&model, StrutValves::default())?);
         }
         let Ok(struts) = <[Strut; 4]>::try_from(struts) else {
             unreachable!("four loads make four struts")

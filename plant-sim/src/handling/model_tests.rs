@@ -6,6 +6,8 @@ use super::super::driver::Driver;
 use super::super::track::Track;
 use super::*;
 use crate::road::{Flat, Road};
+use oleo_interface::StrutValves;
+
 use crate::strut::StrutModel;
 use crate::vehicle::RideModel;
 use crate::vehicle::suspension::LinearElement;
@@ -34,7 +36,7 @@ fn on_struts(road: Arc<dyn Road>, speed: f64) -> HandlingVehicle {
     let p = parameters();
     let struts = p
         .static_strut_load_n()
-        .map(|load| Strut::at_rest(&StrutModel::defender110(load), [true; 3]).unwrap());
+        .map(|load| Strut::at_rest(&StrutModel::defender110(load), StrutValves::from_array([true; 3])).unwrap());
     HandlingVehicle::new(&p, &HandlingParameters::defender110(), struts, road, speed).unwrap()
 }
 
@@ -380,7 +382,8 @@ fn tripped_it_rolls_over_and_the_equations_hold_beyond() {
 #[test]
 fn a_strut_that_does_not_carry_its_corner_is_refused() {
     let p = parameters();
-    let struts = [3000.0; 4].map(|load| Strut::at_rest(&StrutModel::defender110(load), [true; 3]).unwrap());
+    let struts = [3000.0; 4]
+        .map(|load| Strut::at_rest(&StrutModel::defender110(load), StrutValves::from_array([true; 3])).unwrap());
     let refused = HandlingVehicle::new(&p, &preset(), struts, Arc::new(Flat), 10.0);
     assert!(matches!(refused.err(), Some(RideError::StaticLoad { corner: 0, .. })));
 }

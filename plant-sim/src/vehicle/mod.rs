@@ -15,12 +15,10 @@
 mod contact;
 pub mod equations;
 pub mod linear;
-pub(crate) mod parameter_file;
 mod parameters;
 mod ride;
 pub mod suspension;
 
-pub use parameter_file::ParameterError;
 pub use parameters::{
     AxleParameters, BaselineParameters, BodyParameters, GRAVITY_M_S2, LayoutParameters, SeatParameters,
     SolverParameters, TyreParameters, VehicleParameters,

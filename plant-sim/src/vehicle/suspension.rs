@@ -5,6 +5,8 @@
 //! also the one place where the extension-positive appendix meets the compression-positive rest of the project.
 
 use super::parameters::BaselineParameters;
+use oleo_interface::StrutValves;
+
 use crate::strut::{Strut, StrutOutput};
 
 /// Motion of one corner's suspension over a step, compression positive.
@@ -87,7 +89,7 @@ impl SuspensionElement for StrutElement {
             self.rate_m_s,
             motion.compression_rate_m_s,
             motion.duration_s,
-            signal,
+            StrutValves::from_array(signal),
         );
         self.rate_m_s = motion.compression_rate_m_s;
         self.output.force_n

@@ -2,7 +2,8 @@
 
 use oleo_controller::{Configuration, Inputs, State, ValveCommand, tick};
 use oleo_interface::{Corners, Gauge, StrutPressures, StrutValves};
-use oleo_plant_sim::strut::{ModelError, Strut, StrutModel, StrutOutput};
+use oleo_plant_sim::model_file::InvalidValue;
+use oleo_plant_sim::strut::{Strut, StrutModel, StrutOutput};
 use oleo_plant_sim::vehicle::VehicleParameters;
 
 use super::arguments::Setting;
@@ -53,8 +54,8 @@ impl Valves {
 }
 
 /// Four struts of the preset, each for its corner's static load.
-pub fn struts(parameters: &VehicleParameters, signals: [bool; 3]) -> Result<[Strut; 4], ModelError> {
+pub fn struts(parameters: &VehicleParameters, signals: [bool; 3]) -> Result<[Strut; 4], InvalidValue> {
     let [a, b, c, d] = parameters.static_strut_load_n();
-    let strut = |load_n: f64| Strut::at_rest(&StrutModel::defender110(load_n), signals);
+    let strut = |load_n: f64| Strut::at_rest(&StrutModel::defender110(load_n), StrutValves::from_array(signals));
     Ok([strut(a)?, strut(b)?, strut(c)?, strut(d)?])
 }

@@ -194,10 +194,8 @@ impl Run {
         );
         switches.link(&self.name);
         for valve in Valve::ALL {
-            let state = |states: &[[bool; 3]]| -> Vec<f64> {
-                let open = states.iter().map(|strut| StrutValves::from_array(*strut)[valve]);
-                open.map(|open| f64::from(u8::from(open))).collect()
-            };
+            let state =
+                |states: &[StrutValves<bool>]| states.iter().map(|s| f64::from(u8::from(s[valve]))).collect::<Vec<_>>();
             let ticks = [(0.0, "closed"), (1.0, "open")];
             switches.panel(
                 Axis::new(&format!("Valve {}", valve.number()), "")
@@ -253,14 +251,14 @@ impl Run {
     }
 
     fn write(&self, sheet: &mut Sheet, generation: Generation) -> Result<(), Failure> {
-        let acting = |valve: usize| {
+        let acting = |valve: Valve| {
             self.first
                 .acting
                 .iter()
                 .map(|s| f64::from(u8::from(s[valve])))
                 .collect::<Vec<_>>()
         };
-        let (one, two, three) = (acting(0), acting(1), acting(2));
+        let [one, two, three] = Valve::ALL.map(acting);
         let mut more: Vec<(&str, &[f64])> = vec![("speed_m_s", &self.record.speed_m_s)];
         if generation != Generation::Second {
             more.extend([

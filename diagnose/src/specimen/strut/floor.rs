@@ -51,13 +51,14 @@ pub fn excess(model: &StrutModel, inputs: &Inputs, jittered: &Inputs, channels: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oleo_interface::StrutValves;
 
     #[test]
     fn noise_of_nothing_adds_next_to_nothing_and_more_noise_adds_more() {
         let model = StrutModel::defender110(8000.0);
         let time_s: Vec<f64> = (0..2000).map(|k| 0.004 * f64::from(k)).collect();
         let x: Vec<f64> = time_s.iter().map(|t| 0.02 * libm::sin(8.0 * t) * t.min(1.0)).collect();
-        let inputs = Inputs::from_recording(&time_s, &x, &vec![[false; 3]; 2000], 5e-6);
+        let inputs = Inputs::from_recording(&time_s, &x, &vec![StrutValves::default(); 2000], 5e-6);
         let channels: Vec<Channel> = super::super::CHANNELS
             .iter()
             .map(|c| Channel {

@@ -6,6 +6,7 @@ mod floor;
 mod laws;
 mod vocabulary;
 
+use oleo_interface::StrutValves;
 use oleo_plant_sim::strut::{COLUMNS, Effects, Inputs, StrutModel, record_column, replay};
 
 pub use excitation::Excitation;
@@ -96,8 +97,8 @@ impl TwoStageStrut {
         let inputs: Vec<Inputs> = recordings
             .iter()
             .map(|r| {
-                let signals: Vec<[bool; 3]> = (0..r.len())
-                    .map(|k| [6, 7, 8].map(|c: usize| r.columns[c][k] > 0.5))
+                let signals: Vec<StrutValves<bool>> = (0..r.len())
+                    .map(|k| StrutValves::from_fn(|valve| r.columns[6 + valve.index()][k] > 0.5))
                     .collect();
                 Inputs::from_recording(&r.time_s, &r.columns[0], &signals, displacement_noise)
             })
@@ -204,7 +205,7 @@ impl TwoStageStrut {
         let from = sample.saturating_sub(self.settled(recording));
         self.inputs[recording].signals[from..=sample]
             .iter()
-            .all(|s| s[valve] == open)
+            .all(|s| s.into_array()[valve] == open)
     }
 
     /// Time since the last switching edge, s; the time itself before the first.

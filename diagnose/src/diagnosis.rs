@@ -2,7 +2,6 @@
 
 use rayon::prelude::*;
 
-use crate::campaign::Campaign;
 use crate::confidence::Evidence;
 use crate::error::DiagnoseError;
 use crate::fit::Fit;
@@ -10,13 +9,14 @@ use crate::locate::{Location, Reach, Relation, locate, reaches, relations};
 use crate::problem::Problem;
 use crate::select::{Chosen, Report, Selection, select};
 use crate::specimen::Series;
+use crate::vocabulary::{Branch, Column, EffectId, Place, Site};
 use crate::whiteness::{Whiteness, whiteness};
 
 /// Noise ratios of one channel.
 #[derive(Debug, Clone)]
 pub struct ChannelFigures {
-    /// Column.
-    pub name: String,
+    /// Its column.
+    pub column: Column,
     /// Model as given.
     pub before: f64,
     /// Improved model, all recordings in the fit.
@@ -44,9 +44,9 @@ pub struct Estimate {
 #[derive(Debug, Clone)]
 pub struct Effect {
     /// Id of the vocabulary.
-    pub id: String,
-    /// Place.
-    pub place: String,
+    pub id: EffectId,
+    /// Where it acts.
+    pub place: Place,
     /// Distinguishes laws without a name.
     pub label: String,
     /// Index of the chosen candidate, `None` for something seen but not modelled.
@@ -68,7 +68,7 @@ pub struct Diagnosis {
     /// Effects as reported, strongest first.
     pub effects: Vec<Effect>,
     /// Pairs of ids that the recordings cannot tell apart.
-    pub ambiguous: Vec<[String; 2]>,
+    pub ambiguous: Vec<[EffectId; 2]>,
     /// What to record to separate them.
     pub next_experiment: Option<String>,
     /// Where the misfit is.
@@ -102,7 +102,7 @@ impl Diagnosis {
     ///
     /// # Errors
     /// A model that cannot be simulated, or the wish to stop.
-    pub fn of(campaign: &Campaign, problem: &Problem<'_>, report: Report<'_>) -> Result<Self, DiagnoseError> {
+    pub fn of(problem: &Problem<'_>, report: Report<'_>) -> Result<Self, DiagnoseError> {
         let selection = select(problem, report)?;
         report("judging on held-out blocks", 0.95);
         let given = problem.residuals(&problem.predict(&problem.nominal())?);
@@ -112,7 +112,7 @@ impl Diagnosis {
         let held_out_after = held_out_residuals(problem, &selection.best)?;
         let channels = (problem.specimen.channels().iter().enumerate())
             .map(|(c, channel)| ChannelFigures {
-                name: channel.name.clone(),
+                column: channel.column.clone(),
                 before: ratio(&given, c),
                 after: ratio(&improved, c),
                 held_out_before: ratio(&held_out_before, c),
@@ -122,12 +122,12 @@ impl Diagnosis {
             .collect();
         let (estimates, correlated) = estimates(problem, &selection.best)?;
         let mut effects = effects(problem, &selection, &estimates);
-        let seen = effects.iter().any(|e| e.id == "unlisted");
+        let seen = effects.iter().any(|e| e.id == EffectId::Unlisted);
         // A strut's model is said to be complete but for what is missing: what is left then has no name.
         if selection.incomplete && !seen && problem.specimen.kind().contains("strut") {
             effects.push(Effect {
-                id: "unlisted".into(),
-                place: "unknown".into(),
+                id: EffectId::Unlisted,
+                place: Site::Unknown.into(),
                 label: "remaining misfit".into(),
                 chosen: None,
                 confidence: 0.6,
@@ -137,11 +137,11 @@ impl Diagnosis {
             });
         }
         let all = problem.specimen.candidates();
-        let mut ambiguous: Vec<[String; 2]> = Vec::new();
+        let mut ambiguous: Vec<[EffectId; 2]> = Vec::new();
         let mut next = Vec::new();
         for chosen in selection.chosen.iter().filter(|c| c.ambiguous) {
             if let Some((rival, ..)) = chosen.rival {
-                let pair = [all[chosen.candidate].id.to_owned(), all[rival].id.to_owned()];
+                let pair = [all[chosen.candidate].id, all[rival].id];
                 next.push(crate::experiment::separate(
                     problem.specimen.kind(),
                     &all[chosen.candidate],
@@ -169,7 +169,6 @@ impl Diagnosis {
             .specimen
             .model_toml(&problem.hypothesis(&problem.nominal()))
             .map_err(DiagnoseError::Output)?;
-        let _ = campaign;
         Ok(Self {
             relations: relations(problem.specimen),
             reaches: reaches(problem.specimen, &selection),
@@ -294,7 +293,7 @@ fn effects(problem: &Problem<'_>, selection: &Selection, estimates: &[Estimate])
             .sum();
         let from = problem.specimen.calibration().len() + before;
         let own = &estimates[from..from + candidate.parameters.len()];
-        let law = (candidate.id == "unlisted")
+        let law = (candidate.is_unlisted())
             .then(|| problem.specimen.law(chosen.candidate, &hypothesis.effects[position].1))
             .flatten();
         let evidence = Evidence {
@@ -304,7 +303,7 @@ fn effects(problem: &Problem<'_>, selection: &Selection, estimates: &[Estimate])
         let confidence = evidence.confidence();
         for (place, which) in places(&candidate.place, own.len()) {
             out.push(Effect {
-                id: candidate.id.into(),
+                id: candidate.id,
                 place,
                 label: candidate.label.clone(),
                 chosen: Some(chosen.clone()),
@@ -319,11 +318,15 @@ fn effects(problem: &Problem<'_>, selection: &Selection, estimates: &[Estimate])
 }
 
 /// A candidate that acts in several places is reported once a place, each with its own numbers.
-fn places(place: &str, count: usize) -> Vec<(String, Vec<usize>)> {
-    match (place, count) {
-        ("accumulators", 2) => vec![("accumulator-1".into(), vec![0]), ("accumulator-2".into(), vec![1])],
-        ("accumulators", n) => vec![("both accumulators".into(), (0..n).collect())],
-        ("path-1+path-2", 3) => vec![("path-1".into(), vec![0, 2]), ("path-2".into(), vec![1, 2])],
-        (_, n) => vec![(place.into(), (0..n).collect())],
+fn places(place: &Place, count: usize) -> Vec<(Place, Vec<usize>)> {
+    let at = |site: Site, numbers: Vec<usize>| (place.with_site(site), numbers);
+    match (&place.site, count) {
+        (Site::Accumulators, 2) => Branch::ALL
+            .map(|branch| at(Site::Accumulator(branch), vec![branch.number() - 1]))
+            .to_vec(),
+        (Site::Paths, 3) => Branch::ALL
+            .map(|branch| at(Site::Path(branch), vec![branch.number() - 1, 2]))
+            .to_vec(),
+        (_, n) => vec![(place.clone(), (0..n).collect())],
     }
 }

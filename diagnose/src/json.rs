@@ -15,10 +15,10 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
     let locations: Vec<Value> = (diagnosis.locations.iter())
         .map(|l| {
             json!({
-                "place": l.place, "share_of_excess": rounded(l.share_of_excess),
+                "place": l.place.to_string(), "share_of_excess": rounded(l.share_of_excess),
                 "where": {
                     "recording": specimen.recording_name(l.recording), "t_s": l.t_s, "condition": l.condition.text,
-                    "channel": specimen.channels()[l.channel].name, "region": l.condition.region.as_ref().map(region),
+                    "channel": specimen.channels()[l.channel].column.as_str(), "region": l.condition.region.as_ref().map(region),
                 },
             })
         })
@@ -26,7 +26,7 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
     let effects: Vec<Value> = (diagnosis.effects.iter())
         .map(|e| {
             json!({
-                "id": e.id, "place": e.place, "confidence": rounded(e.confidence),
+                "id": e.id, "place": e.place.as_reported(), "confidence": rounded(e.confidence),
                 "parameters": parameters(&e.parameters), "law": e.law,
                 "held_out_noise_ratio": { "without": rounded(e.held_out.0), "with": rounded(e.held_out.1) },
             })
@@ -35,12 +35,12 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
     let mut channels = Map::new();
     for (c, w) in diagnosis.channels.iter().zip(&diagnosis.whiteness) {
         channels.insert(
-            c.name.clone(),
+            c.column.to_string(),
             json!({
                 "noise_ratio_before": rounded(c.before), "noise_ratio_after": rounded(c.after),
                 "held_out_before": rounded(c.held_out_before), "held_out_after": rounded(c.held_out_after),
                 "residual_lag_one_correlation": rounded(c.lag_one), "ljung_box": rounded(w.ljung_box),
-                "input_correlation": w.input.as_ref().map(|(input, r)| json!({ "input": input, "value": rounded(*r), "bound99": rounded(w.bound) })),
+                "input_correlation": w.input.as_ref().map(|(input, r)| json!({ "input": input.as_str(), "value": rounded(*r), "bound99": rounded(w.bound) })),
             }),
         );
     }
@@ -105,7 +105,7 @@ pub fn rejected(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> Vec<Value> {
                 None => format!("{alone}; it excludes or is excluded by an effect of the chosen model"),
             };
             let place = if c.label.is_empty() {
-                c.place.clone()
+                c.place.to_string()
             } else {
                 format!("{} ({})", c.place, c.label)
             };
@@ -121,13 +121,13 @@ pub fn not_tested(specimen: &dyn Specimen) -> Vec<Value> {
         .filter_map(|c| {
             c.untestable
                 .as_ref()
-                .map(|why| json!({ "id": c.id, "place": c.place, "why": why }))
+                .map(|why| json!({ "id": c.id, "place": c.place.to_string(), "why": why }))
         })
         .collect()
 }
 
 fn region(r: &Region) -> Value {
-    json!({ "state": r.state, "from": r.from, "to": r.to, "share_of_misfit": rounded(r.share_of_misfit),
+    json!({ "state": r.state.as_str(), "from": r.from, "to": r.to, "share_of_misfit": rounded(r.share_of_misfit),
             "share_of_samples": rounded(r.share_of_samples) })
 }
 

@@ -32,6 +32,7 @@ pub mod select;
 pub mod selftest;
 pub mod specimen;
 pub mod unseen;
+pub mod vocabulary;
 pub mod whiteness;
 
 pub use campaign::{Campaign, KeptBack};

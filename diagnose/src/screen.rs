@@ -13,6 +13,7 @@ use crate::error::DiagnoseError;
 use crate::fit::{Fit, bounded_step, sum};
 use crate::problem::{Normal, Point, Problem, Sensitivity};
 use crate::specimen::Series;
+use crate::vocabulary::Column;
 
 /// Steps every candidate gets.
 const FIRST_STEPS: usize = 1;
@@ -109,8 +110,8 @@ impl<'p, 'a> Screen<'p, 'a> {
     fn truths_at(&self, point: &Point) -> Result<Option<Vec<Series>>, DiagnoseError> {
         let outside = point.effects.last().is_some_and(|&c| {
             let candidate = &self.problem.specimen.candidates()[c];
-            candidate.instrument
-                && candidate.place != "sensor:displacement_m"
+            candidate.is_instrument_fault()
+                && candidate.place.sensor() != Some(&Column::DISPLACEMENT)
                 && candidate.parameters.iter().all(|p| p.instrument_only)
         });
         if outside {

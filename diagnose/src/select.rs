@@ -198,7 +198,7 @@ impl<'p, 'a> Judge<'p, 'a> {
     fn open(&self, point: &Point, laws: bool) -> Vec<usize> {
         let all = self.problem.specimen.candidates();
         let excluded = |c: usize| {
-            (all[c].id == "unlisted" && !laws) || point.effects.iter().any(|&e| e == c || all[e].excludes(&all[c]))
+            (all[c].is_unlisted() && !laws) || point.effects.iter().any(|&e| e == c || all[e].excludes(&all[c]))
         };
         self.testable.iter().copied().filter(|&c| !excluded(c)).collect()
     }
@@ -228,7 +228,7 @@ impl<'p, 'a> Judge<'p, 'a> {
     /// incomplete: both must explain more.
     fn share(&self, candidate: usize, share: f64) -> f64 {
         let c = &self.problem.specimen.candidates()[candidate];
-        let demanding = c.id == "unlisted" || (c.instrument && share > MIN_SHARE);
+        let demanding = c.is_unlisted() || (c.is_instrument_fault() && share > MIN_SHARE);
         if demanding {
             share.max(MIN_SHARE_INCOMPLETE)
         } else {
@@ -274,7 +274,7 @@ impl<'p, 'a> Judge<'p, 'a> {
         fit.point.effects.last().is_some_and(|&c| {
             let candidate = &self.problem.specimen.candidates()[c];
             let own = &fit.point.z[fit.point.z.len() - candidate.parameters.len()..];
-            candidate.instrument && !own.is_empty() && own.iter().all(|z| z.abs() < LEAST_FAULT)
+            candidate.is_instrument_fault() && !own.is_empty() && own.iter().all(|z| z.abs() < LEAST_FAULT)
         })
     }
 
@@ -295,20 +295,20 @@ impl<'p, 'a> Judge<'p, 'a> {
                 .point
                 .effects
                 .iter()
-                .filter(|&&e| self.problem.specimen.candidates()[e].id == "unlisted")
+                .filter(|&&e| self.problem.specimen.candidates()[e].is_unlisted())
                 .count();
             let costs = self.held_out(&best);
             let mut weakest: Option<(f64, Fit)> = None;
             let all = self.problem.specimen.candidates();
             // Laws without a name go first: what a name explains as well needs none.
             let mut order: Vec<usize> = (0..best.point.effects.len()).collect();
-            order.sort_by_key(|&p| all[best.point.effects[p]].id != "unlisted");
+            order.sort_by_key(|&p| !all[best.point.effects[p]].is_unlisted());
             for position in order {
-                let nameless = all[best.point.effects[position]].id == "unlisted";
+                let nameless = all[best.point.effects[position]].is_unlisted();
                 if !nameless
-                    && weakest.as_ref().is_some_and(|(_, f)| {
-                        f.point.effects.iter().filter(|&&e| all[e].id == "unlisted").count() < laws
-                    })
+                    && weakest
+                        .as_ref()
+                        .is_some_and(|(_, f)| f.point.effects.iter().filter(|&&e| all[e].is_unlisted()).count() < laws)
                 {
                     break;
                 }
@@ -334,9 +334,8 @@ impl<'p, 'a> Judge<'p, 'a> {
     fn repeats(&self, candidate: usize, other: usize) -> bool {
         let all = self.problem.specimen.candidates();
         let (one, two) = (&all[candidate], &all[other]);
-        let law = one.id != "unlisted" && two.id == "unlisted" && one.place == two.place;
-        let wider =
-            one.id == two.id && one.parameters.len() < two.parameters.len() && two.place.contains(one.place.as_str());
+        let law = !one.is_unlisted() && two.is_unlisted() && one.place == two.place;
+        let wider = one.id == two.id && one.parameters.len() < two.parameters.len() && two.place.contains(&one.place);
         law || wider
     }
 
@@ -372,7 +371,7 @@ impl<'p, 'a> Judge<'p, 'a> {
                     f.point
                         .effects
                         .iter()
-                        .all(|&e| self.problem.specimen.candidates()[e].id != "unlisted")
+                        .all(|&e| !self.problem.specimen.candidates()[e].is_unlisted())
                 };
                 // A name gives way to a law without one only if the law is clearly better.
                 let least = if named(best) && !named(&full) { 0.1 * gain } else { 0.0 };

@@ -11,6 +11,7 @@ use crate::error::DiagnoseError;
 use crate::fit::{Effort, fit};
 use crate::problem::{Point, Problem};
 use crate::screen::Screen;
+use crate::vocabulary::Column;
 
 /// Figures of one model.
 #[derive(Debug, Clone)]
@@ -26,8 +27,8 @@ pub struct Prediction {
 /// All figures.
 #[derive(Debug, Clone)]
 pub struct Unseen {
-    /// Channels, with unit.
-    pub channels: Vec<String>,
+    /// Columns of the channels.
+    pub channels: Vec<Column>,
     /// Models: as given, recalibrated, improved, then rivals, the best predictor first.
     pub models: Vec<Prediction>,
 }
@@ -74,7 +75,7 @@ impl Unseen {
         rivals.sort_by(|a, b| badness(a).total_cmp(&badness(b)));
         models.extend(rivals);
         Ok(Self {
-            channels: problem.specimen.channels().iter().map(|c| c.name.clone()).collect(),
+            channels: problem.specimen.channels().iter().map(|c| c.column.clone()).collect(),
             models,
         })
     }
@@ -83,7 +84,7 @@ impl Unseen {
     #[must_use]
     pub fn json(&self, kept_back: &KeptBack) -> serde_json::Value {
         let by_channel = |ratios: &[f64]| -> serde_json::Map<String, serde_json::Value> {
-            (self.channels.iter().cloned())
+            (self.channels.iter().map(ToString::to_string))
                 .zip(ratios.iter().map(|&r| serde_json::json!(r)))
                 .collect()
         };
@@ -111,7 +112,7 @@ fn rivals(problem: &Problem<'_>, diagnosis: &Diagnosis) -> Result<Vec<(String, P
     if problem.specimen.is_cheap() {
         for added in (0..all.len()).filter(|c| all[*c].untestable.is_none() && !best.effects.contains(c)) {
             let values: Vec<f64> = all[added].parameters.iter().map(|p| p.start).collect();
-            let vocabulary = all[added].id != "unlisted" && !all[added].instrument;
+            let vocabulary = !all[added].is_unlisted() && !all[added].is_instrument_fault();
             if vocabulary && !best.effects.iter().any(|&e| all[e].excludes(&all[added])) {
                 let more = fit(problem, problem.with_effect(best, added, &values), Effort::FULL)?;
                 points.push((format!("improved, with {} added", all[added].name()), more.point));

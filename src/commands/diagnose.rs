@@ -75,9 +75,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let stop = AtomicBool::new(false);
     let problem = Problem::new(&*campaign.specimen, &stop);
     let progress = Progress::new(&campaign.name, STEPS);
-    let diagnosis = Diagnosis::of(&campaign, &problem, &|_, part| {
-        progress.set((part * STEPS as f64) as u64)
-    })?;
+    let diagnosis = Diagnosis::of(&problem, &|_, part| progress.set((part * STEPS as f64) as u64))?;
     let unseen = (whole.as_ref())
         .map(|whole| Unseen::of(&problem, &diagnosis, whole, &kept_back))
         .transpose()?;

@@ -6,19 +6,22 @@ pub mod relations;
 
 use std::sync::Arc;
 
+use oleo_interface::Valve;
+
 use crate::error::DiagnoseError;
 use crate::fit::{Effort, fit};
 use crate::problem::Problem;
 use crate::select::Selection;
-use crate::specimen::{Candidate, Series, Specimen};
-use condition::{Condition, State};
+use crate::specimen::{Candidate, Series, Specimen, StateSeries};
+use crate::vocabulary::{Branch, Column, Place, Site, State};
+use condition::Condition;
 pub use relations::{Reach, Relation, reaches, relations};
 
 /// A place with the misfit that belongs to it.
 #[derive(Debug, Clone)]
 pub struct Location {
-    /// Place of the vocabulary.
-    pub place: String,
+    /// The place.
+    pub place: Place,
     /// Part of the excess misfit of the calibrated model that disappears with the effect found there.
     pub share_of_excess: f64,
     /// Recording in which it shows most.
@@ -88,7 +91,7 @@ pub fn locate(
             .collect();
         let channels: Vec<usize> = (0..specimen.channels().len()).collect();
         out.push(Location {
-            place: "unknown".into(),
+            place: Site::Unknown.into(),
             share_of_excess: ((total(improved) - count) / excess).clamp(0.0, 1.0),
             without: Arc::new(improved.to_vec()),
             ..strongest(specimen, &states, &channels, improved, &none)
@@ -105,19 +108,26 @@ fn places(
     candidate: &Candidate,
     without: &[Series],
     with: &[Series],
-) -> Vec<(String, Vec<usize>, f64)> {
-    let channel = |name: &str| specimen.channels().iter().position(|c| c.name == name);
-    let pair = match candidate.place.as_str() {
-        "accumulators" => [("accumulator-1", channel("p2_Pa")), ("accumulator-2", channel("p4_Pa"))],
-        "path-1+path-2" => [("path-1", channel("p2_Pa")), ("path-2", channel("p4_Pa"))],
-        place => {
-            let mut channels: Vec<usize> = nearest(place).iter().filter_map(|c| channel(c)).collect();
+) -> Vec<(Place, Vec<usize>, f64)> {
+    let channel = |column: &Column| specimen.channels().iter().position(|c| c.column == *column);
+    let place = &candidate.place;
+    let parts = match place.site {
+        Site::Accumulators | Site::Paths => place.site.parts(),
+        _ => {
+            let mut channels: Vec<usize> = nearest(place).iter().filter_map(channel).collect();
             if channels.is_empty() {
                 channels = (0..specimen.channels().len()).collect();
             }
-            return vec![(place.to_owned(), channels, 1.0)];
+            return vec![(place.clone(), channels, 1.0)];
         }
     };
+    let parts: Vec<(Place, Option<usize>)> = (parts.into_iter())
+        .map(|site| {
+            let part = place.with_site(site);
+            let beyond = nearest(&part).last().and_then(channel);
+            (part, beyond)
+        })
+        .collect();
     let misfit = |c: Option<usize>| -> f64 {
         c.map_or(0.0, |c| {
             (0..without.len())
@@ -126,25 +136,29 @@ fn places(
                 .max(0.0)
         })
     };
-    let both = misfit(pair[0].1) + misfit(pair[1].1);
-    pair.iter()
-        .map(|(place, c)| {
-            let part = if both > 0.0 { misfit(*c) / both } else { 0.5 };
-            ((*place).to_owned(), c.iter().copied().collect(), part)
+    let all: f64 = parts.iter().map(|(_, c)| misfit(*c)).sum();
+    let equal = 1.0 / parts.len() as f64;
+    parts
+        .into_iter()
+        .map(|(part, c)| {
+            let fraction = if all > 0.0 { misfit(c) / all } else { equal };
+            (part, c.into_iter().collect(), fraction)
         })
         .collect()
 }
 
-/// The instruments of a strut next to a place; none where all are as near.
-fn nearest(place: &str) -> Vec<&str> {
-    match place {
-        "main-seal" | "end-stop" => vec!["force_N"],
-        "main-chamber" => vec!["p1_Pa"],
-        "accumulator-1" => vec!["p2_Pa"],
-        "accumulator-2" => vec!["p4_Pa"],
-        "path-1" => vec!["p1_Pa", "p2_Pa"],
-        "path-2" | "valve-3" => vec!["p3_Pa", "p4_Pa"],
-        _ => place.strip_prefix("sensor:").into_iter().collect(),
+/// The instruments of a strut next to a place, the one beyond it last; none where all are as near.
+fn nearest(place: &Place) -> Vec<Column> {
+    let known = |names: &[&'static str]| names.iter().map(|name| Column::known(name)).collect();
+    match &place.site {
+        Site::MainSeal | Site::EndStop => known(&["force_N"]),
+        Site::MainChamber => known(&["p1_Pa"]),
+        Site::Accumulator(Branch::First) => known(&["p2_Pa"]),
+        Site::Accumulator(Branch::Second) => known(&["p4_Pa"]),
+        Site::Path(Branch::First) => known(&["p1_Pa", "p2_Pa"]),
+        Site::Path(Branch::Second) | Site::Valve(Valve::Spring) => known(&["p3_Pa", "p4_Pa"]),
+        Site::Sensor(column) => vec![column.clone()],
+        _ => vec![],
     }
 }
 
@@ -158,7 +172,7 @@ fn gain(without: &[Series], with: &[Series], recording: usize, channel: usize) -
 /// Where `without` is worst against `with`, in the given channels.
 fn strongest(
     specimen: &dyn Specimen,
-    states: &[State],
+    states: &[StateSeries],
     channels: &[usize],
     without: &[Series],
     with: &[Series],
@@ -218,7 +232,7 @@ fn strongest(
         }
     }
     Location {
-        place: String::new(),
+        place: Site::Unknown.into(),
         share_of_excess: 0.0,
         recording,
         t_s,
@@ -244,11 +258,9 @@ fn window(gain: &[f64]) -> (usize, usize) {
     (at, (at + width - 1).min(n - 1))
 }
 
-const SPEED: &str = "speed, m/s";
-
 fn speed(specimen: &dyn Specimen, recording: usize) -> Option<Vec<f64>> {
     let mut states = specimen.states(recording).into_iter();
-    states.find(|(name, _)| *name == SPEED).map(|(_, values)| values)
+    states.find(|s| s.state == State::Speed).map(|s| s.values)
 }
 
 /// Samples from which a condition is read: of longer campaigns one of `every` is taken.
@@ -261,42 +273,34 @@ fn every(specimen: &dyn Specimen) -> usize {
 
 /// States of all recordings one after the other, one sample of `every` in each, and what follows from the speed: its size and its direction.
 #[must_use]
-pub fn states(specimen: &dyn Specimen, every: usize) -> Vec<State> {
-    let mut all: Vec<State> = Vec::new();
+pub fn states(specimen: &dyn Specimen, every: usize) -> Vec<StateSeries> {
+    let mut all: Vec<StateSeries> = Vec::new();
     let mut before = 0;
     for r in 0..specimen.recordings() {
         let n = specimen.time_s(r).len().div_ceil(every);
-        for (name, values) in specimen.states(r) {
-            let state = match all.iter_mut().find(|s| s.name == name) {
-                Some(known) => known,
-                None => {
-                    all.push(State {
-                        name: name.into(),
-                        values: Vec::new(),
-                    });
-                    all.last_mut().expect("just added")
-                }
-            };
+        for StateSeries { state, values } in specimen.states(r) {
+            let known = all.iter().position(|s| s.state == state).unwrap_or_else(|| {
+                all.push(StateSeries::new(state, Vec::new()));
+                all.len() - 1
+            });
             // Undefined in the recordings that do not have it.
-            state.values.resize(before, f64::NAN);
-            state.values.extend(values.into_iter().step_by(every));
+            all[known].values.resize(before, f64::NAN);
+            all[known].values.extend(values.into_iter().step_by(every));
         }
         before += n;
     }
     all.iter_mut().for_each(|s| s.values.resize(before, f64::NAN));
-    if let Some(speed) = all.iter().find(|s| s.name == SPEED).map(|s| s.values.clone()) {
+    if let Some(speed) = all.iter().find(|s| s.state == State::Speed).map(|s| s.values.clone()) {
         let fastest = speed.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let direction = |v: &f64| {
             if v.abs() < 1e-4 * fastest { 0.0 } else { v.signum() }
         };
-        all.push(State {
-            name: "direction of travel".into(),
-            values: speed.iter().map(direction).collect(),
-        });
-        all.push(State {
-            name: "size of the speed, m/s".into(),
-            values: speed.iter().map(|v| v.abs()).collect(),
-        });
+        all.push(StateSeries::new(
+            State::Direction,
+            speed.iter().map(direction).collect(),
+        ));
+        let magnitude = speed.iter().map(|v| v.abs()).collect();
+        all.push(StateSeries::new(State::SpeedMagnitude, magnitude));
     }
     all
 }

@@ -1,7 +1,10 @@
 //! Which relation breaks: once from measured neighbours alone, once by which relation must change to explain the misfit.
 
+use oleo_interface::Valve;
+
 use crate::select::Selection;
 use crate::specimen::{Candidate, Specimen};
+use crate::vocabulary::{EffectId, Site};
 
 /// A relation between measured neighbours that holds whatever happens elsewhere.
 #[derive(Debug, Clone)]
@@ -28,23 +31,19 @@ pub struct Reach {
 /// The relation of the model that a candidate changes.
 #[must_use]
 pub fn changed_by(candidate: &Candidate) -> String {
-    let place = candidate.place.as_str();
-    if let Some(column) = place.strip_prefix("sensor:") {
-        return format!("instrument {column}");
-    }
-    match (place, candidate.id) {
-        ("main-seal" | "end-stop", _) => "force balance".into(),
-        ("mount", _) => "motion of the strut (mount)".into(),
-        ("main-chamber", _) => "continuity of the oil".into(),
-        ("chamber" | "accumulators", _) => "gas law".into(),
-        (_, "accumulator_piston_friction") => format!("piston of {}", place.replace('-', " ")),
-        ("accumulator-1" | "accumulator-2", _) => format!("gas law of {}", place.replace('-', " ")),
-        ("valve-1..3", _) => "valve timing".into(),
-        ("valve-3", _) => "flow through valve 3".into(),
-        _ => format!(
-            "flow in {}",
-            place.replace("path-1+path-2", "both paths").replace('-', " ")
-        ),
+    let words = || candidate.place.site.to_string().replace('-', " ");
+    match (&candidate.place.site, candidate.id) {
+        (Site::Sensor(column), _) => format!("instrument {column}"),
+        (Site::MainSeal | Site::EndStop, _) => "force balance".into(),
+        (Site::Mount, _) => "motion of the strut (mount)".into(),
+        (Site::MainChamber, _) => "continuity of the oil".into(),
+        (Site::Chamber | Site::Accumulators, _) => "gas law".into(),
+        (_, EffectId::AccumulatorPistonFriction) => format!("piston of {}", words()),
+        (Site::Accumulator(_), _) => format!("gas law of {}", words()),
+        (Site::Valves, _) => "valve timing".into(),
+        (Site::Valve(Valve::Spring), _) => "flow through valve 3".into(),
+        (Site::Paths, _) => "flow in both paths".into(),
+        (Site::Path(_) | Site::Valve(_) | Site::Unknown, _) => format!("flow in {}", words()),
     }
 }
 

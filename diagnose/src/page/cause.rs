@@ -30,7 +30,7 @@ pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
 }
 
 fn effect(page: &mut Page, e: &Effect) {
-    let known = words::words(&e.id, &e.label);
+    let known = words::words(e.id, &e.label);
     if e.chosen.is_none() {
         page.text(&format!(
             "{} {}: a misfit that can be predicted from the inputs is left, but no law that was tried improves unseen stretches enough to be named.",
@@ -174,12 +174,12 @@ fn rejected(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
             ),
         };
         let place = if c.label.is_empty() {
-            c.place.clone()
+            c.place.to_string()
         } else {
             format!("{} ({})", c.place, c.label)
         };
         table.row([
-            c.id.to_owned(),
+            c.id.to_string(),
             place,
             if t.alone.is_finite() {
                 format!("{:.3}", t.alone)

@@ -15,7 +15,7 @@ pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
 
 fn channels(page: &mut Page, diagnosis: &Diagnosis) {
     let channels = &diagnosis.channels;
-    let names: Vec<&str> = channels.iter().map(|c| c.name.as_str()).collect();
+    let names: Vec<&str> = channels.iter().map(|c| c.column.as_str()).collect();
     let column = |f: fn(&crate::diagnosis::ChannelFigures) -> f64| channels.iter().map(f).collect::<Vec<_>>();
     let mut bars = Bars::new(
         "Noise ratio a channel",
@@ -38,7 +38,7 @@ fn channels(page: &mut Page, diagnosis: &Diagnosis) {
     ]);
     for c in channels {
         table.row([
-            c.name.clone(),
+            c.column.to_string(),
             format!("{:.2}", c.before),
             format!("{:.2}", c.held_out_before),
             format!("{:.2}", c.after),
@@ -61,7 +61,7 @@ fn recordings(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
         specimen
             .channels()
             .iter()
-            .map(|c| Column::number(&format!("Improved: {}", c.name))),
+            .map(|c| Column::number(&format!("Improved: {}", c.column))),
     );
     let mut table = Table::new(columns);
     let ratio = |s: &[f64]| (s.iter().map(|v| v * v).sum::<f64>() / s.len() as f64).sqrt();
@@ -100,13 +100,13 @@ fn left(page: &mut Page, diagnosis: &Diagnosis) {
         Column::number("Variance with it, %"),
     ]);
     for (channel, w) in diagnosis.channels.iter().zip(&diagnosis.whiteness) {
-        let (input, r) = w.input.clone().unwrap_or_default();
+        let (input, r) = (w.input).map_or(("", 0.0), |(state, r)| (state.quantity_and_unit().0, r));
         let check = |met: bool| if met { Cell::good("yes") } else { Cell::warning("no") };
         table.row([
-            channel.name.clone().into(),
+            channel.column.to_string().into(),
             significant(w.ljung_box, 3).into(),
             check(w.ljung_box < CHI_SQUARE_99),
-            input.split(',').next().unwrap_or_default().into(),
+            input.into(),
             format!("{r:.4}").into(),
             format!("{:.4}", w.bound).into(),
             check(r.abs() < w.bound),
@@ -119,7 +119,7 @@ fn left(page: &mut Page, diagnosis: &Diagnosis) {
     curves.caption("Held-out residuals of the improved model. White noise stays within the bound at 99 of 100 lags.");
     curves.panel(Axis::new("Correlation", ""));
     for (channel, w) in diagnosis.channels.iter().zip(&diagnosis.whiteness) {
-        curves.series(Style::LineAndPoints, &channel.name, &lags, &w.autocorrelation);
+        curves.series(Style::LineAndPoints, channel.column.as_str(), &lags, &w.autocorrelation);
     }
     if let Some(w) = diagnosis.whiteness.first() {
         // The bound of a single lag; that of the table is for all lags together.

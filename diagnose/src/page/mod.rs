@@ -108,7 +108,7 @@ pub fn headline(all: &[Candidate], diagnosis: &Diagnosis) -> String {
 fn phrases(diagnosis: &Diagnosis) -> Vec<String> {
     let mut out: Vec<(String, String)> = Vec::new();
     for e in diagnosis.effects.iter().filter(|e| e.chosen.is_some()) {
-        let name = words::called(&e.id, &e.label);
+        let name = words::called(e.id, &e.label);
         let place = words::at(&e.place);
         match out.iter_mut().find(|(known, _)| *known == name) {
             Some((_, places)) => *places += &format!(" and {place}"),
@@ -148,7 +148,7 @@ fn in_brief(diagnosis: &Diagnosis) -> Table {
             .collect();
         let place = words::at(&e.place);
         table.row([
-            format!("{} ({})", words::words(&e.id, &e.label).name, name(e)),
+            format!("{} ({})", words::words(e.id, &e.label).name, name(e)),
             place.trim_start_matches("in ").trim_start_matches("at ").to_owned(),
             match points(e) {
                 Some(n) => format!("a law of {n} points, drawn under What"),
@@ -170,7 +170,7 @@ fn points(effect: &Effect) -> Option<usize> {
 
 fn name(effect: &Effect) -> String {
     if effect.label.is_empty() {
-        effect.id.clone()
+        effect.id.to_string()
     } else {
         format!("{}: {}", effect.id, effect.label)
     }
@@ -224,7 +224,7 @@ pub fn effects_table(diagnosis: &Diagnosis) -> Table {
             .collect();
         table.row([
             name(e),
-            e.place.clone(),
+            e.place.as_reported(),
             format!("{:.2}", e.confidence),
             points(e).map_or_else(|| numbers.join("; "), |n| format!("a law of {n} points")),
             format!("{:.2}", e.held_out.0),

@@ -6,9 +6,9 @@ use oleo_report::{Axis, Bars, Column, Curves, Page, Style, Table, extrema_by_buc
 use super::{schematic, words};
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
-use crate::locate::condition::split;
 use crate::locate::{self, Location};
 use crate::specimen::Specimen;
+use crate::vocabulary::{Place, Site, State};
 
 /// Buckets of a line over time: finer is not seen on a page.
 const BUCKETS: usize = 260;
@@ -22,8 +22,8 @@ const RELATIONS: usize = 8;
 pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     let specimen = &*campaign.specimen;
     page.section("Where");
-    let places: Vec<&str> = diagnosis.locations.iter().map(|l| l.place.as_str()).collect();
-    let marked = !places.is_empty() && places != ["unknown"];
+    let places: Vec<&Place> = diagnosis.locations.iter().map(|l| &l.place).collect();
+    let marked = places.iter().any(|p| p.site != Site::Unknown);
     if let Some(svg) = schematic::svg(specimen.kind(), &places) {
         page.drawing(
             &svg,
@@ -60,11 +60,11 @@ fn locations(specimen: &dyn Specimen, locations: &[Location]) -> Table {
     ]);
     for l in locations {
         table.row([
-            l.place.clone(),
+            l.place.to_string(),
             format!("{:.0} %", 100.0 * l.share_of_excess),
             format!(
                 "{} of {}",
-                specimen.channels()[l.channel].name,
+                specimen.channels()[l.channel].column,
                 specimen.recording_name(l.recording)
             ),
             format!("{:.2} to {:.2}", l.t_s[0], l.t_s[1]),
@@ -126,7 +126,7 @@ fn title(diagnosis: &Diagnosis, location: &Location) -> String {
     match effect {
         Some(e) => format!(
             "{} {}",
-            words::sentence(words::words(&e.id, &e.label).name),
+            words::sentence(words::words(e.id, &e.label).name),
             words::at(&location.place)
         ),
         None => "What is left unexplained".into(),
@@ -157,7 +157,7 @@ fn over_time(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, lo
     let measured = specimen.measured(r, c);
     let with = &diagnosis.residuals.1[r][c];
     let without = &location.without[r][c];
-    let (quantity, unit) = channel.name.rsplit_once('_').unwrap_or((&channel.name, ""));
+    let (quantity, unit) = (channel.column.quantity(), channel.column.unit());
     let (scale, unit) = scaled(unit);
     let simulated = |residual: &[f64]| -> Vec<f64> {
         (measured.iter().zip(residual))
@@ -168,7 +168,7 @@ fn over_time(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, lo
         &format!(
             "{}: {} in {}",
             title(diagnosis, location),
-            channel.name,
+            channel.column,
             specimen.recording_name(r)
         ),
         Axis::new("Time", "s"),
@@ -228,29 +228,29 @@ fn over_time(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, lo
 fn over_state(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, location: &Location) {
     let condition = &location.condition;
     let name = match (&condition.region, &condition.follows) {
-        (Some(region), _) => region.state.clone(),
-        (None, Some((state, _))) => state.clone(),
+        (Some(region), _) => region.state,
+        (None, Some((state, _))) => *state,
         // Time says it: a decay needs no second picture.
         (None, None) if condition.decays => return,
-        (None, None) => "displacement, m".to_owned(),
+        (None, None) => State::Displacement,
     };
     let all: usize = (0..specimen.recordings()).map(|r| specimen.time_s(r).len()).sum();
     let every = all.div_ceil(MARKERS).max(1);
-    let Some(state) = locate::states(specimen, every).into_iter().find(|s| s.name == name) else {
+    let Some(state) = locate::states(specimen, every).into_iter().find(|s| s.state == name) else {
         return;
     };
     let c = location.channel;
     let pooled = |set: &[crate::specimen::Series]| -> Vec<f64> {
         set.iter().flat_map(|r| r[c].iter().step_by(every).copied()).collect()
     };
-    let (quantity, unit) = split(&name);
+    let (quantity, unit) = name.quantity_and_unit();
     let (scale, unit) = scaled(unit);
     let values: Vec<f64> = state.values.iter().map(|v| scale * v).collect();
     let mut curves = Curves::new(
         &format!(
             "{}: residual of {} over {quantity}, all recordings",
             title(diagnosis, location),
-            specimen.channels()[c].name
+            specimen.channels()[c].column
         ),
         Axis::new(quantity, unit),
     );

@@ -2,10 +2,14 @@
 
 use std::fmt::Write;
 
+use oleo_interface::Valve;
+
+use crate::vocabulary::{Branch, Column, Place, Site};
+
 /// The drawing of a kind of specimen with the marked places; `None` for a kind without one.
 #[must_use]
-pub fn svg(kind: &str, places: &[&str]) -> Option<String> {
-    let marked = |names: &[&str]| names.iter().any(|n| places.contains(n));
+pub fn svg(kind: &str, places: &[&Place]) -> Option<String> {
+    let marked = |sites: &[Site]| places.iter().any(|place| sites.contains(&place.site));
     let mut drawing = Drawing::default();
     match kind {
         "two-stage hydropneumatic strut" => strut(&mut drawing, &marked),
@@ -65,71 +69,77 @@ impl Drawing {
     }
 }
 
-fn strut(d: &mut Drawing, marked: &dyn Fn(&[&str]) -> bool) {
+fn strut(d: &mut Drawing, marked: &dyn Fn(&[Site]) -> bool) {
     d.size(900, 300);
-    let path = |n: u32| marked(&[["path-1", "path-2"][n as usize - 1], "path-1+path-2"]);
-    let timing = marked(&["valve-1..3"]);
+    let path = |branch: Branch| marked(&[Site::Path(branch), Site::Paths]);
+    let timing = marked(&[Site::Valves]);
     // Load path on the left, oil to the right.
     d.line("70,150 250,150", false);
     d.block((15, 120, 55, 60), "actu-|ator", false);
-    d.block((95, 125, 62, 50), "mount", marked(&["mount"]));
-    d.block((180, 115, 46, 70), "main|seal", marked(&["main-seal"]));
-    d.block((250, 85, 115, 130), "main chamber|(oil)", marked(&["main-chamber"]));
-    d.block((250, 232, 115, 30), "end stops", marked(&["end-stop"]));
-    for (n, y) in [(1, 70), (2, 195)] {
-        d.line(&format!("365,{0} 410,{0} 410,{1} 470,{1}", y + 30, y), path(n));
-        d.line(&format!("410,{0} 410,{1} 470,{1}", y + 30, y + 55), path(n));
-        d.block((470, y - 17, 90, 34), &format!("damper {n}"), path(n));
+    d.block((95, 125, 62, 50), "mount", marked(&[Site::Mount]));
+    d.block((180, 115, 46, 70), "main|seal", marked(&[Site::MainSeal]));
+    d.block((250, 85, 115, 130), "main chamber|(oil)", marked(&[Site::MainChamber]));
+    d.block((250, 232, 115, 30), "end stops", marked(&[Site::EndStop]));
+    for (branch, bypass, y) in [
+        (Branch::First, Valve::Bypass1, 70),
+        (Branch::Second, Valve::Bypass2, 195),
+    ] {
+        let (n, found) = (branch.number(), path(branch));
+        d.line(&format!("365,{0} 410,{0} 410,{1} 470,{1}", y + 30, y), found);
+        d.line(&format!("410,{0} 410,{1} 470,{1}", y + 30, y + 55), found);
+        d.block((470, y - 17, 90, 34), &format!("damper {n}"), found);
         d.block(
             (470, y + 38, 90, 34),
             &format!("valve {n}"),
-            timing || marked(&[["valve-1", "valve-2"][n as usize - 1]]),
+            timing || marked(&[Site::Valve(bypass)]),
         );
-        d.line(&format!("560,{0} 610,{0} 610,{1} 560,{1}", y, y + 55), path(n));
+        d.line(&format!("560,{0} 610,{0} 610,{1} 560,{1}", y, y + 55), found);
     }
-    d.line("610,100 760,100", path(1));
-    d.line("610,225 760,225", path(2));
-    d.block((660, 205, 70, 40), "valve 3", timing || marked(&["valve-3"]));
-    let gas = |n: usize| {
-        marked(&[
-            ["accumulator-1", "accumulator-2"][n - 1],
-            "accumulators",
-            "both accumulators",
-        ])
-    };
-    d.block((760, 65, 125, 70), "accumulator 1|(gas)", gas(1));
-    d.block((760, 190, 125, 70), "accumulator 2|(gas)", gas(2));
+    d.line("610,100 760,100", path(Branch::First));
+    d.line("610,225 760,225", path(Branch::Second));
+    d.block(
+        (660, 205, 70, 40),
+        "valve 3",
+        timing || marked(&[Site::Valve(Valve::Spring)]),
+    );
+    let gas = |branch: Branch| marked(&[Site::Accumulator(branch), Site::Accumulators]);
+    d.block((760, 65, 125, 70), "accumulator 1|(gas)", gas(Branch::First));
+    d.block((760, 190, 125, 70), "accumulator 2|(gas)", gas(Branch::Second));
     for (at, text, column) in [
-        ((82, 90), "x", "sensor:displacement_m"),
-        ((203, 90), "F", "sensor:force_N"),
-        ((307, 60), "p1", "sensor:p1_Pa"),
-        ((700, 75), "p2", "sensor:p2_Pa"),
-        ((635, 180), "p3", "sensor:p3_Pa"),
-        ((744, 180), "p4", "sensor:p4_Pa"),
+        ((82, 90), "x", "displacement_m"),
+        ((203, 90), "F", "force_N"),
+        ((307, 60), "p1", "p1_Pa"),
+        ((700, 75), "p2", "p2_Pa"),
+        ((635, 180), "p3", "p3_Pa"),
+        ((744, 180), "p4", "p4_Pa"),
     ] {
-        d.sensor(at, text, marked(&[column]));
+        d.sensor(at, text, marked(&[Site::Sensor(Column::known(column))]));
     }
 }
 
-fn gas_spring(d: &mut Drawing, marked: &dyn Fn(&[&str]) -> bool) {
+fn gas_spring(d: &mut Drawing, marked: &dyn Fn(&[Site]) -> bool) {
     d.size(900, 150);
     d.block((60, 55, 90, 40), "rod", false);
     d.line("150,75 330,75", false);
     d.block((330, 30, 40, 90), "pis-|ton", false);
-    d.block((370, 30, 300, 90), "gas chamber", marked(&["chamber"]));
-    d.sensor((240, 50), "x", marked(&["sensor:displacement_m"]));
+    d.block((370, 30, 300, 90), "gas chamber", marked(&[Site::Chamber]));
+    d.sensor((240, 50), "x", marked(&[Site::Sensor(Column::known("displacement_m"))]));
     d.line("670,75 740,75", false);
-    d.sensor((760, 75), "p", marked(&["sensor:p_Pa"]));
+    d.sensor((760, 75), "p", marked(&[Site::Sensor(Column::known("p_Pa"))]));
 }
 
-fn cylinder(d: &mut Drawing, marked: &dyn Fn(&[&str]) -> bool) {
+fn cylinder(d: &mut Drawing, marked: &dyn Fn(&[Site]) -> bool) {
     d.size(900, 150);
-    d.block((60, 55, 90, 40), "load cell", marked(&["sensor:force_N"]));
+    d.block(
+        (60, 55, 90, 40),
+        "load cell",
+        marked(&[Site::Sensor(Column::known("force_N"))]),
+    );
     d.line("150,75 290,75", false);
-    d.block((290, 40, 60, 70), "rod seal", marked(&["main-seal"]));
+    d.block((290, 40, 60, 70), "rod seal", marked(&[Site::MainSeal]));
     d.block((350, 30, 320, 90), "chambers under pressure", false);
-    d.sensor((220, 50), "x", marked(&["sensor:displacement_m"]));
-    d.sensor((220, 105), "F", marked(&["sensor:force_N"]));
+    d.sensor((220, 50), "x", marked(&[Site::Sensor(Column::known("displacement_m"))]));
+    d.sensor((220, 105), "F", marked(&[Site::Sensor(Column::known("force_N"))]));
     d.line("670,75 740,75", false);
     d.sensor((760, 75), "p", false);
 }
@@ -142,8 +152,8 @@ mod tests {
     fn only_what_was_found_is_marked() {
         let kind = "two-stage hydropneumatic strut";
         assert!(!svg(kind, &[]).expect("a drawing").contains("found\""));
-        let drawn = svg(kind, &["accumulator-2"]).expect("a drawing");
-        assert_eq!(drawn.matches("box found").count(), 1);
+        let drawn = |place: &str| svg(kind, &[&place.parse().expect("a place")]).expect("a drawing");
+        assert_eq!(drawn("accumulator-2").matches("box found").count(), 1);
         for place in [
             "main-chamber",
             "accumulator-1",
@@ -157,7 +167,7 @@ mod tests {
             "sensor:p3_Pa",
             "sensor:displacement_m",
         ] {
-            assert!(svg(kind, &[place]).expect("a drawing").contains("found\""), "{place}");
+            assert!(drawn(place).contains("found\""), "{place}");
         }
     }
 }

@@ -20,6 +20,7 @@ use crate::problem::Problem;
 use crate::recording::Recording;
 use crate::specimen::strut::{CHANNELS, TwoStageStrut};
 use crate::specimen::{Hypothesis, Series, Specimen};
+use crate::vocabulary::EffectId;
 
 /// The truth's grid is this many times finer than a recording's.
 const REFINEMENT: usize = 5;
@@ -53,7 +54,7 @@ pub struct Generated {
 ///
 /// # Errors
 /// A drawn model that cannot be simulated.
-pub fn generate(name: &str, wanted: &[(&'static str, f64)]) -> Result<Generated, DiagnoseError> {
+pub fn generate(name: &str, wanted: &[(EffectId, f64)]) -> Result<Generated, DiagnoseError> {
     let mut draw = Draw::named(name);
     let mut given = nominal(name, &mut draw);
     let seen = moves(&mut draw);
@@ -98,7 +99,7 @@ pub fn generate(name: &str, wanted: &[(&'static str, f64)]) -> Result<Generated,
 }
 
 /// Draws the effects; two faults of one instrument would be one.
-fn concealed(wanted: &[(&'static str, f64)], complete: &StrutModel, draw: &mut Draw) -> Vec<(Hidden, f64)> {
+fn concealed(wanted: &[(EffectId, f64)], complete: &StrutModel, draw: &mut Draw) -> Vec<(Hidden, f64)> {
     let mut all: Vec<(Hidden, f64)> = Vec::new();
     for &(id, size) in wanted {
         let mut hidden = Hidden::draw(id, complete, draw);
@@ -343,7 +344,7 @@ mod tests {
                 .map(|v| v.to_bits())
                 .collect::<Vec<_>>()
         };
-        let wanted = [("seal_friction", 1.0)];
+        let wanted = [(EffectId::SealFriction, 1.0)];
         let (a, b) = (
             generate("test:bits", &wanted).unwrap(),
             generate("test:bits", &wanted).unwrap(),
@@ -355,11 +356,11 @@ mod tests {
     #[test]
     fn effects_have_the_size_asked_for() {
         for id in [
-            "seal_friction",
-            "oil_compressibility",
-            "sensor_gain",
-            "line_resistance",
-            "valve_delay",
+            EffectId::SealFriction,
+            EffectId::OilCompressibility,
+            EffectId::SensorGain,
+            EffectId::LineResistance,
+            EffectId::ValveDelay,
         ] {
             let g = generate(&format!("test:size:{id}"), &[(id, 1.0)]).unwrap();
             assert!((g.sizes[0] - 1.0).abs() < 0.1, "{id}: {:?} {:?}", g.sizes, g.truth);

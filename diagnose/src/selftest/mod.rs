@@ -28,7 +28,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 pub use ledger::Ledger;
 pub use page::{page, tables};
-pub use plan::{Case, Plan, UnknownTerm};
+pub use plan::{Case, Plan, Subject, UnknownTerm};
 pub use save::save;
 pub use summary::Summary;
 pub use trial::Trial;

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::summary::Summary;
 use super::trial::Trial;
+use crate::vocabulary::EffectId;
 
 /// One trial.
 #[derive(Debug, Serialize)]
@@ -26,8 +27,16 @@ pub struct TrialRow {
 pub fn trials(trials: &[Trial]) -> impl Iterator<Item = TrialRow> {
     trials.iter().map(|t| {
         let join = |words: Vec<String>| words.join(" ");
-        let mut places: Vec<String> = t.truth.iter().map(|h| format!("{}@{}", h.id, h.place)).collect();
-        let mut reported: Vec<String> = t.reported.iter().map(|r| format!("{}@{}", r.id, r.place)).collect();
+        let mut places: Vec<String> = t
+            .truth
+            .iter()
+            .map(|h| format!("{}@{}", h.id, h.place.as_reported()))
+            .collect();
+        let mut reported: Vec<String> = t
+            .reported
+            .iter()
+            .map(|r| format!("{}@{}", r.id, r.place.as_reported()))
+            .collect();
         let confidence = join(t.reported.iter().map(|r| format!("{:.3}", r.confidence)).collect());
         let hidden = join({
             places.dedup();
@@ -42,7 +51,7 @@ pub fn trials(trials: &[Trial]) -> impl Iterator<Item = TrialRow> {
             name: t.name.clone(),
             hidden,
             size: join(t.hidden.iter().map(|h| format!("{:.3}", h.2)).collect()),
-            left_out: t.left_out.clone().unwrap_or_default(),
+            left_out: t.left_out.map_or_else(String::new, |id| id.to_string()),
             reported: shown,
             confidence,
             exact: places == reported,
@@ -58,7 +67,7 @@ pub fn trials(trials: &[Trial]) -> impl Iterator<Item = TrialRow> {
 /// Counts of one term at one size.
 #[derive(Debug, Serialize)]
 pub struct PowerRow {
-    term: String,
+    term: EffectId,
     size_in_noise: f64,
     campaigns: usize,
     found: usize,
@@ -70,7 +79,7 @@ pub struct PowerRow {
 /// The power table.
 pub fn power(summary: &Summary) -> impl Iterator<Item = PowerRow> {
     summary.power.iter().map(|p| PowerRow {
-        term: p.term.clone(),
+        term: p.term,
         size_in_noise: p.size,
         campaigns: p.found.of,
         found: p.found.hits,
@@ -102,7 +111,7 @@ pub fn confusion(summary: &Summary) -> impl Iterator<Item = ConfusionRow> {
 /// Intervals of one parameter.
 #[derive(Debug, Serialize)]
 pub struct CoverageRow {
-    term: String,
+    term: EffectId,
     parameter: String,
     intervals: usize,
     covered: usize,
@@ -114,7 +123,7 @@ pub fn coverage(summary: &Summary) -> impl Iterator<Item = CoverageRow> {
     (summary.coverage.iter())
         .filter(|c| !c.key.is_empty())
         .map(|c| CoverageRow {
-            term: c.term.clone(),
+            term: c.term,
             parameter: c.key.clone(),
             intervals: c.covered.of,
             covered: c.covered.hits,

@@ -7,6 +7,7 @@ use super::plan::Case;
 use crate::error::DiagnoseError;
 use crate::recording::Recording;
 use crate::specimen::strut::columns;
+use crate::vocabulary::EffectId;
 
 /// Name of the folder of a case: its name, with what file systems dislike replaced.
 fn folder_name(case: &Case) -> String {
@@ -23,7 +24,7 @@ pub fn save(case: &Case, into: &Path) -> Result<(), DiagnoseError> {
     let unseen = folder.join("unseen");
     std::fs::create_dir_all(&unseen).map_err(|e| DiagnoseError::file(&unseen, e.to_string()))?;
     write(&folder.join("model.toml"), &campaign.given.to_toml())?;
-    let ids: Vec<&str> = case.hidden.iter().map(|(id, _)| *id).collect();
+    let ids: Vec<EffectId> = case.hidden.iter().map(|(id, _)| *id).collect();
     let answer = serde_json::json!({
         "name": case.name, "hidden": ids, "sizes": campaign.sizes, "truth": campaign.truth,
     });

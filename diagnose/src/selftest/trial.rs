@@ -15,6 +15,7 @@ use crate::problem::Problem;
 use crate::recording::Recording;
 use crate::specimen::strut::TwoStageStrut;
 use crate::specimen::{Hypothesis, Specimen};
+use crate::vocabulary::{EffectId, Place};
 
 /// A fitted number of a reported effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -33,9 +34,9 @@ pub struct Number {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reported {
     /// Id of the vocabulary or `unlisted`.
-    pub id: String,
-    /// Place.
-    pub place: String,
+    pub id: EffectId,
+    /// Where it is said to act.
+    pub place: Place,
     /// Confidence as reported.
     pub confidence: f64,
     /// Held-out gain in cost and its standard error; `None` for what is seen but not modelled.
@@ -56,11 +57,11 @@ pub struct Trial {
     /// Name of the case.
     pub name: String,
     /// Ids concealed, with the size wanted and the size reached, in units of noise.
-    pub hidden: Vec<(String, f64, f64)>,
+    pub hidden: Vec<(EffectId, f64, f64)>,
     /// The numbers concealed.
     pub truth: Vec<Truth>,
     /// Term that the search was not allowed.
-    pub left_out: Option<String>,
+    pub left_out: Option<EffectId>,
     /// What was reported.
     pub reported: Vec<Reported>,
     /// Number of residuals.
@@ -82,13 +83,9 @@ pub struct Trial {
 pub fn run(case: &Case, stop: &AtomicBool) -> Result<Trial, DiagnoseError> {
     let mut trial = Trial {
         name: case.name.clone(),
-        hidden: case
-            .hidden
-            .iter()
-            .map(|(id, size)| ((*id).to_owned(), *size, 0.0))
-            .collect(),
+        hidden: case.hidden.iter().map(|(id, size)| (*id, *size, 0.0)).collect(),
         truth: vec![],
-        left_out: case.left_out.map(str::to_owned),
+        left_out: case.left_out,
         reported: vec![],
         residuals: 0,
         noise_ratio: (0.0, 0.0),
@@ -122,7 +119,7 @@ fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), Dia
         notes: vec![],
     };
     let problem = Problem::new(&*campaign.specimen, stop);
-    let diagnosis = Diagnosis::of(&campaign, &problem, &|_, _| {})?;
+    let diagnosis = Diagnosis::of(&problem, &|_, _| {})?;
     trial.residuals = problem.count();
     trial.noise_ratio = diagnosis.selection.noise_ratio;
     trial.incomplete = diagnosis.selection.incomplete;
@@ -145,7 +142,7 @@ fn reported(campaign: &Campaign, effect: &Effect) -> Reported {
     let rival = chosen.and_then(|c| c.rival);
     let bound = |v: f64| v.is_finite().then_some(v);
     Reported {
-        id: effect.id.clone(),
+        id: effect.id,
         place: effect.place.clone(),
         confidence: effect.confidence,
         gain: chosen.map(|c| (c.gain, c.gain_error)),
@@ -191,30 +188,23 @@ fn noise_ratio(model_toml: &str, recordings: &[Recording]) -> Result<f64, Diagno
 
 impl Trial {
     /// Ids concealed.
-    pub fn hidden_ids(&self) -> Vec<&str> {
-        self.hidden.iter().map(|(id, ..)| id.as_str()).collect()
+    pub fn hidden_ids(&self) -> Vec<EffectId> {
+        self.hidden.iter().map(|(id, ..)| *id).collect()
     }
 
     /// Whether an id is reported.
     #[must_use]
-    pub fn found(&self, id: &str) -> bool {
+    pub fn found(&self, id: EffectId) -> bool {
         self.reported.iter().any(|r| r.id == id)
     }
 
     /// Whether an id is reported at every one of its places and nowhere else.
     #[must_use]
-    pub fn placed(&self, id: &str) -> bool {
-        let mut true_places: Vec<&str> = self
-            .truth
-            .iter()
-            .filter(|t| t.id == id)
-            .map(|t| t.place.as_str())
-            .collect();
-        let mut places: Vec<&str> = self
-            .reported
-            .iter()
+    pub fn placed(&self, id: EffectId) -> bool {
+        let mut true_places: Vec<&Place> = self.truth.iter().filter(|t| t.id == id).map(|t| &t.place).collect();
+        let mut places: Vec<&Place> = (self.reported.iter())
             .filter(|r| r.id == id)
-            .map(|r| r.place.as_str())
+            .map(|r| &r.place)
             .collect();
         for list in [&mut true_places, &mut places] {
             list.sort_unstable();
@@ -235,7 +225,7 @@ impl Trial {
     /// Whether an id is placed and its size (the first number concealed) is within a fifth or within its interval; what
     /// has no numbers is sized where it is placed.
     #[must_use]
-    pub fn sized(&self, id: &str) -> bool {
+    pub fn sized(&self, id: EffectId) -> bool {
         let Some(size) = self.truth.iter().find(|t| t.id == id) else {
             return false;
         };

@@ -4,9 +4,10 @@
 use oleo_plant_sim::specimen::{CylinderEffects, CylinderModel, CylinderSeal, SmoothedMotion, smooth_motion};
 use oleo_plant_sim::strut::{SensorEffect, SideLoadFriction};
 
-use super::{Candidate, Channel, Hypothesis, Series, Specimen, instrument};
+use super::{Candidate, Channel, Hypothesis, Series, Specimen, StateSeries, instrument};
 use crate::parameter::Parameter;
 use crate::recording::{ColumnKind, ColumnSpec, Recording};
+use crate::vocabulary::{Column, EffectId, Site, State};
 
 /// Noise assumed where the model file states none, as a part of the force range.
 const DEFAULT_NOISE_PART: f64 = 1e-3;
@@ -113,12 +114,11 @@ impl Cylinder {
             .then(|| "one pressure only; record the same strokes at half and at twice the pressure".to_owned());
         let free = |id, label: &str, parameters: Vec<Parameter>, untestable: &Option<String>| Candidate {
             id,
-            place: "main-seal".into(),
+            place: Site::MainSeal.into(),
             label: label.to_owned(),
             parameters,
             starts: vec![],
-            instrument: false,
-            group: "",
+            group: None,
             untestable: untestable.clone(),
         };
         // One seal, one presliding stiffness, whichever part of its friction is there; without friction it does nothing.
@@ -131,7 +131,7 @@ impl Cylinder {
         let e = &model.effects;
         if e.seal_friction.is_none() {
             candidates.push(free(
-                "seal_friction",
+                EffectId::SealFriction,
                 "",
                 vec![Parameter::linear(
                     "coulomb_force_N",
@@ -146,7 +146,7 @@ impl Cylinder {
             let level = high.max(1e-9);
             let untestable = still.clone().or(one_pressure);
             candidates.push(free(
-                "side_load_friction",
+                EffectId::SideLoadFriction,
                 "",
                 vec![Parameter::linear(
                     "coefficient",
@@ -159,30 +159,30 @@ impl Cylinder {
         }
         let signed = |key: &str, most: f64| vec![Parameter::linear(key, 0.0, 0.02 * most, (-most, most))];
         candidates.push(free(
-            "unlisted",
+            EffectId::Unlisted,
             "moving mass",
             signed("moving_mass_kg", force / acceleration),
             &still,
         ));
         candidates.push(free(
-            "unlisted",
+            EffectId::Unlisted,
             "viscous friction",
             signed("viscous_friction_N_s_m", force / speed),
             &still,
         ));
         candidates.push(free(
-            "unlisted",
+            EffectId::Unlisted,
             "parallel stiffness",
             signed("parallel_stiffness_N_m", force / spread(0).max(1e-9)),
             &still,
         ));
-        for (k, column) in std::iter::once("force_N")
-            .chain(model.chamber.iter().map(|c| c.column.as_str()))
+        for (k, column) in std::iter::once(Column::FORCE)
+            .chain(model.chamber.iter().map(|c| Column::named(c.column.clone())))
             .enumerate()
         {
-            for mut fault in instrument::faults(column, spread(1 + k), duration, interval) {
+            for mut fault in instrument::faults(&column, spread(1 + k), duration, interval) {
                 // A lagging input cannot be undone without amplifying its noise; late is tested instead.
-                if k == 0 || fault.id != "sensor_lag" {
+                if k == 0 || fault.id != EffectId::SensorLag {
                     fault.parameters.iter_mut().for_each(|p| p.instrument_only = false);
                     fault.untestable.clone_from(&still);
                     candidates.push(fault);
@@ -190,7 +190,7 @@ impl Cylinder {
             }
         }
         let channels = vec![Channel {
-            name: "force_N".into(),
+            column: Column::FORCE,
             noise,
         }];
         Self {
@@ -215,24 +215,25 @@ impl Cylinder {
             let candidate = &self.candidates[*index];
             let e = &mut model.effects;
             let sensor = |effect: &mut Option<SensorEffect>| {
-                let column = candidate.place.trim_start_matches("sensor:").to_owned();
-                effect.get_or_insert_default().insert(column, values[0]);
+                if let Some(column) = candidate.place.sensor() {
+                    effect.get_or_insert_default().insert(column.to_string(), values[0]);
+                }
             };
             match (candidate.id, candidate.label.as_str()) {
-                ("seal_friction", _) => seal(e, presliding).coulomb_force_n = values[0],
-                ("side_load_friction", _) => {
+                (EffectId::SealFriction, _) => seal(e, presliding).coulomb_force_n = values[0],
+                (EffectId::SideLoadFriction, _) => {
                     e.side_load_friction = Some(SideLoadFriction {
                         coefficient: values[0],
                         overlap_growth_1_m: 0.0,
                     });
                     seal(e, presliding);
                 }
-                ("unlisted", "moving mass") => e.moving_mass_kg = Some(values[0]),
-                ("unlisted", "viscous friction") => e.viscous_friction_n_s_m = Some(values[0]),
-                ("unlisted", _) => e.parallel_stiffness_n_m = Some(values[0]),
-                ("sensor_lag", _) => sensor(&mut e.sensor_lag),
-                ("sensor_skew", _) => sensor(&mut e.sensor_skew),
-                ("sensor_gain", _) => sensor(&mut e.sensor_gain),
+                (EffectId::Unlisted, "moving mass") => e.moving_mass_kg = Some(values[0]),
+                (EffectId::Unlisted, "viscous friction") => e.viscous_friction_n_s_m = Some(values[0]),
+                (EffectId::Unlisted, _) => e.parallel_stiffness_n_m = Some(values[0]),
+                (EffectId::SensorLag, _) => sensor(&mut e.sensor_lag),
+                (EffectId::SensorSkew, _) => sensor(&mut e.sensor_skew),
+                (EffectId::SensorGain, _) => sensor(&mut e.sensor_gain),
                 _ => sensor(&mut e.sensor_drift),
             }
         }
@@ -317,13 +318,13 @@ impl Specimen for Cylinder {
     fn model_toml(&self, hypothesis: &Hypothesis) -> Result<String, String> {
         self.applied(hypothesis).to_toml()
     }
-    fn states(&self, recording: usize) -> Vec<(&'static str, Vec<f64>)> {
+    fn states(&self, recording: usize) -> Vec<StateSeries> {
         let motion = &self.motions[recording];
         vec![
-            ("displacement, m", motion.displacement_m.clone()),
-            ("speed, m/s", motion.speed_m_s.clone()),
-            ("acceleration, m/s2", motion.acceleration_m_s2.clone()),
-            ("pressing force, N", pressing(&self.model, &self.recordings[recording])),
+            StateSeries::new(State::Displacement, motion.displacement_m.clone()),
+            StateSeries::new(State::Speed, motion.speed_m_s.clone()),
+            StateSeries::new(State::Acceleration, motion.acceleration_m_s2.clone()),
+            StateSeries::new(State::PressingForce, pressing(&self.model, &self.recordings[recording])),
         ]
     }
 }

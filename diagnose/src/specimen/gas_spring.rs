@@ -4,10 +4,13 @@
 use oleo_plant_sim::specimen::{GasHeatTransferTerm, GasSpringModel};
 
 use super::corner::{Clock, corners};
-use super::{Candidate, Channel, Hypothesis, Series, Specimen, instrument};
+use super::{Candidate, Channel, ExclusionGroup, Hypothesis, Series, Specimen, StateSeries, instrument};
 use crate::parameter::Parameter;
 use crate::recording::{ColumnKind, ColumnSpec, Recording};
+use crate::vocabulary::{Column, EffectId, Site, State};
 
+/// The pressure, absolute.
+const PRESSURE: Column = Column::known("p_Pa");
 /// Noise assumed where the model file states none: a tenth of a psi, the resolution of common gauges.
 const DEFAULT_NOISE_PA: f64 = 690.0;
 
@@ -128,12 +131,11 @@ impl GasSpring {
         });
         let plain = |id, label: &str, parameter, starts| Candidate {
             id,
-            place: "chamber".into(),
+            place: Site::Chamber.into(),
             label: label.to_owned(),
             parameters: vec![parameter],
             starts,
-            instrument: false,
-            group: "",
+            group: None,
             untestable: still.clone(),
         };
         let mut candidates = Vec::new();
@@ -143,9 +145,9 @@ impl GasSpring {
                 tolerance("time_constant", 0.08),
             )),
             None => candidates.push(Candidate {
-                group: "gas process",
+                group: Some(ExclusionGroup::GasProcess),
                 ..plain(
-                    "gas_heat_transfer",
+                    EffectId::GasHeatTransfer,
                     "",
                     Parameter::log("time_constant_s", 10.0, (0.02, 3000.0)),
                     vec![vec![1.0], vec![60.0]],
@@ -154,9 +156,9 @@ impl GasSpring {
         }
         if model.effects.gas_heat_transfer.is_none() {
             candidates.push(Candidate {
-                group: "gas process",
+                group: Some(ExclusionGroup::GasProcess),
                 ..plain(
-                    "unlisted",
+                    EffectId::Unlisted,
                     "polytropic exponent",
                     Parameter::linear("polytropic_exponent", 1.2, 0.05, (1.0, 1.67)),
                     vec![],
@@ -166,7 +168,7 @@ impl GasSpring {
         if model.effects.gas_leak_rate_1_s.is_none() {
             let rate = 0.1 / duration.max(1.0);
             candidates.push(plain(
-                "unlisted",
+                EffectId::Unlisted,
                 "gas lost",
                 Parameter::linear("rate_1_s", 0.0, 0.1 * rate, (-10.0 * rate, 10.0 * rate)),
                 vec![],
@@ -181,15 +183,15 @@ impl GasSpring {
             .map(|c| c.delay_s)
             .reduce(|a, b| [a[0].min(b[0]), 0.5 * (a[1] + b[1]), a[2].max(b[2])]);
         candidates.extend(
-            instrument::faults("p_Pa", spread(1), duration, interval)
+            instrument::faults(&PRESSURE, spread(1), duration, interval)
                 .into_iter()
                 .map(|mut c| {
                     c.untestable.clone_from(&still);
-                    if c.id == "sensor_lag" && late_but_sharp {
+                    if c.id == EffectId::SensorLag && late_but_sharp {
                         c.parameters =
                             vec![Parameter::amount("time_constant_s", 0.5 * interval, interval).on_instrument()];
                     }
-                    if let ("sensor_skew", Some([low, middle, high])) = (c.id, delays) {
+                    if let (EffectId::SensorSkew, Some([low, middle, high])) = (c.id, delays) {
                         let range = (low - 2.0 * interval, high + 2.0 * interval);
                         let start = if middle.abs() > interval { middle } else { 0.0 };
                         c.parameters = vec![Parameter::linear("delay_s", start, interval, range).on_instrument()];
@@ -198,7 +200,7 @@ impl GasSpring {
                 }),
         );
         let channels = vec![Channel {
-            name: "p_Pa".into(),
+            column: PRESSURE,
             noise,
         }];
         Self {
@@ -226,14 +228,14 @@ impl GasSpring {
                 effect.get_or_insert_default().insert("p_Pa".into(), value);
             };
             match (candidate.id, candidate.label.as_str()) {
-                ("gas_heat_transfer", _) => {
+                (EffectId::GasHeatTransfer, _) => {
                     model.effects.gas_heat_transfer = Some(GasHeatTransferTerm { time_constant_s: value });
                 }
-                ("unlisted", "gas lost") => model.effects.gas_leak_rate_1_s = Some(value),
-                ("unlisted", _) => model.effects.polytropic_exponent = Some(value),
-                ("sensor_lag", _) => column(&mut model.effects.sensor_lag),
-                ("sensor_skew", _) => column(&mut model.effects.sensor_skew),
-                ("sensor_gain", _) => column(&mut model.effects.sensor_gain),
+                (EffectId::Unlisted, "gas lost") => model.effects.gas_leak_rate_1_s = Some(value),
+                (EffectId::Unlisted, _) => model.effects.polytropic_exponent = Some(value),
+                (EffectId::SensorLag, _) => column(&mut model.effects.sensor_lag),
+                (EffectId::SensorSkew, _) => column(&mut model.effects.sensor_skew),
+                (EffectId::SensorGain, _) => column(&mut model.effects.sensor_gain),
                 _ => column(&mut model.effects.sensor_drift),
             }
         }
@@ -286,13 +288,13 @@ impl Specimen for GasSpring {
     fn model_toml(&self, hypothesis: &Hypothesis) -> Result<String, String> {
         self.applied(hypothesis).to_toml()
     }
-    fn states(&self, recording: usize) -> Vec<(&'static str, Vec<f64>)> {
+    fn states(&self, recording: usize) -> Vec<StateSeries> {
         let r = &self.recordings[recording];
         let motion = oleo_plant_sim::specimen::smooth_motion(&r.time_s, &r.columns[0], 5.0 * r.interval_s());
         vec![
-            ("displacement, m", r.columns[0].clone()),
-            ("speed, m/s", motion.speed_m_s),
-            ("pressure, Pa", r.columns[1].clone()),
+            StateSeries::new(State::Displacement, r.columns[0].clone()),
+            StateSeries::new(State::Speed, motion.speed_m_s),
+            StateSeries::new(State::Pressure, r.columns[1].clone()),
         ]
     }
 }

@@ -9,12 +9,13 @@ pub mod instrument;
 pub mod strut;
 
 use crate::parameter::Parameter;
+use crate::vocabulary::{Column, EffectId, Place, State};
 
 /// A measured quantity that the model predicts.
 #[derive(Debug, Clone)]
 pub struct Channel {
-    /// Column name with unit.
-    pub name: String,
+    /// Its column.
+    pub column: Column,
     /// Standard deviation of its white noise, in the unit of the column.
     pub noise: f64,
 }
@@ -23,30 +24,51 @@ pub struct Channel {
 #[derive(Debug, Clone)]
 pub struct Candidate {
     /// Id of the vocabulary, `unlisted` for laws without a name.
-    pub id: &'static str,
-    /// Place of the vocabulary.
-    pub place: String,
+    pub id: EffectId,
+    /// Where it acts.
+    pub place: Place,
     /// What to call it where `id` does not distinguish (laws without a name).
     pub label: String,
     /// Numbers to fit; none for a term that is simply there or not.
     pub parameters: Vec<Parameter>,
     /// Other starting points, in values, tried beside the parameters' own.
     pub starts: Vec<Vec<f64>>,
-    /// True for the instruments, which are judged before physics.
-    pub instrument: bool,
-    /// Candidates of the same non-empty group exclude each other.
-    pub group: &'static str,
+    /// Candidates of the same group exclude each other.
+    pub group: Option<ExclusionGroup>,
     /// Why the recordings cannot show it, where they cannot.
     pub untestable: Option<String>,
 }
 
+/// Candidates that stand for the same thing in different forms, of which a model can hold one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExclusionGroup {
+    /// One damper or both fade.
+    DampingFade,
+    /// What the gas does with its heat.
+    GasProcess,
+    /// Laws without a name.
+    Unlisted,
+}
+
 impl Candidate {
+    /// True for a law that the vocabulary does not name.
+    #[must_use]
+    pub fn is_unlisted(&self) -> bool {
+        self.id == EffectId::Unlisted
+    }
+
+    /// True for the fault of an instrument, which is judged before physics.
+    #[must_use]
+    pub const fn is_instrument_fault(&self) -> bool {
+        self.id.is_instrument_fault()
+    }
+
     /// True if the two cannot be in one model: members of one group, and two faults of one instrument, which shade into
     /// each other (a short lag is nearly a skew).
     #[must_use]
     pub fn excludes(&self, other: &Self) -> bool {
-        (!self.group.is_empty() && self.group == other.group)
-            || (self.instrument && other.instrument && self.place == other.place)
+        (self.group.is_some() && self.group == other.group)
+            || (self.is_instrument_fault() && other.is_instrument_fault() && self.place == other.place)
     }
 
     /// True if these values leave the model as it is: an amount that starts at zero is zero.
@@ -76,6 +98,23 @@ pub struct Hypothesis {
     pub calibration: Vec<f64>,
     /// Index into [`Specimen::candidates`] and the values of its parameters.
     pub effects: Vec<(usize, Vec<f64>)>,
+}
+
+/// A state over the samples of one recording, or of several one after the other; NaN where it is not defined.
+#[derive(Debug, Clone)]
+pub struct StateSeries {
+    /// Which state.
+    pub state: State,
+    /// Its values.
+    pub values: Vec<f64>,
+}
+
+impl StateSeries {
+    /// A state with its values.
+    #[must_use]
+    pub const fn new(state: State, values: Vec<f64>) -> Self {
+        Self { state, values }
+    }
 }
 
 /// One series a channel, each as long as the recording.
@@ -123,7 +162,7 @@ pub trait Specimen: Sync {
     fn law(&self, candidate: usize, values: &[f64]) -> Option<serde_json::Value> {
         let c = &self.candidates()[candidate];
         let keys: Vec<&str> = c.parameters.iter().map(|p| p.key.as_str()).collect();
-        Some(serde_json::json!({ "place": c.place, "form": c.label, "keys": keys, "values": values }))
+        Some(serde_json::json!({ "place": c.place.to_string(), "form": c.label, "keys": keys, "values": values }))
     }
     /// Piston area of a strut, m2; `None` for other kinds.
     fn piston_area_m2(&self) -> Option<f64> {
@@ -141,6 +180,6 @@ pub trait Specimen: Sync {
     fn valve_shut(&self, _recording: usize, _sample: usize, _valve: usize) -> bool {
         false
     }
-    /// Quantities over which residuals are shown and explained, per recording: name with unit and series.
-    fn states(&self, recording: usize) -> Vec<(&'static str, Vec<f64>)>;
+    /// Quantities over which residuals are shown and explained, per recording: which of them there are differs from recording to recording.
+    fn states(&self, recording: usize) -> Vec<StateSeries>;
 }

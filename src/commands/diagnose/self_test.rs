@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use oleo_diagnose::selftest::{Ledger, Plan, Summary, page, records, run, save, tables};
+use oleo_diagnose::selftest::{Ledger, Plan, Subject, Summary, page, records, run, save, tables};
 use oleo_report::{OutputDirectory, Progress};
 
 use crate::failure::Failure;
@@ -60,10 +60,19 @@ pub fn run_self_test(args: &Args, out: Option<&std::path::Path>) -> Result<ExitC
     let plan = Plan {
         seed: args.seed,
         campaigns: args.campaigns,
-        terms: args.terms.clone(),
+        subjects: args
+            .terms
+            .iter()
+            .map(|t| t.parse())
+            .collect::<Result<Vec<Subject>, _>>()?,
         without_names: args.without_names,
     };
-    let cases = plan.cases()?;
+    if plan.without_names && plan.subjects.iter().any(|s| !matches!(s, Subject::Effect(_))) {
+        return Err(Failure::new(
+            "--terms: none and pair have no name to leave out; give terms of the vocabulary with --without-names",
+        ));
+    }
+    let cases = plan.cases();
     if cases.is_empty() {
         return Err(Failure::new("--campaigns 0: give a number of campaigns above 0"));
     }

@@ -51,6 +51,7 @@ pub fn excess(model: &StrutModel, inputs: &Inputs, jittered: &Inputs, channels: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vocabulary::Column;
 
     #[test]
     fn noise_of_nothing_adds_next_to_nothing_and_more_noise_adds_more() {
@@ -61,7 +62,7 @@ mod tests {
         let channels: Vec<Channel> = super::super::CHANNELS
             .iter()
             .map(|c| Channel {
-                name: (*c).into(),
+                column: Column::known(c),
                 noise: if *c == "force_N" { 12.0 } else { 4e3 },
             })
             .collect();

@@ -11,13 +11,14 @@ use oleo_plant_sim::strut::{COLUMNS, Effects, Inputs, StrutModel, record_column,
 pub use excitation::Excitation;
 pub use vocabulary::TERMS;
 
-use super::{Candidate, Channel, Hypothesis, Series, Specimen};
+use super::{Candidate, Channel, Hypothesis, Series, Specimen, StateSeries};
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
 use crate::parameter::Parameter;
 use crate::recording::{ColumnKind, ColumnSpec, Recording};
+use crate::vocabulary::{Column, EffectId, State};
 
 /// Columns of the channels, in their order.
 pub const CHANNELS: [&str; 5] = ["force_N", "p1_Pa", "p2_Pa", "p3_Pa", "p4_Pa"];
@@ -88,7 +89,7 @@ impl TwoStageStrut {
             .iter()
             .zip(DEFAULT_NOISE)
             .map(|(c, n)| Channel {
-                name: (*c).into(),
+                column: Column::known(c),
                 noise: noise(c, n),
             })
             .collect();
@@ -128,7 +129,7 @@ impl TwoStageStrut {
     }
 
     /// Takes a term out of the search, to see what is said of it without its name (self-test).
-    pub fn leave_out(&mut self, id: &str) {
+    pub fn leave_out(&mut self, id: EffectId) {
         for candidate in self.candidates.iter_mut().filter(|c| c.id == id) {
             candidate.untestable = Some("left out of the search".to_owned());
         }
@@ -400,22 +401,22 @@ impl Specimen for TwoStageStrut {
         self.held(recording, sample, valve, false)
     }
 
-    fn states(&self, recording: usize) -> Vec<(&'static str, Vec<f64>)> {
+    fn states(&self, recording: usize) -> Vec<StateSeries> {
         let r = &self.recordings[recording];
         let motion = &self.inputs[recording].motion;
         let mut speed: Vec<f64> = motion.segments.iter().map(|s| s.to_m_s).collect();
         speed.insert(0, 0.0);
         let across = |a: usize, b: usize| r.columns[a].iter().zip(&r.columns[b]).map(|(a, b)| a - b).collect();
         let mut states = vec![
-            ("displacement, m", r.columns[0].clone()),
-            ("speed, m/s", speed),
-            ("p1, Pa", r.columns[2].clone()),
-            ("p1 - p2, Pa", across(2, 3)),
-            ("p1 - p3, Pa", across(2, 4)),
-            ("p3 - p4, Pa", across(4, 5)),
+            StateSeries::new(State::Displacement, r.columns[0].clone()),
+            StateSeries::new(State::Speed, speed),
+            StateSeries::new(State::P1, r.columns[2].clone()),
+            StateSeries::new(State::P1MinusP2, across(2, 3)),
+            StateSeries::new(State::P1MinusP3, across(2, 4)),
+            StateSeries::new(State::P3MinusP4, across(4, 5)),
         ];
         if let Some(since) = self.since_edge(recording) {
-            states.push(("time since a switching edge, s", since));
+            states.push(StateSeries::new(State::TimeSinceSwitching, since));
         }
         states
     }

@@ -17,8 +17,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use oleo_diagnose::fit::{Effort, fit};
-use oleo_diagnose::problem::Problem;
+use oleo_diagnose::estimation::covariance::deviations;
+use oleo_diagnose::estimation::{LeastSquares, Point, fit};
 use oleo_diagnose::recording::{GapPolicy, read};
 use oleo_diagnose::specimen::Specimen;
 use oleo_diagnose::specimen::strut::{CHANNELS, TwoStageStrut, columns};
@@ -168,14 +168,14 @@ impl Campaign {
     fn calibrate(&self, model: StrutModel) -> StrutModel {
         let strut = self.strut(model);
         let stop = AtomicBool::new(false);
-        let problem = Problem::new(&strut, &stop);
-        let fitted = fit(&problem, problem.nominal(), Effort::FULL).expect("a fit");
-        let deviations = fitted.deviations();
+        let problem = LeastSquares::new(&strut, &stop);
+        let fitted = fit(&problem, Point::nominal(&strut), problem.criteria.fitting.converged).expect("a fit");
+        let deviations = deviations(&fitted);
         println!("    calibration               value        in standard deviations of its prior (half its tolerance)");
         for ((p, z), d) in (strut.calibration().iter().zip(&fitted.point.z)).zip(deviations.iter()) {
             println!("    {:24} {:11.4e}  {z:6.2} +- {d:.2}", p.key, p.value(*z));
         }
-        strut.applied(&problem.hypothesis(&fitted.point))
+        strut.applied(&fitted.point.hypothesis(&strut))
     }
 
     /// Runs `oleo predict` with a model on all recordings, prints the table of noise ratios and returns what is above 1.5.

@@ -4,11 +4,11 @@ use rayon::prelude::*;
 
 use crate::confidence::Evidence;
 use crate::error::DiagnoseError;
-use crate::fit::Fit;
-use crate::locate::{Location, Reach, Relation, locate, reaches, relations};
-use crate::problem::Problem;
-use crate::select::{Chosen, Report, Selection, select};
-use crate::specimen::Series;
+use crate::estimation::covariance::covariance;
+use crate::estimation::{Fit, LeastSquares, Point, held_out, interval};
+use crate::locate::{ChangedRelation, Location, locate, relations_changed_alone};
+use crate::search::{Progress, SelectedEffect, Selection, select};
+use crate::specimen::{MeasuredRelation, Series};
 use crate::vocabulary::{Branch, Column, EffectId, Place, Site};
 use crate::whiteness::{Whiteness, whiteness};
 
@@ -49,8 +49,8 @@ pub struct Effect {
     pub place: Place,
     /// Distinguishes laws without a name.
     pub label: String,
-    /// Index of the chosen candidate, `None` for something seen but not modelled.
-    pub chosen: Option<Chosen>,
+    /// The effect of the improved model; `None` for something seen but not modelled.
+    pub selected: Option<SelectedEffect>,
     /// Chance that it is there, 0.05 to 0.99.
     pub confidence: f64,
     /// Numbers.
@@ -74,9 +74,9 @@ pub struct Diagnosis {
     /// Where the misfit is.
     pub locations: Vec<Location>,
     /// Relations between measured neighbours, tested without simulation.
-    pub relations: Vec<Relation>,
+    pub relations: Vec<MeasuredRelation>,
     /// What changing one relation of the model alone explains.
-    pub reaches: Vec<Reach>,
+    pub changed_relations: Vec<ChangedRelation>,
     /// Per channel.
     pub channels: Vec<ChannelFigures>,
     /// Calibration: key, deviation, interval, in units of the tolerance's standard deviation.
@@ -102,15 +102,16 @@ impl Diagnosis {
     ///
     /// # Errors
     /// A model that cannot be simulated, or the wish to stop.
-    pub fn of(problem: &Problem<'_>, report: Report<'_>) -> Result<Self, DiagnoseError> {
-        let selection = select(problem, report)?;
-        report("judging on held-out blocks", 0.95);
-        let given = problem.residuals(&problem.predict(&problem.nominal())?);
-        let calibrated = problem.residuals(&problem.predict(&selection.calibrated.point)?);
-        let improved = problem.residuals(&problem.predict(&selection.best.point)?);
+    pub fn of(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Self, DiagnoseError> {
+        let selection = select(problem, progress)?;
+        progress("judging on held-out blocks", 0.95);
+        let (specimen, evaluation) = (problem.specimen(), &problem.evaluation);
+        let given = evaluation.residuals_at(&Point::nominal(specimen))?;
+        let calibrated = evaluation.residuals_at(&selection.calibrated.point)?;
+        let improved = evaluation.residuals_at(&selection.best.point)?;
         let held_out_before = held_out_residuals(problem, &selection.calibrated)?;
         let held_out_after = held_out_residuals(problem, &selection.best)?;
-        let channels = (problem.specimen.channels().iter().enumerate())
+        let channels = (specimen.channels().iter().enumerate())
             .map(|(c, channel)| ChannelFigures {
                 column: channel.column.clone(),
                 before: ratio(&given, c),
@@ -124,55 +125,46 @@ impl Diagnosis {
         let mut effects = effects(problem, &selection, &estimates);
         let seen = effects.iter().any(|e| e.id == EffectId::Unlisted);
         // A strut's model is said to be complete but for what is missing: what is left then has no name.
-        if selection.incomplete && !seen && problem.specimen.kind().contains("strut") {
+        if selection.incomplete && !seen && specimen.is_believed_complete() {
             effects.push(Effect {
                 id: EffectId::Unlisted,
                 place: Site::Unknown.into(),
                 label: "remaining misfit".into(),
-                chosen: None,
+                selected: None,
                 confidence: 0.6,
                 parameters: vec![],
                 law: None,
-                held_out: (selection.noise_ratio.1, selection.noise_ratio.1),
+                held_out: (selection.improved_ratio, selection.improved_ratio),
             });
         }
-        let all = problem.specimen.candidates();
+        let all = specimen.candidates();
         let mut ambiguous: Vec<[EffectId; 2]> = Vec::new();
         let mut next = Vec::new();
-        for chosen in selection.chosen.iter().filter(|c| c.ambiguous) {
-            if let Some((rival, ..)) = chosen.rival {
-                let pair = [all[chosen.candidate].id, all[rival].id];
-                next.push(crate::experiment::separate(
-                    problem.specimen.kind(),
-                    &all[chosen.candidate],
-                    &all[rival],
-                ));
-                if pair[0] != pair[1] && !ambiguous.contains(&pair) {
-                    ambiguous.push(pair);
-                }
+        for effect in &selection.effects {
+            let Some(rival) = effect.ambiguous_rival() else {
+                continue;
+            };
+            let (effect, rival) = (&all[effect.candidate], &all[rival]);
+            next.push(crate::experiment::separate(specimen.kind(), effect, rival));
+            let pair = [effect.id, rival.id];
+            if pair[0] != pair[1] && !ambiguous.contains(&pair) {
+                ambiguous.push(pair);
             }
         }
         let locations = locate(problem, &selection, &calibrated, &improved)?;
         if let Some(left) = locations.iter().find(|l| l.candidate.is_none()) {
-            next.push(crate::experiment::isolate(problem.specimen, left));
+            next.push(crate::experiment::isolate(specimen, left));
         }
-        let calibration_count = problem.specimen.calibration().len();
+        let calibration_count = specimen.calibration().len();
         let calibration = (estimates.iter().take(calibration_count).cloned())
             .zip(selection.best.point.z.iter().copied())
             .collect();
-        let hypothesis = problem.hypothesis(&selection.best.point);
-        let model_toml = problem
-            .specimen
-            .model_toml(&hypothesis)
-            .map_err(DiagnoseError::Output)?;
-        let given_toml = problem
-            .specimen
-            .model_toml(&problem.hypothesis(&problem.nominal()))
-            .map_err(DiagnoseError::Output)?;
+        let toml = |point: &Point| (specimen.model_toml(&point.hypothesis(specimen))).map_err(DiagnoseError::Output);
+        let (model_toml, given_toml) = (toml(&selection.best.point)?, toml(&Point::nominal(specimen))?);
         Ok(Self {
-            relations: relations(problem.specimen),
-            reaches: reaches(problem.specimen, &selection),
-            whiteness: whiteness(problem.specimen, &held_out_after),
+            relations: specimen.measured_relations(),
+            changed_relations: relations_changed_alone(specimen, &selection),
+            whiteness: whiteness(specimen, &held_out_after),
             held_out: (held_out_before, held_out_after),
             effects,
             ambiguous,
@@ -182,7 +174,7 @@ impl Diagnosis {
             calibration,
             correlated,
             residuals: (calibrated, improved),
-            simulated: problem.simulated(),
+            simulated: evaluation.simulated(),
             given_toml,
             model_toml,
             selection,
@@ -193,7 +185,7 @@ impl Diagnosis {
     #[must_use]
     pub fn verdict(&self) -> &'static str {
         match (
-            self.effects.iter().any(|e| e.chosen.is_some()),
+            self.effects.iter().any(|e| e.selected.is_some()),
             self.selection.incomplete,
         ) {
             (true, _) => "missing_physics",
@@ -204,14 +196,12 @@ impl Diagnosis {
 }
 
 /// Residuals of every block from a simulation whose parameters that block's fold had no say in.
-fn held_out_residuals(problem: &Problem<'_>, fit: &Fit) -> Result<Vec<Series>, DiagnoseError> {
-    let folds: Vec<Vec<Series>> = fit
-        .fold_points(problem)
-        .par_iter()
-        .map(|point| Ok(problem.residuals(&problem.predict(point)?)))
+fn held_out_residuals(problem: &LeastSquares<'_>, fit: &Fit) -> Result<Vec<Series>, DiagnoseError> {
+    let folds: Vec<Vec<Series>> = (held_out(fit, problem).points.par_iter())
+        .map(|point| problem.evaluation.residuals_at(point))
         .collect::<Result<_, DiagnoseError>>()?;
     let mut out = folds[0].clone();
-    for b in &problem.blocks {
+    for b in problem.blocks.as_slice() {
         for (to, from) in out[b.recording].iter_mut().zip(&folds[b.fold][b.recording]) {
             to[b.start..b.end].copy_from_slice(&from[b.start..b.end]);
         }
@@ -240,9 +230,9 @@ fn lag_one(residuals: &[Series], channel: usize) -> f64 {
 /// Values and intervals of all parameters, and which are strongly correlated.
 type Estimates = (Vec<Estimate>, Vec<(String, String, f64)>);
 
-fn estimates(problem: &Problem<'_>, fit: &Fit) -> Result<Estimates, DiagnoseError> {
-    let parameters = problem.parameters(&fit.point.effects);
-    let deviations = crate::interval::deviations(problem, fit)?;
+fn estimates(problem: &LeastSquares<'_>, fit: &Fit) -> Result<Estimates, DiagnoseError> {
+    let parameters = fit.point.parameters(problem.specimen());
+    let deviations = interval::deviations(problem, fit)?;
     let estimates = (parameters.iter().zip(&fit.point.z).zip(deviations.iter()))
         .map(|((p, &z), &sd)| {
             let (low, high) = (p.value(z - 1.96 * sd), p.value(z + 1.96 * sd));
@@ -261,7 +251,7 @@ fn estimates(problem: &Problem<'_>, fit: &Fit) -> Result<Estimates, DiagnoseErro
         })
         .collect();
     let mut correlated = Vec::new();
-    if let Some(c) = fit.covariance() {
+    if let Some(c) = covariance(fit) {
         for i in 0..parameters.len() {
             for j in 0..i {
                 let r = c[(i, j)] / (c[(i, i)] * c[(j, j)]).sqrt();
@@ -274,31 +264,23 @@ fn estimates(problem: &Problem<'_>, fit: &Fit) -> Result<Estimates, DiagnoseErro
     Ok((estimates, correlated))
 }
 
-fn effects(problem: &Problem<'_>, selection: &Selection, estimates: &[Estimate]) -> Vec<Effect> {
-    let all = problem.specimen.candidates();
-    let hypothesis = problem.hypothesis(&selection.best.point);
+fn effects(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Estimate]) -> Vec<Effect> {
+    let specimen = problem.specimen();
+    let point = &selection.best.point;
+    let hypothesis = point.hypothesis(specimen);
     let mut out = Vec::new();
-    for chosen in &selection.chosen {
-        let candidate = &all[chosen.candidate];
-        let position = selection
-            .best
-            .point
-            .effects
-            .iter()
-            .position(|&e| e == chosen.candidate)
-            .unwrap_or(0);
-        let before: usize = selection.best.point.effects[..position]
-            .iter()
-            .map(|&e| all[e].parameters.len())
-            .sum();
-        let from = problem.specimen.calibration().len() + before;
-        let own = &estimates[from..from + candidate.parameters.len()];
+    for selected in &selection.effects {
+        let Some(position) = point.effects.iter().position(|&e| e == selected.candidate) else {
+            continue;
+        };
+        let candidate = &specimen.candidates()[selected.candidate];
+        let own = &estimates[point.coordinates_of(specimen, position)];
         let law = (candidate.is_unlisted())
-            .then(|| problem.specimen.law(chosen.candidate, &hypothesis.effects[position].1))
+            .then(|| specimen.law(selected.candidate, &hypothesis.effects[position].1))
             .flatten();
         let evidence = Evidence {
-            gain: (chosen.gain, chosen.gain_error),
-            lead: chosen.rival.map(|(_, lead, error)| (lead, error)),
+            gain: (selected.gain.total, selected.gain.standard_error),
+            lead: selected.rival.map(|r| (r.lead.total, r.lead.standard_error)),
         };
         let confidence = evidence.confidence();
         for (place, which) in places(&candidate.place, own.len()) {
@@ -306,11 +288,11 @@ fn effects(problem: &Problem<'_>, selection: &Selection, estimates: &[Estimate])
                 id: candidate.id,
                 place,
                 label: candidate.label.clone(),
-                chosen: Some(chosen.clone()),
+                selected: Some(selected.clone()),
                 confidence,
                 parameters: which.iter().map(|&k| own[k].clone()).collect(),
                 law: law.clone(),
-                held_out: (chosen.without, selection.noise_ratio.1),
+                held_out: (selected.ratio_without, selection.improved_ratio),
             });
         }
     }

@@ -2,13 +2,13 @@
 //! in which they differ most, with amplitude, speed and valve state.
 
 use crate::locate::Location;
-use crate::specimen::{Candidate, Specimen};
+use crate::specimen::{Candidate, Specimen, SpecimenKind};
 use crate::vocabulary::{EffectId, Site, State};
 
 /// One sentence: amplitude, speed, valve state.
 #[must_use]
-pub fn separate(kind: &str, a: &Candidate, b: &Candidate) -> String {
-    let how = if kind.contains("strut") {
+pub fn separate(kind: SpecimenKind, a: &Candidate, b: &Candidate) -> String {
+    let how = if kind == SpecimenKind::TwoStageStrut {
         strut(a, b)
     } else {
         other(a, b)
@@ -112,13 +112,7 @@ fn valves(specimen: &dyn Specimen, recording: usize, t_s: [f64; 2]) -> Option<St
     let middle = time
         .partition_point(|t| *t < 0.5 * (t_s[0] + t_s[1]))
         .min(time.len() - 1);
-    let valves: Vec<String> = (0..3)
-        .filter_map(|v| {
-            let open = specimen.valve_open(recording, middle, v);
-            let shut = specimen.valve_shut(recording, middle, v);
-            (open || shut).then(|| format!("valve {} {}", v + 1, if open { "open" } else { "closed" }))
-        })
-        .collect();
+    let valves = specimen.settings(recording, middle);
     (!valves.is_empty()).then(|| format!("with {}, then each valve the other way round", valves.join(", ")))
 }
 
@@ -140,7 +134,7 @@ mod tests {
         let ids = crate::specimen::strut::TERMS;
         for a in ids {
             for b in ids {
-                let text = separate("two-stage hydropneumatic strut", &candidate(a), &candidate(b));
+                let text = separate(SpecimenKind::TwoStageStrut, &candidate(a), &candidate(b));
                 for needed in [" mm", " m/s", "valve"] {
                     // Slow triangles are given in mm/s.
                     let there = text.contains(needed) || (needed == " m/s" && text.contains(" mm/s"));

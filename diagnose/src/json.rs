@@ -50,7 +50,7 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
     let relations: Vec<Value> = (diagnosis.relations.iter())
         .map(|r| json!({ "relation": r.name, "noise_ratio": r.noise_ratio.map(rounded), "samples": r.samples }))
         .collect();
-    let reaches: Vec<Value> = (diagnosis.reaches.iter())
+    let changed: Vec<Value> = (diagnosis.changed_relations.iter())
         .map(|r| {
             json!({ "relation": r.relation, "share_of_excess": rounded(r.share_of_excess),
                     "by": specimen.candidates()[r.candidate].name() })
@@ -68,7 +68,7 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
         "runtime_s": runtime_s,
         "not_tested": not_tested(specimen),
         "relations": relations,
-        "relations_changed_alone": reaches,
+        "relations_changed_alone": changed,
         "calibration": calibration,
         "correlated": diagnosis.correlated.iter().map(|(a, b, r)| json!([a, b, rounded(*r)])).collect::<Vec<_>>(),
         "notes": campaign.notes,
@@ -80,19 +80,17 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
 pub fn rejected(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> Vec<Value> {
     let selection = &diagnosis.selection;
     let all = specimen.candidates();
-    let mut trials: Vec<_> = selection
-        .trials
-        .iter()
-        .filter(|t| !selection.best.point.effects.contains(&t.candidate))
+    let mut scores: Vec<_> = (selection.scores.iter())
+        .filter(|s| !selection.best.point.effects.contains(&s.candidate))
         .collect();
-    trials.sort_by(|a, b| a.alone.total_cmp(&b.alone));
-    (trials.iter())
+    scores.sort_by(|a, b| a.alone.total_cmp(&b.alone));
+    (scores.iter())
         .map(|t| {
             let c = &all[t.candidate];
             let alone = if t.alone.is_finite() {
                 format!(
                     "alone it brings the held-out noise ratio from {:.3} to {:.3}",
-                    selection.noise_ratio.0, t.alone
+                    selection.calibrated_ratio, t.alone
                 )
             } else {
                 "alone it could not be fitted to these recordings".to_owned()
@@ -100,16 +98,11 @@ pub fn rejected(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> Vec<Value> {
             let why = match t.added {
                 Some(added) => format!(
                     "{alone}; added to the chosen model from {:.3} to {added:.3}",
-                    selection.noise_ratio.1
+                    selection.improved_ratio
                 ),
                 None => format!("{alone}; it excludes or is excluded by an effect of the chosen model"),
             };
-            let place = if c.label.is_empty() {
-                c.place.to_string()
-            } else {
-                format!("{} ({})", c.place, c.label)
-            };
-            json!({ "id": c.id, "place": place, "why": why })
+            json!({ "id": c.id, "place": c.place_and_label(), "why": why })
         })
         .collect()
 }

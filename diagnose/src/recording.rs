@@ -41,6 +41,17 @@ pub struct ColumnSpec {
     pub kind: ColumnKind,
 }
 
+impl ColumnSpec {
+    /// A column of this name and treatment.
+    #[must_use]
+    pub fn new(name: &str, kind: ColumnKind) -> Self {
+        Self {
+            name: name.to_owned(),
+            kind,
+        }
+    }
+}
+
 /// What to do with a hole in the time column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GapPolicy {
@@ -398,13 +409,9 @@ mod tests {
     use std::fmt::Write as _;
 
     fn specs() -> Vec<ColumnSpec> {
-        let spec = |name: &str, kind| ColumnSpec {
-            name: name.into(),
-            kind,
-        };
         vec![
-            spec("displacement_m", ColumnKind::Input),
-            spec("p_Pa", ColumnKind::Output),
+            ColumnSpec::new("displacement_m", ColumnKind::Input),
+            ColumnSpec::new("p_Pa", ColumnKind::Output),
         ]
     }
 

@@ -8,9 +8,8 @@ use rayon::prelude::*;
 use crate::campaign::{KeptBack, Whole};
 use crate::diagnosis::Diagnosis;
 use crate::error::DiagnoseError;
-use crate::fit::{Effort, fit};
-use crate::problem::{Point, Problem};
-use crate::screen::Screen;
+use crate::estimation::{LeastSquares, Point, fit};
+use crate::search::Screen;
 use crate::vocabulary::Column;
 
 /// Figures of one model.
@@ -45,13 +44,19 @@ impl Unseen {
     /// # Errors
     /// The wish to stop; a given model that cannot be simulated on what was kept back.
     pub fn of(
-        problem: &Problem<'_>,
+        problem: &LeastSquares<'_>,
         diagnosis: &Diagnosis,
         whole: &Whole,
         kept_back: &KeptBack,
     ) -> Result<Self, DiagnoseError> {
         let selection = &diagnosis.selection;
-        let given = predict("as given", problem, &problem.nominal(), whole, kept_back)?;
+        let given = predict(
+            "as given",
+            problem,
+            &Point::nominal(problem.specimen()),
+            whole,
+            kept_back,
+        )?;
         let mut models = vec![
             given,
             predict(
@@ -75,7 +80,7 @@ impl Unseen {
         rivals.sort_by(|a, b| badness(a).total_cmp(&badness(b)));
         models.extend(rivals);
         Ok(Self {
-            channels: problem.specimen.channels().iter().map(|c| c.column.clone()).collect(),
+            channels: problem.specimen().channels().iter().map(|c| c.column.clone()).collect(),
             models,
         })
     }
@@ -99,22 +104,24 @@ impl Unseen {
 }
 
 /// The improved model without each of its effects, and, where simulating is cheap, each candidate alone.
-fn rivals(problem: &Problem<'_>, diagnosis: &Diagnosis) -> Result<Vec<(String, Point)>, DiagnoseError> {
+fn rivals(problem: &LeastSquares<'_>, diagnosis: &Diagnosis) -> Result<Vec<(String, Point)>, DiagnoseError> {
     let best = &diagnosis.selection.best.point;
-    let all = problem.specimen.candidates();
+    let specimen = problem.specimen();
+    let converged = problem.criteria.fitting.converged;
+    let all = specimen.candidates();
     let mut points = Vec::new();
     if best.effects.len() > 1 {
         for (position, &effect) in best.effects.iter().enumerate() {
-            let less = fit(problem, problem.without(best, position), Effort::FULL)?;
+            let less = fit(problem, best.without_effect(specimen, position), converged)?;
             points.push((format!("improved, without {}", all[effect].name()), less.point));
         }
     }
-    if problem.specimen.is_cheap() {
+    if specimen.simulates_in_milliseconds() {
         for added in (0..all.len()).filter(|c| all[*c].untestable.is_none() && !best.effects.contains(c)) {
             let values: Vec<f64> = all[added].parameters.iter().map(|p| p.start).collect();
             let vocabulary = !all[added].is_unlisted() && !all[added].is_instrument_fault();
             if vocabulary && !best.effects.iter().any(|&e| all[e].excludes(&all[added])) {
-                let more = fit(problem, problem.with_effect(best, added, &values), Effort::FULL)?;
+                let more = fit(problem, best.with_effect(specimen, added, &values), converged)?;
                 points.push((format!("improved, with {} added", all[added].name()), more.point));
             }
         }
@@ -124,7 +131,7 @@ fn rivals(problem: &Problem<'_>, diagnosis: &Diagnosis) -> Result<Vec<(String, P
         let screened = Screen::new(problem, &diagnosis.selection.calibrated)?.all(&alone)?;
         for (candidate, start) in alone.into_iter().zip(screened) {
             let Some(start) = start else { continue };
-            let full = fit(problem, start.point, Effort::FULL)?;
+            let full = fit(problem, start.point, converged)?;
             points.push((format!("{} alone", all[candidate].name()), full.point));
         }
     }
@@ -133,15 +140,16 @@ fn rivals(problem: &Problem<'_>, diagnosis: &Diagnosis) -> Result<Vec<(String, P
 
 fn predict(
     name: &str,
-    problem: &Problem<'_>,
+    problem: &LeastSquares<'_>,
     point: &Point,
     whole: &Whole,
     kept_back: &KeptBack,
 ) -> Result<Prediction, DiagnoseError> {
-    let model_toml = (problem.specimen.model_toml(&problem.hypothesis(point))).map_err(DiagnoseError::Output)?;
+    let fitted = problem.specimen();
+    let model_toml = (fitted.model_toml(&point.hypothesis(fitted))).map_err(DiagnoseError::Output)?;
     let specimen = whole.specimen(&model_toml)?;
     let everything = problem.on(&*specimen);
-    let residuals = everything.residuals(&everything.predict(&everything.nominal())?);
+    let residuals = everything.evaluation.residuals_at(&Point::nominal(&*specimen))?;
     let channels = specimen.channels().len();
     let (mut fitted, mut unseen) = (vec![(0.0, 0_usize); channels], vec![(0.0, 0_usize); channels]);
     for (r, series) in residuals.iter().enumerate() {

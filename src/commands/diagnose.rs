@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use oleo_diagnose::problem::Problem;
+use oleo_diagnose::estimation::LeastSquares;
 use oleo_diagnose::{Campaign, Diagnosis, KeptBack, Unseen, json, page};
 use oleo_report::{Cell, Column, OutputDirectory, Progress, Table};
 
@@ -73,7 +73,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     // Staged before the work: Ctrl-C from here on removes the folder and ends with nothing half-written.
     let mut out = OutputDirectory::stage(destination)?;
     let stop = AtomicBool::new(false);
-    let problem = Problem::new(&*campaign.specimen, &stop);
+    let problem = LeastSquares::new(&*campaign.specimen, &stop);
     let progress = Progress::new(&campaign.name, STEPS);
     let diagnosis = Diagnosis::of(&problem, &|_, part| progress.set((part * STEPS as f64) as u64))?;
     let unseen = (whole.as_ref())
@@ -99,8 +99,8 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         "{}: {} (held-out noise ratio {:.2} before, {:.2} after)\n",
         campaign.name,
         diagnosis.verdict(),
-        diagnosis.selection.noise_ratio.0,
-        diagnosis.selection.noise_ratio.1
+        diagnosis.selection.calibrated_ratio,
+        diagnosis.selection.improved_ratio
     );
     if !diagnosis.effects.is_empty() {
         text += &page::effects_table(&diagnosis).to_string();

@@ -6,16 +6,13 @@ pub mod relations;
 
 use std::sync::Arc;
 
-use oleo_interface::Valve;
-
 use crate::error::DiagnoseError;
-use crate::fit::{Effort, fit};
-use crate::problem::Problem;
-use crate::select::Selection;
+use crate::estimation::{LeastSquares, fit};
+use crate::search::Selection;
 use crate::specimen::{Candidate, Series, Specimen, StateSeries};
-use crate::vocabulary::{Branch, Column, Place, Site, State};
+use crate::vocabulary::{Column, Place, Site, State};
 use condition::Condition;
-pub use relations::{Reach, Relation, reaches, relations};
+pub use relations::{ChangedRelation, relations_changed_alone};
 
 /// A place with the misfit that belongs to it.
 #[derive(Debug, Clone)]
@@ -50,13 +47,13 @@ const SHARP: f64 = 0.8;
 /// # Errors
 /// As the fit without an effect.
 pub fn locate(
-    problem: &Problem<'_>,
+    problem: &LeastSquares<'_>,
     selection: &Selection,
     calibrated: &[Series],
     improved: &[Series],
 ) -> Result<Vec<Location>, DiagnoseError> {
-    let specimen = problem.specimen;
-    let count = problem.count() as f64;
+    let specimen = problem.specimen();
+    let count = problem.residuals() as f64;
     let total = |r: &[Series]| {
         r.iter()
             .flatten()
@@ -66,19 +63,20 @@ pub fn locate(
     let excess = (total(calibrated) - count).max(1.0);
     let states = states(specimen, every(specimen));
     let mut out = Vec::new();
-    for chosen in &selection.chosen {
-        let Some(position) = selection.best.point.effects.iter().position(|&e| e == chosen.candidate) else {
+    for effect in &selection.effects {
+        let Some(position) = selection.best.point.effects.iter().position(|&e| e == effect.candidate) else {
             continue;
         };
-        let without = fit(problem, problem.without(&selection.best.point, position), Effort::QUICK)?;
-        let without = Arc::new(problem.residuals(&problem.predict(&without.point)?));
+        let start = selection.best.point.without_effect(specimen, position);
+        let without = fit(problem, start, problem.criteria.fitting.quick)?;
+        let without = Arc::new(problem.evaluation.residuals_at(&without.point)?);
         let share = ((total(&without) - total(improved)) / excess).clamp(0.0, 1.0);
-        for (place, channels, part) in places(specimen, &specimen.candidates()[chosen.candidate], &without, improved) {
+        for (place, channels, part) in places(specimen, &specimen.candidates()[effect.candidate], &without, improved) {
             let found = strongest(specimen, &states, &channels, &without, improved);
             out.push(Location {
                 place,
                 share_of_excess: share * part,
-                candidate: Some(chosen.candidate),
+                candidate: Some(effect.candidate),
                 without: without.clone(),
                 ..found
             });
@@ -114,7 +112,7 @@ fn places(
     let parts = match place.site {
         Site::Accumulators | Site::Paths => place.site.parts(),
         _ => {
-            let mut channels: Vec<usize> = nearest(place).iter().filter_map(channel).collect();
+            let mut channels: Vec<usize> = specimen.nearest_channels(place).iter().filter_map(channel).collect();
             if channels.is_empty() {
                 channels = (0..specimen.channels().len()).collect();
             }
@@ -124,7 +122,7 @@ fn places(
     let parts: Vec<(Place, Option<usize>)> = (parts.into_iter())
         .map(|site| {
             let part = place.with_site(site);
-            let beyond = nearest(&part).last().and_then(channel);
+            let beyond = specimen.nearest_channels(&part).last().and_then(channel);
             (part, beyond)
         })
         .collect();
@@ -145,21 +143,6 @@ fn places(
             (part, c.into_iter().collect(), fraction)
         })
         .collect()
-}
-
-/// The instruments of a strut next to a place, the one beyond it last; none where all are as near.
-fn nearest(place: &Place) -> Vec<Column> {
-    let known = |names: &[&'static str]| names.iter().map(|name| Column::known(name)).collect();
-    match &place.site {
-        Site::MainSeal | Site::EndStop => known(&["force_N"]),
-        Site::MainChamber => known(&["p1_Pa"]),
-        Site::Accumulator(Branch::First) => known(&["p2_Pa"]),
-        Site::Accumulator(Branch::Second) => known(&["p4_Pa"]),
-        Site::Path(Branch::First) => known(&["p1_Pa", "p2_Pa"]),
-        Site::Path(Branch::Second) | Site::Valve(Valve::Spring) => known(&["p3_Pa", "p4_Pa"]),
-        Site::Sensor(column) => vec![column.clone()],
-        _ => vec![],
-    }
 }
 
 /// Squared misfit a sample that goes with the effect.
@@ -267,8 +250,7 @@ fn speed(specimen: &dyn Specimen, recording: usize) -> Option<Vec<f64>> {
 const SAMPLES: usize = 200_000;
 
 fn every(specimen: &dyn Specimen) -> usize {
-    let all: usize = (0..specimen.recordings()).map(|r| specimen.time_s(r).len()).sum();
-    all.div_ceil(SAMPLES).max(1)
+    specimen.samples().div_ceil(SAMPLES).max(1)
 }
 
 /// States of all recordings one after the other, one sample of `every` in each, and what follows from the speed: its size and its direction.
@@ -276,7 +258,7 @@ fn every(specimen: &dyn Specimen) -> usize {
 pub fn states(specimen: &dyn Specimen, every: usize) -> Vec<StateSeries> {
     let mut all: Vec<StateSeries> = Vec::new();
     let mut before = 0;
-    for r in 0..specimen.recordings() {
+    for r in 0..specimen.recordings().len() {
         let n = specimen.time_s(r).len().div_ceil(every);
         for StateSeries { state, values } in specimen.states(r) {
             let known = all.iter().position(|s| s.state == state).unwrap_or_else(|| {

@@ -10,7 +10,7 @@ use crate::specimen::Candidate;
 pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     let all = campaign.specimen.candidates();
     page.section("What");
-    let found = diagnosis.effects.iter().any(|e| e.chosen.is_some());
+    let found = diagnosis.effects.iter().any(|e| e.selected.is_some());
     if !found {
         page.text("No effect improves held-out stretches by more than chance and the smoothing of the inputs do.");
     }
@@ -31,7 +31,7 @@ pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
 
 fn effect(page: &mut Page, e: &Effect) {
     let known = words::words(e.id, &e.label);
-    if e.chosen.is_none() {
+    if e.selected.is_none() {
         page.text(&format!(
             "{} {}: a misfit that can be predicted from the inputs is left, but no law that was tried improves unseen stretches enough to be named.",
             known.name,
@@ -115,22 +115,23 @@ fn rivals(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
         Column::number("Lead, standard errors"),
         Column::text("Judgement"),
     ]);
-    let with = diagnosis.selection.noise_ratio.1;
+    let with = diagnosis.selection.improved_ratio;
     let count: usize = diagnosis.residuals.1.iter().flatten().map(Vec::len).sum();
-    for c in &diagnosis.selection.chosen {
+    for c in &diagnosis.selection.effects {
         let mut row: Vec<Cell> = vec![
             all[c.candidate].name().into(),
-            format!("{:.2}", c.without).into(),
+            format!("{:.2}", c.ratio_without).into(),
             format!("{with:.2}").into(),
         ];
         match c.rival {
-            Some((rival, lead, error)) => {
+            Some(rival) => {
+                let (lead, error) = (rival.lead.total, rival.lead.standard_error);
                 let ratio = (with * with + lead / count.max(1) as f64).max(0.0).sqrt();
                 row.extend([
-                    all[rival].name().into(),
+                    all[rival.candidate].name().into(),
                     format!("{ratio:.2}").into(),
                     significant(lead / error.max(1.0), 2).into(),
-                    if c.ambiguous {
+                    if rival.ambiguous {
                         Cell::warning("cannot be told apart")
                     } else {
                         Cell::good("rival rejected")
@@ -151,11 +152,11 @@ fn rivals(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
 
 fn rejected(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
     let selection = &diagnosis.selection;
-    let after = selection.noise_ratio.1;
-    let mut trials: Vec<_> = (selection.trials.iter())
+    let after = selection.improved_ratio;
+    let mut scores: Vec<_> = (selection.scores.iter())
         .filter(|t| !selection.best.point.effects.contains(&t.candidate))
         .collect();
-    trials.sort_by(|a, b| a.alone.total_cmp(&b.alone));
+    scores.sort_by(|a, b| a.alone.total_cmp(&b.alone));
     let mut table = Table::new([
         Column::text("Rejected"),
         Column::text("Place"),
@@ -163,7 +164,7 @@ fn rejected(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
         Column::number("added to the model found"),
         Column::text("Because"),
     ]);
-    for t in trials {
+    for t in scores {
         let c = &all[t.candidate];
         let because = match t.added {
             None => "excludes, or is excluded by, an effect found".to_owned(),
@@ -173,14 +174,9 @@ fn rejected(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
                 significant(100.0 * (1.0 - added / after), 2)
             ),
         };
-        let place = if c.label.is_empty() {
-            c.place.to_string()
-        } else {
-            format!("{} ({})", c.place, c.label)
-        };
         table.row([
             c.id.to_string(),
-            place,
+            c.place_and_label(),
             if t.alone.is_finite() {
                 format!("{:.3}", t.alone)
             } else {

@@ -50,7 +50,7 @@ fn channels(page: &mut Page, diagnosis: &Diagnosis) {
 
 fn recordings(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     let specimen = &*campaign.specimen;
-    if specimen.recordings() < 2 {
+    if specimen.recordings().len() < 2 {
         return;
     }
     let mut columns = vec![
@@ -65,7 +65,7 @@ fn recordings(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     );
     let mut table = Table::new(columns);
     let ratio = |s: &[f64]| (s.iter().map(|v| v * v).sum::<f64>() / s.len() as f64).sqrt();
-    for r in 0..specimen.recordings() {
+    for r in 0..specimen.recordings().len() {
         let before: Vec<f64> = diagnosis.held_out.0[r].iter().map(|c| ratio(c)).collect();
         let before = (before.iter().map(|v| v * v).sum::<f64>() / before.len() as f64).sqrt();
         let mut row: Vec<Cell> = vec![specimen.recording_name(r).into(), format!("{before:.2}").into()];

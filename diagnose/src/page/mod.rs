@@ -4,7 +4,6 @@ mod cause;
 mod gain;
 mod model;
 mod place;
-mod schematic;
 pub mod words;
 
 use oleo_report::{Cell, Column, Page, Table, Verdict, significant};
@@ -19,9 +18,9 @@ use crate::specimen::Candidate;
 pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s: f64) -> Page {
     let specimen = &*campaign.specimen;
     let mut page = Page::new(&format!("Diagnosis of {}", campaign.name), command);
-    page.fact("Specimen", specimen.kind());
-    let samples: usize = (0..specimen.recordings()).map(|r| specimen.time_s(r).len()).sum();
-    let names: Vec<&str> = (0..specimen.recordings()).map(|r| specimen.recording_name(r)).collect();
+    page.fact("Specimen", specimen.kind().as_str());
+    let samples = specimen.samples();
+    let names: Vec<&str> = specimen.recordings().iter().map(|r| r.name.as_str()).collect();
     page.fact(
         "Recordings",
         &format!("{}: {} ({samples} samples)", names.len(), names.join(", ")),
@@ -37,14 +36,10 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
     if !diagnosis.effects.is_empty() {
         page.outcome(in_brief(diagnosis));
     }
-    let inputs = match specimen.kind() {
-        "gas spring" => "displacement and the first pressure",
-        "cylinder" => "displacement and the pressures",
-        _ => "displacement and switching signals",
-    };
     page.text(&format!(
         "Noise ratio: RMS of recording minus simulation over the sensor's noise. 1 is perfect. Held out: judged on stretches \
-         that had no say in the fit. The model is simulated freely: it gets {inputs}, and nothing else that was measured."
+         that had no say in the fit. The model is simulated freely: it gets {}, and nothing else that was measured.",
+        specimen.inputs_in_words()
     ));
     place::section(&mut page, campaign, diagnosis);
     cause::section(&mut page, campaign, diagnosis);
@@ -71,7 +66,7 @@ fn colour(diagnosis: &Diagnosis) -> Verdict {
 /// The whole story in two sentences.
 #[must_use]
 pub fn headline(all: &[Candidate], diagnosis: &Diagnosis) -> String {
-    let (before, after) = diagnosis.selection.noise_ratio;
+    let (before, after) = (diagnosis.selection.calibrated_ratio, diagnosis.selection.improved_ratio);
     let (before, after) = (significant(before, 3), significant(after, 3));
     let mut text = match diagnosis.verdict() {
         "consistent" => format!(
@@ -91,12 +86,12 @@ pub fn headline(all: &[Candidate], diagnosis: &Diagnosis) -> String {
     if diagnosis.selection.incomplete && diagnosis.verdict() == "missing_physics" {
         text += " That is not all: a misfit that no effect tried explains is left.";
     }
-    for chosen in diagnosis.selection.chosen.iter().filter(|c| c.ambiguous) {
-        if let Some((rival, ..)) = chosen.rival {
+    for effect in &diagnosis.selection.effects {
+        if let Some(rival) = effect.ambiguous_rival() {
             let said = |c: &Candidate| format!("{} {}", words::called(c.id, &c.label), words::at(&c.place));
             text += &format!(
                 " The recordings cannot tell {} from {}; what to record to separate them is said below.",
-                said(&all[chosen.candidate]),
+                said(&all[effect.candidate]),
                 said(&all[rival])
             );
         }
@@ -107,7 +102,7 @@ pub fn headline(all: &[Candidate], diagnosis: &Diagnosis) -> String {
 /// Effects as phrases, one an id, with all its places.
 fn phrases(diagnosis: &Diagnosis) -> Vec<String> {
     let mut out: Vec<(String, String)> = Vec::new();
-    for e in diagnosis.effects.iter().filter(|e| e.chosen.is_some()) {
+    for e in diagnosis.effects.iter().filter(|e| e.selected.is_some()) {
         let name = words::called(e.id, &e.label);
         let place = words::at(&e.place);
         match out.iter_mut().find(|(known, _)| *known == name) {

@@ -3,7 +3,7 @@
 
 use oleo_report::{Axis, Bars, Column, Curves, Page, Style, Table, extrema_by_bucket, significant};
 
-use super::{schematic, words};
+use super::words;
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
 use crate::locate::{self, Location};
@@ -24,7 +24,7 @@ pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     page.section("Where");
     let places: Vec<&Place> = diagnosis.locations.iter().map(|l| &l.place).collect();
     let marked = places.iter().any(|p| p.site != Site::Unknown);
-    if let Some(svg) = schematic::svg(specimen.kind(), &places) {
+    if let Some(svg) = specimen.drawing(&places) {
         page.drawing(
             &svg,
             if marked {
@@ -75,9 +75,9 @@ fn locations(specimen: &dyn Specimen, locations: &[Location]) -> Table {
 }
 
 fn relations(page: &mut Page, diagnosis: &Diagnosis) {
-    let reaches = &diagnosis.reaches;
-    if !reaches.is_empty() {
-        let shown = &reaches[..reaches.len().min(RELATIONS)];
+    let changed = &diagnosis.changed_relations;
+    if !changed.is_empty() {
+        let shown = &changed[..changed.len().min(RELATIONS)];
         let mut bars = Bars::new(
             "Which relation breaks",
             shown.iter().map(|r| r.relation.as_str()),
@@ -122,7 +122,7 @@ fn title(diagnosis: &Diagnosis, location: &Location) -> String {
     let effect = diagnosis
         .effects
         .iter()
-        .find(|e| e.chosen.as_ref().map(|c| c.candidate) == location.candidate && location.candidate.is_some());
+        .find(|e| e.selected.as_ref().map(|s| s.candidate) == location.candidate && location.candidate.is_some());
     match effect {
         Some(e) => format!(
             "{} {}",
@@ -234,8 +234,7 @@ fn over_state(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, l
         (None, None) if condition.decays => return,
         (None, None) => State::Displacement,
     };
-    let all: usize = (0..specimen.recordings()).map(|r| specimen.time_s(r).len()).sum();
-    let every = all.div_ceil(MARKERS).max(1);
+    let every = specimen.samples().div_ceil(MARKERS).max(1);
     let Some(state) = locate::states(specimen, every).into_iter().find(|s| s.state == name) else {
         return;
     };

@@ -15,8 +15,8 @@ use super::excitation::{Move, moves};
 use super::hidden::{Hidden, Truth};
 use super::specimen::nominal;
 use crate::error::DiagnoseError;
-use crate::fit::bounded_step;
-use crate::problem::Problem;
+use crate::estimation::bounded_step::bounded_step;
+use crate::estimation::{Evaluation, Point};
 use crate::recording::Recording;
 use crate::specimen::strut::{CHANNELS, TwoStageStrut};
 use crate::specimen::{Hypothesis, Series, Specimen};
@@ -217,10 +217,9 @@ struct Ruler<'a> {
 impl<'a> Ruler<'a> {
     fn new(scaffold: &TwoStageStrut, believed: &'a StrutModel, moves: &[Move]) -> Result<Self, DiagnoseError> {
         let stop = AtomicBool::new(false);
-        let problem = Problem::new(scaffold, &stop);
-        let nominal = problem.nominal();
+        let nominal = Point::nominal(scaffold);
         let all: Vec<usize> = (0..nominal.z.len()).collect();
-        let sensitivities = problem.sensitivities(&nominal, &all, None)?;
+        let sensitivities = Evaluation::new(scaffold, &stop).sensitivities(&nominal, &all, None)?;
         let columns: Vec<Vec<f64>> = all
             .iter()
             .map(|&k| {
@@ -321,6 +320,7 @@ impl<'a> Ruler<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::estimation::{LeastSquares, fit};
 
     #[test]
     fn a_complete_campaign_is_met_by_its_own_truth_to_the_noise() {
@@ -330,9 +330,9 @@ mod tests {
         assert_eq!(g.unseen.len(), UNSEEN.len());
         let strut = TwoStageStrut::new(g.given, g.recordings).unwrap();
         let stop = AtomicBool::new(false);
-        let problem = Problem::new(&strut, &stop);
-        let fit = crate::fit::fit(&problem, problem.nominal(), crate::fit::Effort::FULL).unwrap();
-        let ratio = (fit.cost / problem.count() as f64).sqrt();
+        let problem = LeastSquares::new(&strut, &stop);
+        let calibrated = fit(&problem, Point::nominal(&strut), problem.criteria.fitting.converged).unwrap();
+        let ratio = (calibrated.cost / problem.residuals() as f64).sqrt();
         assert!(ratio > 0.98 && ratio < 1.06, "{ratio}");
     }
 

@@ -11,7 +11,7 @@ use super::plan::Case;
 use crate::campaign::Campaign;
 use crate::diagnosis::{Diagnosis, Effect};
 use crate::error::DiagnoseError;
-use crate::problem::Problem;
+use crate::estimation::LeastSquares;
 use crate::recording::Recording;
 use crate::specimen::strut::TwoStageStrut;
 use crate::specimen::{Hypothesis, Specimen};
@@ -118,13 +118,13 @@ fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), Dia
         specimen: Box::new(strut),
         notes: vec![],
     };
-    let problem = Problem::new(&*campaign.specimen, stop);
+    let problem = LeastSquares::new(&*campaign.specimen, stop);
     let diagnosis = Diagnosis::of(&problem, &|_, _| {})?;
-    trial.residuals = problem.count();
-    trial.noise_ratio = diagnosis.selection.noise_ratio;
+    trial.residuals = problem.residuals();
+    trial.noise_ratio = (diagnosis.selection.calibrated_ratio, diagnosis.selection.improved_ratio);
     trial.incomplete = diagnosis.selection.incomplete;
     trial.reported = diagnosis.effects.iter().map(|e| reported(&campaign, e)).collect();
-    let calibrated = problem.hypothesis(&diagnosis.selection.calibrated.point);
+    let calibrated = diagnosis.selection.calibrated.point.hypothesis(problem.specimen());
     let before = campaign
         .specimen
         .model_toml(&calibrated)
@@ -138,17 +138,17 @@ fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), Dia
 
 fn reported(campaign: &Campaign, effect: &Effect) -> Reported {
     let all = campaign.specimen.candidates();
-    let chosen = effect.chosen.as_ref();
-    let rival = chosen.and_then(|c| c.rival);
+    let selected = effect.selected.as_ref();
+    let rival = selected.and_then(|s| s.rival);
     let bound = |v: f64| v.is_finite().then_some(v);
     Reported {
         id: effect.id,
         place: effect.place.clone(),
         confidence: effect.confidence,
-        gain: chosen.map(|c| (c.gain, c.gain_error)),
-        lead: rival.map(|(_, lead, error)| (lead, error)),
-        rival: rival.map(|(k, ..)| all[k].name()),
-        ambiguous: chosen.is_some_and(|c| c.ambiguous),
+        gain: selected.map(|s| (s.gain.total, s.gain.standard_error)),
+        lead: rival.map(|r| (r.lead.total, r.lead.standard_error)),
+        rival: rival.map(|r| all[r.candidate].name()),
+        ambiguous: rival.is_some_and(|r| r.ambiguous),
         numbers: (effect.parameters.iter())
             .map(|p| Number {
                 key: p.key.clone(),

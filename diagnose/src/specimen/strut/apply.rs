@@ -7,7 +7,7 @@ use oleo_plant_sim::strut::{
 };
 
 use super::laws;
-use crate::specimen::Candidate;
+use crate::specimen::candidate::Candidate;
 use crate::vocabulary::{Branch, EffectId};
 
 /// Presliding stiffness of the seal, N/m (recordings README).

@@ -8,7 +8,7 @@ use oleo_interface::Valve;
 use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
 
 use crate::parameter::Parameter;
-use crate::specimen::{Candidate, ExclusionGroup};
+use crate::specimen::candidate::{Candidate, ExclusionGroup};
 use crate::vocabulary::{Branch, EffectId, Site};
 
 /// What a table's numbers are, and how they are fitted.

@@ -5,10 +5,12 @@
 use oleo_interface::Valve;
 use oleo_plant_sim::strut::{COLUMNS, StrutModel};
 
+use super::channels::CHANNELS;
 use super::excitation::Excitation;
-use super::{CHANNELS, laws};
+use super::laws;
 use crate::parameter::Parameter;
-use crate::specimen::{Candidate, ExclusionGroup, instrument};
+use crate::specimen::candidate::{Candidate, ExclusionGroup};
+use crate::specimen::instrument;
 use crate::vocabulary::{Branch, Column, EffectId, Site};
 
 /// Ids of the vocabulary, and of what has no name in it.

@@ -1,12 +1,10 @@
 //! The force balance of a cylinder read off as measured, before any model of friction: what the load cell shows beyond
 //! the pressures on their areas, moving in, moving out and at rest, at low and at high pressure, and when.
 
-use oleo_plant_sim::specimen::{CylinderModel, smooth_motion};
+use oleo_plant_sim::specimen::CylinderModel;
 
 use crate::recording::Recording;
 
-/// Half window of the motion's smoothing, in samples.
-const SMOOTHING_SAMPLES: f64 = 5.0;
 /// Slower than this part of the fastest is rest, faster than three times that is motion.
 const REST: f64 = 0.01;
 /// Pressing forces of one recording differ enough to be compared from this part of their mean.
@@ -18,26 +16,23 @@ const MOST_DELAY: usize = 25;
 /// Correlation of changes below which nothing is said of delays.
 const LEAST_CORRELATION: f64 = 0.7;
 
-/// One line a recording and one of the delay.
+/// Sum of the chambers' pressures on their areas at every sample, N, all counted positive: what presses the seals.
 #[must_use]
-pub fn balance_remarks(model: &CylinderModel, recordings: &[Recording]) -> Vec<String> {
-    recordings.iter().flat_map(|r| remarks(model, r)).collect()
+pub fn pressing(model: &CylinderModel, recording: &Recording) -> Vec<f64> {
+    let chambers = || model.chamber.iter().zip(&recording.columns[2..]);
+    (0..recording.len())
+        .map(|k| chambers().map(|(c, p)| (c.area_m2 * p[k].max(0.0)).abs()).sum())
+        .collect()
 }
 
-fn remarks(model: &CylinderModel, recording: &Recording) -> Vec<String> {
+/// What one recording shows: the balance, and the delay of the force where the changes tell one.
+#[must_use]
+pub fn remarks(model: &CylinderModel, recording: &Recording, speed: &[f64]) -> Vec<String> {
     let n = recording.len();
-    let speed = smooth_motion(
-        &recording.time_s,
-        &recording.columns[0],
-        SMOOTHING_SAMPLES * recording.interval_s(),
-    )
-    .speed_m_s;
-    let (mut net, mut pressing) = (vec![0.0; n], vec![0.0; n]);
+    let pressing = pressing(model, recording);
+    let mut net = vec![0.0; n];
     for (chamber, p) in model.chamber.iter().zip(&recording.columns[2..]) {
-        for k in 0..n {
-            net[k] += chamber.area_m2 * p[k];
-            pressing[k] += (chamber.area_m2 * p[k].max(0.0)).abs();
-        }
+        net.iter_mut().zip(p).for_each(|(sum, p)| *sum += chamber.area_m2 * p);
     }
     let force = &recording.columns[1];
     let fastest = speed.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
@@ -117,6 +112,7 @@ fn delay(late: &[f64], early: &[f64]) -> Option<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oleo_plant_sim::specimen::smooth_motion;
 
     #[test]
     fn delay_between_samples() {
@@ -147,7 +143,8 @@ mod tests {
             columns: vec![x, force, p],
             notes: vec![],
         };
-        let lines = balance_remarks(&model, &[recording]);
+        let speed = smooth_motion(&recording.time_s, &recording.columns[0], 0.05).speed_m_s;
+        let lines = remarks(&model, &recording, &speed);
         assert!(lines[0].contains("(10.00 N below 200 N, 30.00 N above)"), "{lines:?}");
     }
 }

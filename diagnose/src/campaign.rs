@@ -65,7 +65,7 @@ impl Campaign {
     ///
     /// # Errors
     /// As [`Self::open`]; a name that no recording has; nothing or too little left to fit; nothing kept back.
-    pub fn open_in_part(folder: &Path, kept_back: &KeptBack) -> Result<(Self, Whole), DiagnoseError> {
+    pub fn open_in_part(folder: &Path, kept_back: &KeptBack) -> Result<(Self, CompleteRecordings), DiagnoseError> {
         let (model, whole, notes) = read_folder(folder)?;
         let names = || whole.iter().map(|r| r.name.as_str()).collect::<Vec<_>>().join(", ");
         if let Some(name) = kept_back
@@ -99,7 +99,7 @@ impl Campaign {
             ));
         }
         let campaign = Self::of(folder, model, fitted, notes)?;
-        Ok((campaign, Whole { recordings: whole }))
+        Ok((campaign, CompleteRecordings { recordings: whole }))
     }
 
     fn of(
@@ -120,11 +120,11 @@ impl Campaign {
 }
 
 /// Every recording of a campaign in full, beside the part that was fitted.
-pub struct Whole {
+pub struct CompleteRecordings {
     recordings: Vec<Recording>,
 }
 
-impl Whole {
+impl CompleteRecordings {
     /// The specimen with all recordings, believed to be as a model file says.
     ///
     /// # Errors

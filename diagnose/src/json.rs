@@ -28,7 +28,7 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
             json!({
                 "id": e.id, "place": e.place.as_reported(), "confidence": rounded(e.confidence),
                 "parameters": parameters(&e.parameters), "law": e.law,
-                "held_out_noise_ratio": { "without": rounded(e.held_out.0), "with": rounded(e.held_out.1) },
+                "held_out_noise_ratio": { "without": rounded(e.ratio_without), "with": rounded(e.ratio_with) },
             })
         })
         .collect();
@@ -45,7 +45,10 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
         );
     }
     let calibration: Vec<Value> = (diagnosis.calibration.iter())
-        .map(|(e, z)| json!({ "key": e.key, "value": e.value, "ci95": interval(e), "tolerance_used": rounded(0.5 * z.abs()) }))
+        .map(|c| {
+            let e = &c.estimate;
+            json!({ "key": e.key, "value": e.value, "ci95": interval(e), "tolerance_used": rounded(c.tolerance_used) })
+        })
         .collect();
     let relations: Vec<Value> = (diagnosis.relations.iter())
         .map(|r| json!({ "relation": r.name, "noise_ratio": r.noise_ratio.map(rounded), "samples": r.samples }))
@@ -55,6 +58,9 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
             json!({ "relation": r.relation, "share_of_excess": rounded(r.share_of_excess),
                     "by": specimen.candidates()[r.candidate].name() })
         })
+        .collect();
+    let correlations: Vec<Value> = (diagnosis.correlations.iter())
+        .map(|c| json!([c.keys[0], c.keys[1], rounded(c.coefficient)]))
         .collect();
     json!({
         "schema": 1,
@@ -70,7 +76,7 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
         "relations": relations,
         "relations_changed_alone": changed,
         "calibration": calibration,
-        "correlated": diagnosis.correlated.iter().map(|(a, b, r)| json!([a, b, rounded(*r)])).collect::<Vec<_>>(),
+        "correlated": correlations,
         "notes": campaign.notes,
     })
 }

@@ -27,15 +27,15 @@ pub mod json;
 pub mod locate;
 pub mod page;
 pub mod parameter;
+pub mod prediction;
 pub mod recording;
 pub mod search;
 pub mod selftest;
 pub mod specimen;
-pub mod unseen;
 pub mod vocabulary;
 pub mod whiteness;
 
 pub use campaign::{Campaign, KeptBack};
 pub use diagnosis::Diagnosis;
 pub use error::DiagnoseError;
-pub use unseen::Unseen;
+pub use prediction::Predictions;

@@ -101,6 +101,7 @@ fn lagged(a: &[f64], b: &[f64], lag: usize) -> f64 {
 mod tests {
     use super::*;
     use rand::{RngExt, SeedableRng};
+    use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
     const SAMPLES: usize = 20_000;
 
@@ -115,6 +116,15 @@ mod tests {
 
     fn speed() -> Vec<f64> {
         centred(&(0..SAMPLES).map(|k| libm::sin(0.01 * k as f64)).collect::<Vec<f64>>())
+    }
+
+    /// The points are written down because statrs takes the platform's mathematics library, whose bits differ.
+    #[test]
+    fn points_of_the_distributions_are_those_of_the_books() {
+        let chi_square = ChiSquared::new(LAGS as f64).expect("a distribution").inverse_cdf(0.99);
+        assert!((chi_square - CHI_SQUARE_99).abs() < 0.005, "{chi_square}");
+        let normal = Normal::standard().inverse_cdf(1.0 - 0.005 / (LAGS + 1) as f64);
+        assert!((normal - NORMAL_99).abs() < 0.005, "{normal}");
     }
 
     #[test]

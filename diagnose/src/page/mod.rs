@@ -1,15 +1,15 @@
 //! `report.html`: where, what, model, how much better, what to record next, for somebody who was not there.
 
-mod cause;
-mod gain;
+mod effects;
+mod improvement;
+mod locations;
 mod model;
-mod place;
 pub mod words;
 
-use oleo_report::{Cell, Column, Page, Table, Verdict, significant};
+use oleo_report::{Cell, Column, Page, Table, Verdict as Colour, significant};
 
 use crate::campaign::Campaign;
-use crate::diagnosis::{Diagnosis, Effect};
+use crate::diagnosis::{Diagnosis, Effect, Verdict};
 use crate::json;
 use crate::specimen::Candidate;
 
@@ -41,10 +41,10 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
          that had no say in the fit. The model is simulated freely: it gets {}, and nothing else that was measured.",
         specimen.inputs_in_words()
     ));
-    place::section(&mut page, campaign, diagnosis);
-    cause::section(&mut page, campaign, diagnosis);
+    locations::section(&mut page, campaign, diagnosis);
+    effects::section(&mut page, campaign, diagnosis);
     model::section(&mut page, diagnosis);
-    gain::section(&mut page, campaign, diagnosis);
+    improvement::section(&mut page, campaign, diagnosis);
     next(&mut page, campaign, diagnosis);
     if !campaign.notes.is_empty() {
         page.section("Remarks on the recordings");
@@ -55,11 +55,13 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
     page
 }
 
-fn colour(diagnosis: &Diagnosis) -> Verdict {
+fn colour(diagnosis: &Diagnosis) -> Colour {
     match diagnosis.verdict() {
-        "consistent" => Verdict::Pass,
-        "missing_physics" if !diagnosis.selection.incomplete && diagnosis.ambiguous.is_empty() => Verdict::Attention,
-        _ => Verdict::Fail,
+        Verdict::Consistent => Colour::Pass,
+        Verdict::MissingPhysics if !diagnosis.selection.incomplete && diagnosis.ambiguous.is_empty() => {
+            Colour::Attention
+        }
+        _ => Colour::Fail,
     }
 }
 
@@ -69,21 +71,21 @@ pub fn headline(all: &[Candidate], diagnosis: &Diagnosis) -> String {
     let (before, after) = (diagnosis.selection.calibrated_ratio, diagnosis.selection.improved_ratio);
     let (before, after) = (significant(before, 3), significant(after, 3));
     let mut text = match diagnosis.verdict() {
-        "consistent" => format!(
+        Verdict::Consistent => format!(
             "Nothing is missing: recalibrated within its tolerances, the model predicts every recording to {after} times the \
              sensors' noise."
         ),
-        "missing_physics" => format!(
+        Verdict::MissingPhysics => format!(
             "The model leaves out {}. With {}, what was held out of the fit is predicted to {after} times the sensors' \
              noise instead of {before} times.",
             list(&phrases(diagnosis)),
             if phrases(diagnosis).len() == 1 { "it" } else { "them" },
         ),
-        _ => format!(
+        Verdict::Unexplained => format!(
             "The model disagrees with the recordings ({after} times the sensors' noise), and no effect that was tried explains it."
         ),
     };
-    if diagnosis.selection.incomplete && diagnosis.verdict() == "missing_physics" {
+    if diagnosis.selection.incomplete && diagnosis.verdict() == Verdict::MissingPhysics {
         text += " That is not all: a misfit that no effect tried explains is left.";
     }
     for effect in &diagnosis.selection.effects {
@@ -151,8 +153,8 @@ fn in_brief(diagnosis: &Diagnosis) -> Table {
                 None => large.join("; "),
             },
             format!("{:.2}", e.confidence),
-            format!("{:.2}", e.held_out.0),
-            format!("{:.2}", e.held_out.1),
+            format!("{:.2}", e.ratio_without),
+            format!("{:.2}", e.ratio_with),
         ]);
     }
     table
@@ -222,8 +224,8 @@ pub fn effects_table(diagnosis: &Diagnosis) -> Table {
             e.place.as_reported(),
             format!("{:.2}", e.confidence),
             points(e).map_or_else(|| numbers.join("; "), |n| format!("a law of {n} points")),
-            format!("{:.2}", e.held_out.0),
-            format!("{:.2}", e.held_out.1),
+            format!("{:.2}", e.ratio_without),
+            format!("{:.2}", e.ratio_with),
         ]);
     }
     table

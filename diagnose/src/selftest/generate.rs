@@ -13,7 +13,7 @@ use oleo_plant_sim::strut::{COLUMNS, Effects, Inputs, StrutModel, record_column,
 use super::draw::Draw;
 use super::excitation::{Move, moves};
 use super::hidden::{Hidden, Truth};
-use super::specimen::nominal;
+use super::nominal_strut::nominal;
 use crate::error::DiagnoseError;
 use crate::estimation::bounded_step::bounded_step;
 use crate::estimation::{Evaluation, Point};

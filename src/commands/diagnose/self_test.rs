@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use oleo_diagnose::selftest::{Ledger, Plan, Subject, Summary, page, records, run, save, tables};
+use oleo_diagnose::selftest::{Ledger, Plan, Subject, Summary, csv_rows, page, run, save, tables};
 use oleo_report::{OutputDirectory, Progress};
 
 use crate::failure::Failure;
@@ -106,10 +106,10 @@ pub fn run_self_test(args: &Args, out: Option<&std::path::Path>) -> Result<ExitC
     let summary = Summary::of(plan.seed, &trials);
     if let Some(mut out) = staged {
         let arguments: Vec<String> = std::env::args().skip(1).collect();
-        out.csv_records("trials.csv", records::trials(&trials))?;
-        out.csv_records("power.csv", records::power(&summary))?;
-        out.csv_records("confusion.csv", records::confusion(&summary))?;
-        out.csv_records("coverage.csv", records::coverage(&summary))?;
+        out.csv_records("trials.csv", csv_rows::trials(&trials))?;
+        out.csv_records("power.csv", csv_rows::power(&summary))?;
+        out.csv_records("confusion.csv", csv_rows::confusion(&summary))?;
+        out.csv_records("coverage.csv", csv_rows::coverage(&summary))?;
         out.json("summary.json", &summary)?;
         out.page(&page(&summary, &format!("oleo {}", arguments.join(" "))))?;
         out.commit()?;

@@ -116,7 +116,7 @@ fn rivals(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
         Column::text("Judgement"),
     ]);
     let with = diagnosis.selection.improved_ratio;
-    let count: usize = diagnosis.residuals.1.iter().flatten().map(Vec::len).sum();
+    let count: usize = diagnosis.residuals.improved.iter().flatten().map(Vec::len).sum();
     for c in &diagnosis.selection.effects {
         let mut row: Vec<Cell> = vec![
             all[c.candidate].name().into(),

@@ -1,119 +1,16 @@
-//! One recording, read from CSV and made safe to simulate.
-//!
-//! Everything that could silently spoil a diagnosis is caught here: a column in another unit, time that stands still,
-//! a value that is not a number. What can be used soundly is used and said in a note: a recording with a hole is cut at
-//! the hole, because nobody knows the state after it; one with more samples than needed is thinned while it is read, so
-//! that memory stays bounded whatever its length.
+//! Reads a recording from CSV; whatever cannot be used is refused with one line: file, line, remedy.
 
 use std::path::Path;
 
+use super::columns::{ColumnKind, ColumnSpec, GapPolicy};
+use super::series::Recording;
+use super::thinning::{Room, Thinner};
 use crate::error::DiagnoseError;
 
-/// Most samples kept of one recording. A campaign of ten such is still simulated in about a second.
-pub const MAX_SAMPLES: usize = 200_000;
 /// Fewest samples from which anything can be concluded.
 pub const MIN_SAMPLES: usize = 50;
-/// Longest sampling interval that thinning may make, s: of a recording with switching signals, whose edges must stay
-/// where they were, and of any other. What is longer still is used from its start.
-const MAX_THINNED_INTERVAL_S: (f64, f64) = (0.005, 0.05);
-/// Rows at the start of a file by which its sampling interval is judged.
-const FIRST_ROWS: usize = 64;
 /// A step this many times the usual one is a hole.
 const GAP_RATIO: f64 = 4.5;
-
-/// How a column must be treated when a recording is thinned.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ColumnKind {
-    /// A model input that is measured: the mean over the thinned stretch keeps its integral and lowers its noise.
-    Input,
-    /// A compared output: the sample itself, so its stated noise stays true.
-    Output,
-    /// A switching signal, 0 or 1.
-    Switch,
-}
-
-/// A column that a specimen needs.
-#[derive(Debug, Clone)]
-pub struct ColumnSpec {
-    /// Name with unit, for example `p1_Pa`.
-    pub name: String,
-    /// Its treatment.
-    pub kind: ColumnKind,
-}
-
-impl ColumnSpec {
-    /// A column of this name and treatment.
-    #[must_use]
-    pub fn new(name: &str, kind: ColumnKind) -> Self {
-        Self {
-            name: name.to_owned(),
-            kind,
-        }
-    }
-}
-
-/// What to do with a hole in the time column.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum GapPolicy {
-    /// The model has memory: only the longest stretch from the start is of use.
-    Cut,
-    /// The model's memory is short (friction) or the step is simply long: keep all.
-    Keep,
-}
-
-/// Even or nearly even samples of one specimen.
-#[derive(Debug, Clone)]
-pub struct Recording {
-    /// File stem.
-    pub name: String,
-    /// Seconds, strictly increasing.
-    pub time_s: Vec<f64>,
-    /// One series a requested column, same order.
-    pub columns: Vec<Vec<f64>>,
-    /// What was done to it that a reader of the report must know.
-    pub notes: Vec<String>,
-}
-
-impl Recording {
-    /// Number of samples.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.time_s.len()
-    }
-
-    /// True without samples (never, as read).
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.time_s.is_empty()
-    }
-
-    /// The first samples of it.
-    #[must_use]
-    pub fn first(&self, samples: usize) -> Self {
-        let part = |series: &Vec<f64>| series[..samples.min(series.len())].to_vec();
-        Self {
-            name: self.name.clone(),
-            time_s: part(&self.time_s),
-            columns: self.columns.iter().map(part).collect(),
-            notes: self.notes.clone(),
-        }
-    }
-
-    /// Median sampling interval, s.
-    #[must_use]
-    pub fn interval_s(&self) -> f64 {
-        median_interval(&self.time_s)
-    }
-}
-
-fn median_interval(time_s: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
-    if steps.is_empty() {
-        return 0.0;
-    }
-    let middle = steps.len() / 2;
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
-}
 
 /// Reads one recording.
 ///
@@ -264,128 +161,6 @@ fn position(path: &Path, header: &csv::StringRecord, name: &str) -> Result<usize
     })
 }
 
-/// Keeps at most [`MAX_SAMPLES`]: the middle one of every `stride` rows, an odd number, so that the mean of an input over
-/// them is the input at the kept instant. Nothing is lost that the comparison needs: the model is compared at the kept
-/// instants.
-struct Thinner {
-    kinds: Vec<ColumnKind>,
-    rows: usize,
-    stride: usize,
-    /// Rows of the group begun, then the first rows of the file until the interval is known.
-    within: usize,
-    first: Vec<(f64, Vec<f64>)>,
-    settled: bool,
-    time_s: Vec<f64>,
-    columns: Vec<Vec<f64>>,
-    sums: Vec<f64>,
-    middle: (f64, Vec<f64>),
-    full: bool,
-}
-
-/// Whether more rows are wanted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Room {
-    Left,
-    Full,
-}
-
-impl Thinner {
-    fn new(specs: &[ColumnSpec], rows: usize) -> Self {
-        Self {
-            kinds: specs.iter().map(|s| s.kind).collect(),
-            rows,
-            stride: 1,
-            within: 0,
-            first: Vec::new(),
-            settled: rows <= MAX_SAMPLES,
-            time_s: Vec::new(),
-            columns: vec![Vec::new(); specs.len()],
-            sums: vec![0.0; specs.len()],
-            middle: (0.0, Vec::new()),
-            full: false,
-        }
-    }
-
-    fn push(&mut self, time: f64, values: &[f64]) -> Room {
-        if self.settled {
-            self.keep(time, values);
-        } else {
-            self.first.push((time, values.to_vec()));
-            if self.first.len() == FIRST_ROWS {
-                self.settle();
-            }
-        }
-        if self.time_s.len() >= MAX_SAMPLES {
-            self.full = true;
-            return Room::Full;
-        }
-        Room::Left
-    }
-
-    /// Chooses the stride by the interval of the first rows.
-    fn settle(&mut self) {
-        self.settled = true;
-        let times: Vec<f64> = self.first.iter().map(|(t, _)| *t).collect();
-        let longest = if self.kinds.contains(&ColumnKind::Switch) {
-            MAX_THINNED_INTERVAL_S.0
-        } else {
-            MAX_THINNED_INTERVAL_S.1
-        };
-        let allowed = (longest / median_interval(&times).max(1e-9)) as usize;
-        let wanted = self.rows.div_ceil(MAX_SAMPLES);
-        self.stride = wanted.min(allowed).max(1) | 1;
-        if self.stride > allowed.max(1) {
-            self.stride -= 2;
-        }
-        for (time, values) in std::mem::take(&mut self.first) {
-            self.keep(time, &values);
-        }
-    }
-
-    fn keep(&mut self, time: f64, values: &[f64]) {
-        self.sums.iter_mut().zip(values).for_each(|(s, &v)| *s += v);
-        if self.within == self.stride / 2 {
-            self.middle = (time, values.to_vec());
-        }
-        self.within += 1;
-        if self.within < self.stride {
-            return;
-        }
-        self.time_s.push(self.middle.0);
-        for (((column, kind), sum), middle) in
-            (self.columns.iter_mut().zip(&self.kinds).zip(&self.sums)).zip(&self.middle.1)
-        {
-            column.push(match kind {
-                ColumnKind::Input => sum / self.stride as f64,
-                ColumnKind::Output | ColumnKind::Switch => *middle,
-            });
-        }
-        self.within = 0;
-        self.sums.fill(0.0);
-    }
-
-    fn finish(mut self, name: String) -> Recording {
-        if !self.settled {
-            self.settle();
-        }
-        let mut notes = Vec::new();
-        if self.stride > 1 {
-            notes.push(format!("one of {} samples was used", self.stride));
-        }
-        if let (true, Some(last)) = (self.full, self.time_s.last()) {
-            notes.push(format!(
-                "only the first {MAX_SAMPLES} of these were used, to {last} s; record less or slower to use all"
-            ));
-        }
-        Recording {
-            name,
-            time_s: self.time_s,
-            columns: self.columns,
-            notes,
-        }
-    }
-}
-
 fn cut_at_gap(recording: &mut Recording) {
     let usual = recording.interval_s();
     if let Some(gap) = recording
@@ -406,6 +181,7 @@ fn cut_at_gap(recording: &mut Recording) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::recording::MAX_SAMPLES;
     use std::fmt::Write as _;
 
     fn specs() -> Vec<ColumnSpec> {

@@ -119,10 +119,8 @@ fn relations(page: &mut Page, diagnosis: &Diagnosis) {
 }
 
 fn title(diagnosis: &Diagnosis, location: &Location) -> String {
-    let effect = diagnosis
-        .effects
-        .iter()
-        .find(|e| e.selected.as_ref().map(|s| s.candidate) == location.candidate && location.candidate.is_some());
+    let effect =
+        (diagnosis.effects.iter()).find(|e| e.candidate() == location.candidate && location.candidate.is_some());
     match effect {
         Some(e) => format!(
             "{} {}",
@@ -155,7 +153,7 @@ fn over_time(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, lo
     let time = specimen.time_s(r);
     let channel = &specimen.channels()[c];
     let measured = specimen.measured(r, c);
-    let with = &diagnosis.residuals.1[r][c];
+    let with = &diagnosis.residuals.improved[r][c];
     let without = &location.without[r][c];
     let (quantity, unit) = (channel.column.quantity(), channel.column.unit());
     let (scale, unit) = scaled(unit);
@@ -266,7 +264,7 @@ fn over_state(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, l
         Style::Points,
         "improved model",
         &brief(&values),
-        &brief(&pooled(&diagnosis.residuals.1)),
+        &brief(&pooled(&diagnosis.residuals.improved)),
     );
     if let Some(region) = &condition.region {
         curves.region(scale * region.from, scale * region.to, "found here");

@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use crate::campaign::{KeptBack, Whole};
+use crate::campaign::{CompleteRecordings, KeptBack};
 use crate::diagnosis::Diagnosis;
 use crate::error::DiagnoseError;
 use crate::estimation::{LeastSquares, Point, fit};
@@ -14,7 +14,7 @@ use crate::vocabulary::Column;
 
 /// Figures of one model.
 #[derive(Debug, Clone)]
-pub struct Prediction {
+pub struct ModelPrediction {
     /// Which model, in words.
     pub model: String,
     /// Noise ratio of every channel on what was fitted.
@@ -25,11 +25,11 @@ pub struct Prediction {
 
 /// All figures.
 #[derive(Debug, Clone)]
-pub struct Unseen {
+pub struct Predictions {
     /// Columns of the channels.
     pub channels: Vec<Column>,
     /// Models: as given, recalibrated, improved, then rivals, the best predictor first.
-    pub models: Vec<Prediction>,
+    pub models: Vec<ModelPrediction>,
 }
 
 /// A rival must explain this part of the recalibrated model's misfit on the fitted part to be listed.
@@ -38,7 +38,7 @@ const WORTH_SHOWING: f64 = 0.02;
 /// Name of the improved model, and what the names of those made from it begin with.
 const IMPROVED_NAME: &str = "improved";
 
-impl Unseen {
+impl Predictions {
     /// Fits the rivals, predicts with every model.
     ///
     /// # Errors
@@ -46,7 +46,7 @@ impl Unseen {
     pub fn of(
         problem: &LeastSquares<'_>,
         diagnosis: &Diagnosis,
-        whole: &Whole,
+        complete: &CompleteRecordings,
         kept_back: &KeptBack,
     ) -> Result<Self, DiagnoseError> {
         let selection = &diagnosis.selection;
@@ -54,7 +54,7 @@ impl Unseen {
             "as given",
             problem,
             &Point::nominal(problem.specimen()),
-            whole,
+            complete,
             kept_back,
         )?;
         let mut models = vec![
@@ -63,20 +63,20 @@ impl Unseen {
                 "recalibrated within tolerance",
                 problem,
                 &selection.calibrated.point,
-                whole,
+                complete,
                 kept_back,
             )?,
-            predict(IMPROVED_NAME, problem, &selection.best.point, whole, kept_back)?,
+            predict(IMPROVED_NAME, problem, &selection.best.point, complete, kept_back)?,
         ];
-        let mut rivals: Vec<Prediction> = rivals(problem, diagnosis)?
+        let mut rivals: Vec<ModelPrediction> = rivals(problem, diagnosis)?
             .par_iter()
-            .filter_map(|(name, point)| predict(name, problem, point, whole, kept_back).ok())
+            .filter_map(|(name, point)| predict(name, problem, point, complete, kept_back).ok())
             .collect();
         // Rivals that change nothing would only hide the others.
-        let fitted = |p: &Prediction| p.fitted.iter().map(|v| v * v).sum::<f64>();
+        let fitted = |p: &ModelPrediction| p.fitted.iter().map(|v| v * v).sum::<f64>();
         let plain = fitted(&models[1]);
         rivals.retain(|r| r.model.starts_with(IMPROVED_NAME) || fitted(r) < (1.0 - WORTH_SHOWING) * plain);
-        let badness = |p: &Prediction| p.kept_back.iter().map(|v| v * v).sum::<f64>();
+        let badness = |p: &ModelPrediction| p.kept_back.iter().map(|v| v * v).sum::<f64>();
         rivals.sort_by(|a, b| badness(a).total_cmp(&badness(b)));
         models.extend(rivals);
         Ok(Self {
@@ -142,12 +142,12 @@ fn predict(
     name: &str,
     problem: &LeastSquares<'_>,
     point: &Point,
-    whole: &Whole,
+    complete: &CompleteRecordings,
     kept_back: &KeptBack,
-) -> Result<Prediction, DiagnoseError> {
+) -> Result<ModelPrediction, DiagnoseError> {
     let fitted = problem.specimen();
     let model_toml = (fitted.model_toml(&point.hypothesis(fitted))).map_err(DiagnoseError::Output)?;
-    let specimen = whole.specimen(&model_toml)?;
+    let specimen = complete.specimen(&model_toml)?;
     let everything = problem.on(&*specimen);
     let residuals = everything.evaluation.residuals_at(&Point::nominal(&*specimen))?;
     let channels = specimen.channels().len();
@@ -166,7 +166,7 @@ fn predict(
         }
     }
     let ratio = |sums: Vec<(f64, usize)>| sums.iter().map(|(s, n)| (s / (*n).max(1) as f64).sqrt()).collect();
-    Ok(Prediction {
+    Ok(ModelPrediction {
         model: name.to_owned(),
         fitted: ratio(fitted),
         kept_back: ratio(unseen),

@@ -66,10 +66,10 @@ fn recordings(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     let mut table = Table::new(columns);
     let ratio = |s: &[f64]| (s.iter().map(|v| v * v).sum::<f64>() / s.len() as f64).sqrt();
     for r in 0..specimen.recordings().len() {
-        let before: Vec<f64> = diagnosis.held_out.0[r].iter().map(|c| ratio(c)).collect();
+        let before: Vec<f64> = diagnosis.held_out.calibrated[r].iter().map(|c| ratio(c)).collect();
         let before = (before.iter().map(|v| v * v).sum::<f64>() / before.len() as f64).sqrt();
         let mut row: Vec<Cell> = vec![specimen.recording_name(r).into(), format!("{before:.2}").into()];
-        row.extend(diagnosis.held_out.1[r].iter().map(|c| {
+        row.extend(diagnosis.held_out.improved[r].iter().map(|c| {
             let ratio = ratio(c);
             let text = format!("{ratio:.2}");
             if ratio > 1.5 {

@@ -13,9 +13,9 @@ impl Draw {
     /// The stream of this name: same name, same numbers, on every machine.
     #[must_use]
     pub fn named(name: &str) -> Self {
-        let mut hash = FnvHasher::default();
-        hash.write(name.as_bytes());
-        Self(ChaCha8Rng::seed_from_u64(hash.finish()))
+        let mut hasher = FnvHasher::default();
+        hasher.write(name.as_bytes());
+        Self(ChaCha8Rng::seed_from_u64(hasher.finish()))
     }
 
     /// Uniform in 0..1.
@@ -33,7 +33,8 @@ impl Draw {
         ((self.uniform() * count as f64) as usize).min(count.saturating_sub(1))
     }
 
-    /// Standard normal (Box & Muller, Ann. Math. Statist. 29(2), 1958).
+    /// Standard normal (Box & Muller, Ann. Math. Statist. 29(2), 1958). `rand_distr` draws other numbers, and with them every
+    /// published figure of the self-test would be of other campaigns.
     pub fn normal(&mut self) -> f64 {
         let (u, v) = (1.0 - self.uniform(), self.uniform());
         (-2.0 * libm::log(u)).sqrt() * libm::cos(std::f64::consts::TAU * v)

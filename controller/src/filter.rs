@@ -37,6 +37,57 @@ pub fn at_least(value: f32, least: f32) -> f32 {
     if value > least { value } else { least }
 }
 
+/// Low-pass of second order that gives the low-passed second derivative of its input too: a state-variable filter.
+///
+/// ```text
+///   y'' = w^2 (x - y) - 2 zeta w y',   zeta = 0.7
+/// ```
+///
+/// `y''` is the second derivative of the input behind the same low-pass, and no noise is amplified by more than `w^2`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SecondOrder {
+    natural_2: f32,
+    damping: f32,
+}
+
+/// State of [`SecondOrder`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SecondOrderState {
+    value: f32,
+    rate: f32,
+    started: bool,
+}
+
+impl SecondOrder {
+    /// Damping ratio: flat up to the corner, and quick.
+    const DAMPING_RATIO: f32 = 0.7;
+
+    /// With a natural frequency, Hz, above 0 and far below the tick's rate.
+    pub fn from_corner_hz(corner_hz: f32) -> Self {
+        let natural = 2.0 * core::f32::consts::PI * corner_hz;
+        Self {
+            natural_2: natural * natural,
+            damping: 2.0 * Self::DAMPING_RATIO * natural,
+        }
+    }
+
+    /// One tick; returns the low-passed input and its low-passed second derivative, per s2. It starts at rest at the first
+    /// input.
+    pub fn step(&self, state: &mut SecondOrderState, input: f32) -> (f32, f32) {
+        if !state.started {
+            *state = SecondOrderState {
+                value: input,
+                rate: 0.0,
+                started: true,
+            };
+        }
+        let acceleration = self.natural_2 * (input - state.value) - self.damping * state.rate;
+        state.rate += acceleration * TICK_S;
+        state.value += state.rate * TICK_S;
+        (state.value, acceleration)
+    }
+}
+
 /// Derivative behind two first-order lags of the same corner frequency. A plain difference would turn each 0.01 mm step of
 /// the displacement signal into 2 mm/s of speed.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,6 +7,7 @@
 use std::time::Duration;
 
 use oleo_controller::can::PlantEnd;
+use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
 
 use crate::Frame;
@@ -83,10 +84,10 @@ impl<B: Bus> PlantNode<B> {
     /// Begins a tick: sends what the sensors say.
     pub fn send_sensors(&mut self) -> Result<(), BusError> {
         self.bus.begin_tick(self.tick);
-        let displacement_m = self.vehicle.strut_displacement_m();
+        let displacement_m = self.vehicle.strut_displacement_m().into_array();
         let inputs = self
             .instruments
-            .read(self.tick, displacement_m, self.vehicle.strut_output());
+            .read(self.tick, displacement_m, self.vehicle.strut_output().into_array());
         for frame in self.end.encode(self.tick as u16, &inputs) {
             self.bus.send(&frame.into())?;
         }
@@ -138,13 +139,13 @@ impl<B: Bus> PlantNode<B> {
         self.recording.samples.push(Sample {
             station_m: self.vehicle.station_m(),
             body: self.vehicle.body(),
-            displacement_m: self.vehicle.strut_displacement_m(),
-            strut: self.vehicle.strut_output(),
-            wheel: self.vehicle.wheels(),
+            displacement_m: self.vehicle.strut_displacement_m().into_array(),
+            strut: self.vehicle.strut_output().into_array(),
+            wheel: self.vehicle.wheels().into_array(),
             command: self.output.command(),
             energised,
         });
-        let signals = energised.corners();
+        let signals = Corners::from_array(energised.corners().map(StrutValves::from_array));
         for _ in 0..self.steps_per_tick {
             self.vehicle.step(signals);
             let felt = self

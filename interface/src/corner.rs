@@ -142,9 +142,24 @@ impl<T> Corners<T> {
         Self(Corner::ALL.map(value))
     }
 
+    /// From the values on the left and on the right of each axle.
+    pub fn from_axles(axles: Axles<[T; 2]>) -> Self {
+        let ([front_left, front_right], [rear_left, rear_right]) = (axles.front, axles.rear);
+        Self([front_left, front_right, rear_left, rear_right])
+    }
+
     /// The values in the order of [`Corner::ALL`].
     pub fn into_array(self) -> [T; 4] {
         self.0
+    }
+
+    /// References to the values on the left and on the right of an axle.
+    pub const fn of_axle(&self, axle: Axle) -> [&T; 2] {
+        let [front_left, front_right, rear_left, rear_right] = &self.0;
+        match axle {
+            Axle::Front => [front_left, front_right],
+            Axle::Rear => [rear_left, rear_right],
+        }
     }
 
     /// The values in the order of [`Corner::ALL`], borrowed.
@@ -239,9 +254,27 @@ impl<T> Axles<T> {
         }
     }
 
+    /// References to the values.
+    pub const fn each_ref(&self) -> Axles<&T> {
+        Axles {
+            front: &self.front,
+            rear: &self.rear,
+        }
+    }
+
+    /// The values of the front and the rear axle.
+    pub fn into_array(self) -> [T; 2] {
+        [self.front, self.rear]
+    }
+
     /// Axle and value, front first.
     pub fn iter(&self) -> impl Iterator<Item = (Axle, &T)> {
         [(Axle::Front, &self.front), (Axle::Rear, &self.rear)].into_iter()
+    }
+
+    /// Axle and value to change, front first.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = (Axle, &mut T)> {
+        [(Axle::Front, &mut self.front), (Axle::Rear, &mut self.rear)].into_iter()
     }
 }
 
@@ -279,6 +312,8 @@ mod tests {
         }
         let axles = Axles::from_fn(|axle| axle);
         assert!(Axle::ALL.into_iter().all(|axle| axles[axle] == axle));
+        let again = Corners::from_axles(Axles::from_fn(|axle| positions.of_axle(axle).map(|i| *i)));
+        assert_eq!(again, positions);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::handling::{HandlingParameters, HandlingVehicle, Manoeuvre, Track};
 use oleo_plant_sim::road::{Flat, Road, belgian};
 use oleo_plant_sim::strut::{Strut, StrutModel};
@@ -11,7 +12,7 @@ use oleo_plant_sim::vehicle::VehicleParameters;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let parameters = VehicleParameters::defender110();
     let handling = HandlingParameters::defender110();
-    let load = parameters.static_strut_load_n();
+    let [a, b, c, d] = parameters.static_strut_load_n().into_array();
     let speed_m_s = 60.0 / 3.6;
     let belgian: Arc<dyn Road> = Arc::new(belgian::belgian_block(500.0, 1)?);
     for (name, road, track, open) in [
@@ -37,11 +38,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("belgian stiff", belgian, Track::straight(), false),
     ] {
         let signals = [open; 3];
-        let mut struts = Vec::new();
-        for load in load {
-            struts.push(Strut::at_rest(&StrutModel::defender110(load), signals)?);
-        }
-        let struts: [Strut; 4] = struts.try_into().map_err(|_| "four struts")?;
+        let strut = |load_n| Strut::at_rest(&StrutModel::defender110(load_n), signals);
+        let struts = Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]);
+        let signals = Corners::from_array([StrutValves::from_array(signals); 4]);
         let mut model = HandlingVehicle::new(&parameters, &handling, struts, road, speed_m_s)?;
         let manoeuvre = Manoeuvre::Follow {
             track,
@@ -49,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             duration_s: 20.0,
         };
         let begin = Instant::now();
-        let run = manoeuvre.drive(&mut model, &parameters, &handling, |_| ([signals; 4], 0), |_| {})?;
+        let run = manoeuvre.drive(&mut model, &parameters, &handling, |_| (signals, signals), |_| {})?;
         let wall = begin.elapsed().as_secs_f64();
         println!(
             "{name}: {:.1} s in {wall:.3} s = {:.0} x real time; {}; roll {:.2} deg, lateral {:.2} m/s2, cones {:?} m",

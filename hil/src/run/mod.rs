@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 
 use oleo_controller::strategy::Strategy;
 use oleo_controller::{Configuration, FaultCode, Mode};
+use oleo_interface::Corners;
 use oleo_plant_sim::road;
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
@@ -123,7 +124,7 @@ impl Plant {
         };
         // Each corner is charged for the load it carries, as one does in a workshop.
         let mut struts = Vec::with_capacity(4);
-        for load_n in parameters.static_strut_load_n() {
+        for load_n in parameters.static_strut_load_n().into_array() {
             let model = match &model {
                 None => StrutModel::defender110(load_n),
                 Some(model) => {
@@ -139,7 +140,7 @@ impl Plant {
         };
         let road: Arc<dyn road::Road> =
             road::from_name_or_path(&scenario.road, scenario.road_length_m(), scenario.seed)?;
-        let vehicle = RideVehicle::new(&parameters, struts, road, scenario.speed_m_s)?;
+        let vehicle = RideVehicle::new(&parameters, Corners::from_array(struts), road, scenario.speed_m_s)?;
         Ok(Self { parameters, vehicle })
     }
 }

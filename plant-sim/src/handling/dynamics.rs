@@ -29,6 +29,7 @@
 //! out). It is an elastic mode on top of the fourteen coordinates.
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use oleo_interface::{Axle, Axles, Corners};
 
 use super::axle::{AxleCoordinates, AxleGeometry, AxlePlace};
 
@@ -40,11 +41,13 @@ pub struct Masses {
     /// J_x, J_y, J_z of the body, kg m2.
     pub body_inertia_kg_m2: Vector3<f64>,
     /// Front and rear axle.
-    pub axles: [AxleGeometry; 2],
-    /// Spin inertia of one wheel, front and rear, kg m2.
-    pub spin_inertia_kg_m2: [f64; 2],
-    /// Torsion: N m/rad, N m s/rad.
-    pub torsion: [f64; 2],
+    pub axles: Axles<AxleGeometry>,
+    /// Spin inertia of one wheel of an axle, kg m2.
+    pub spin_inertia_kg_m2: Axles<f64>,
+    /// Torque that twists the body's front half against its rear half, N m/rad.
+    pub torsional_stiffness_n_m_rad: f64,
+    /// Its damping, N m s/rad.
+    pub torsional_damping_n_m_s_rad: f64,
 }
 
 /// Velocities of all coordinates, body axes.
@@ -52,8 +55,8 @@ pub struct Masses {
 pub(super) struct Velocities {
     pub(super) linear: Vector3<f64>,
     pub(super) angular: Vector3<f64>,
-    pub(super) axles: [AxleCoordinates; 2],
-    pub(super) spin: [f64; 4],
+    pub(super) axles: Axles<AxleCoordinates>,
+    pub(super) spin: Corners<f64>,
     pub(super) twist: f64,
 }
 
@@ -65,9 +68,9 @@ pub(super) struct Loads {
     /// About the body's centre of mass, N m.
     pub(super) moment: Vector3<f64>,
     /// On each axle's coordinates.
-    pub(super) axles: [AxleCoordinates; 2],
+    pub(super) axles: Axles<AxleCoordinates>,
     /// On each wheel's spin, N m.
-    pub(super) spin: [f64; 4],
+    pub(super) spin: Corners<f64>,
     /// On the twist, N m.
     pub(super) twist: f64,
 }
@@ -77,8 +80,8 @@ pub(super) struct Loads {
 pub(super) struct Accelerations {
     pub(super) linear: Vector3<f64>,
     pub(super) angular: Vector3<f64>,
-    pub(super) axles: [AxleCoordinates; 2],
-    pub(super) spin: [f64; 4],
+    pub(super) axles: Axles<AxleCoordinates>,
+    pub(super) spin: Corners<f64>,
     pub(super) twist: f64,
 }
 
@@ -107,10 +110,10 @@ impl Wrench {
 
 impl Loads {
     /// Adds what the left and the right wheel do to an axle: as a pair, so that mirrored loads give mirrored bits.
-    pub(super) fn add_pair(&mut self, index: usize, left: &Wrench, right: &Wrench) {
+    pub(super) fn add_pair(&mut self, axle: Axle, left: &Wrench, right: &Wrench) {
         self.force += left.force + right.force;
         self.moment += left.moment + right.moment;
-        self.axles[index] = self.axles[index].plus(1.0, left.axle.plus(1.0, right.axle));
+        self.axles[axle] = self.axles[axle].plus(1.0, left.axle.plus(1.0, right.axle));
     }
 }
 
@@ -137,19 +140,20 @@ impl Eliminated {
 
 impl Masses {
     /// Angular momentum of the two wheels of an axle about their axes, body axes.
-    fn wheel_momentum(&self, index: usize, velocities: &Velocities, axes: &[Vector3<f64>; 4]) -> Vector3<f64> {
-        let inertia = self.spin_inertia_kg_m2[index];
-        let left = 2 * index;
-        axes[left] * (inertia * velocities.spin[left]) + axes[left + 1] * (inertia * velocities.spin[left + 1])
+    fn wheel_momentum(&self, axle: Axle, velocities: &Velocities, axes: &Corners<Vector3<f64>>) -> Vector3<f64> {
+        let inertia = self.spin_inertia_kg_m2[axle];
+        let [left, right] = axes.of_axle(axle);
+        let [left_spin, right_spin] = velocities.spin.of_axle(axle);
+        left * (inertia * left_spin) + right * (inertia * right_spin)
     }
 
     /// Accelerations for places, velocities and loads. `axes`: each wheel's axis, body axes.
     pub(super) fn accelerations(
         &self,
-        places: &[AxlePlace; 2],
+        places: &Axles<AxlePlace>,
         velocities: &Velocities,
         loads: &Loads,
-        axes: &[Vector3<f64>; 4],
+        axes: &Corners<Vector3<f64>>,
     ) -> Accelerations {
         let w = velocities.angular;
         let e_x = Vector3::new(1.0, 0.0, 0.0);
@@ -162,7 +166,7 @@ impl Masses {
         let mut force = loads.force;
         let mut moment = loads.moment - w.cross(&j.component_mul(&w));
 
-        let parts: [Eliminated; 2] = core::array::from_fn(|index| {
+        let parts = Axles::from_fn(|index| {
             let (axle, place) = (&self.axles[index], &places[index]);
             let rate = velocities.axles[index];
             let (m, g, t) = (axle.mass_kg, place.mass_centre, place.swing);
@@ -206,7 +210,7 @@ impl Masses {
             }
         }
         let mut right = SVector::from([force.x, force.y, force.z, moment.x, moment.y, moment.z]);
-        for part in &parts {
+        for (_, part) in parts.iter() {
             let [heave, roll] = &part.coupling;
             let [a, b, c] = part.inverse;
             let (first, second) = (heave * a + roll * b, heave * b + roll * c);
@@ -234,20 +238,21 @@ impl Masses {
             linear: Vector3::new(body[0], body[1], body[2]),
             angular: Vector3::new(body[3], body[4], body[5]),
             axles,
-            spin: core::array::from_fn(|corner| loads.spin[corner] / self.spin_inertia_kg_m2[corner / 2]),
+            spin: Corners::from_fn(|corner| loads.spin[corner] / self.spin_inertia_kg_m2[corner.axle()]),
             twist: loads.twist / (0.25 * j.x),
         }
     }
 
     /// Kinetic energy, J.
-    pub(super) fn kinetic_energy_j(&self, places: &[AxlePlace; 2], velocities: &Velocities) -> f64 {
+    pub(super) fn kinetic_energy_j(&self, places: &Axles<AxlePlace>, velocities: &Velocities) -> f64 {
         let (v, w) = (velocities.linear, velocities.angular);
         let j = self.body_inertia_kg_m2;
         let mut twice = self.body_kg * v.dot(&v) + w.dot(&j.component_mul(&w));
-        for (index, (axle, place)) in self.axles.iter().zip(places).enumerate() {
+        for (index, axle) in self.axles.iter() {
+            let place = &places[index];
             let (speed, turn) = axle_motion(place, velocities, index);
             twice += axle.mass_kg * speed.dot(&speed) + turn.dot(&(place.inertia * turn));
-            for spin in &velocities.spin[2 * index..2 * index + 2] {
+            for spin in velocities.spin.of_axle(index) {
                 twice += self.spin_inertia_kg_m2[index] * spin * spin;
             }
         }
@@ -258,13 +263,14 @@ impl Masses {
     #[cfg(test)]
     pub(super) fn momentum(
         &self,
-        places: &[AxlePlace; 2],
+        places: &Axles<AxlePlace>,
         velocities: &Velocities,
-        axes: &[Vector3<f64>; 4],
+        axes: &Corners<Vector3<f64>>,
     ) -> (Vector3<f64>, Vector3<f64>) {
         let mut linear = velocities.linear * self.body_kg;
         let mut angular = self.body_inertia_kg_m2.component_mul(&velocities.angular);
-        for (index, (axle, place)) in self.axles.iter().zip(places).enumerate() {
+        for (index, axle) in self.axles.iter() {
+            let place = &places[index];
             let (speed, turn) = axle_motion(place, velocities, index);
             linear += speed * axle.mass_kg;
             angular += place.mass_centre.cross(&speed) * axle.mass_kg
@@ -276,7 +282,7 @@ impl Masses {
 }
 
 /// Velocity of an axle's centre of mass and the axle's angular velocity, body axes.
-fn axle_motion(place: &AxlePlace, velocities: &Velocities, index: usize) -> (Vector3<f64>, Vector3<f64>) {
+fn axle_motion(place: &AxlePlace, velocities: &Velocities, index: Axle) -> (Vector3<f64>, Vector3<f64>) {
     let rate = velocities.axles[index];
     let speed = velocities.linear + velocities.angular.cross(&place.mass_centre) + place.swing * rate.roll;
     let turn = velocities.angular + Vector3::new(rate.roll, 0.0, 0.0);

@@ -3,6 +3,9 @@
 //! A run is a model, a manoeuvre and a source of valve signals; it gives an [`Ending`] and a [`History`] at the
 //! controller's tick. Roll-over, spinning and hit cones are outcomes. Only a model that leaves the real numbers is a failure.
 
+use oleo_interface::tick::TICK_S;
+use oleo_interface::{Axle, Corners, StrutValves};
+
 use super::driver::Driver;
 use super::model::HandlingModel;
 use super::motion::Controls;
@@ -11,8 +14,6 @@ use super::track::Track;
 use crate::vehicle::VehicleParameters;
 use crate::vehicle::suspension::SuspensionElement;
 
-/// The controller's tick and the history's interval, s.
-const TICK_S: f64 = 0.005;
 /// Side slip beyond which the vehicle has spun, rad: 45 degrees.
 const SPUN_RAD: f64 = core::f64::consts::FRAC_PI_4;
 /// Off the line by this much, the manoeuvre is lost, m.
@@ -96,16 +97,19 @@ pub struct Sample {
     pub lateral_acceleration_m_s2: f64,
     pub vertical_acceleration_m_s2: f64,
     pub steer_rad: f64,
-    pub wheel_load_n: [f64; 4],
-    pub strut_displacement_m: [f64; 4],
-    pub strut_force_n: [f64; 4],
+    pub wheel_load_n: Corners<f64>,
+    pub strut_displacement_m: Corners<f64>,
+    pub strut_force_n: Corners<f64>,
     pub driver_seat_m_s2: f64,
     pub passenger_seat_m_s2: f64,
     pub front_axle_heave_m: f64,
     pub front_axle_roll_rad: f64,
-    /// 12 bits: corner by corner valves 1..3, 1 open.
-    pub valves: u16,
+    /// Switching signals of the valves, `true` open; all closed for a suspension that has none.
+    pub valves: Signals,
 }
+
+/// Switching signals of the twelve valves.
+pub type Signals = Corners<StrutValves<bool>>;
 
 /// Samples at the tick.
 pub type History = Vec<Sample>;
@@ -152,8 +156,8 @@ impl Manoeuvre {
         }
     }
 
-    /// Drives `model` to the end. `signals` is asked at every tick of 5 ms for the suspension's signals and the valve word
-    /// to record; `every_step` sees each step (for filters that need the full rate).
+    /// Drives `model` to the end. `signals` is asked at every tick of 5 ms for the suspension's signals and for the valves'
+    /// signals to record; `every_step` sees each step (for filters that need the full rate).
     ///
     /// # Errors
     /// [`NotFinite`].
@@ -162,7 +166,7 @@ impl Manoeuvre {
         model: &mut HandlingModel<E>,
         parameters: &VehicleParameters,
         handling: &HandlingParameters,
-        mut signals: impl FnMut(&HandlingModel<E>) -> ([E::Signal; 4], u16),
+        mut signals: impl FnMut(&HandlingModel<E>) -> (Corners<E::Signal>, Signals),
         mut every_step: impl FnMut(&HandlingModel<E>),
     ) -> Result<Run, NotFinite> {
         let circle;
@@ -191,8 +195,8 @@ impl Manoeuvre {
             wheel_lift_s: 0.0,
         };
         for _ in 0..ticks {
-            let (signal, word) = signals(model);
-            run.note(model, seats, word, track, parameters, handling);
+            let (signal, valves) = signals(model);
+            run.note(model, seats, valves, track, parameters, handling);
             if let Some(ending) = run.over(self, track) {
                 run.ending = ending;
                 return Ok(run);
@@ -213,8 +217,8 @@ impl Manoeuvre {
                 every_step(model);
             }
         }
-        let (_, word) = signals(model);
-        run.note(model, seats, word, track, parameters, handling);
+        let (_, valves) = signals(model);
+        run.note(model, seats, valves, track, parameters, handling);
         if let Some(ending) = run.over(self, track) {
             run.ending = ending;
         }
@@ -259,7 +263,7 @@ impl Run {
         &mut self,
         model: &HandlingModel<E>,
         seats: [(f64, f64); 2],
-        valves: u16,
+        valves: Signals,
         track: &Track,
         parameters: &VehicleParameters,
         handling: &HandlingParameters,
@@ -267,7 +271,7 @@ impl Run {
         let motion = model.motion();
         let wheels = model.wheels();
         let [driver_seat, passenger_seat] = seats.map(|(x, y)| model.vertical_acceleration_at(x, y));
-        let (front_axle_heave_m, front_axle_roll_rad) = model.axle_heave_roll(0);
+        let (front_axle_heave_m, front_axle_roll_rad) = model.axle_heave_roll(Axle::Front);
         let sample = Sample {
             time_s: model.time_s(),
             station_m: motion.position_m[0],
@@ -293,7 +297,7 @@ impl Run {
         };
         self.max_roll_rad = self.max_roll_rad.max(sample.roll_rad.abs());
         self.max_lateral_m_s2 = self.max_lateral_m_s2.max(sample.lateral_acceleration_m_s2.abs());
-        if !self.history.is_empty() && sample.wheel_load_n.iter().any(|load| *load <= 0.0) {
+        if !self.history.is_empty() && sample.wheel_load_n.values().any(|load| *load <= 0.0) {
             self.wheel_lift_s += TICK_S;
         }
         let (sin, cos) = libm::sincos(motion.yaw_rad);

@@ -28,7 +28,7 @@ mod wheel;
 pub use axle::AxleCoordinates;
 pub use driver::Driver;
 pub use magic_formula::{LoadedTyre, MagicFormula, TyreForces};
-pub use manoeuvre::{Ending, History, Manoeuvre, NotFinite, Run, Sample};
+pub use manoeuvre::{Ending, History, Manoeuvre, NotFinite, Run, Sample, Signals};
 pub use model::{HandlingModel, HandlingVehicle};
 pub use motion::{Controls, HandlingMotion};
 pub use parameters::{Drive, DriverParameters, Frame, Ground, HandlingAxle, HandlingParameters, Outline, Steering};

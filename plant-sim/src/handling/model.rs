@@ -8,6 +8,7 @@
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
+use oleo_interface::{Axle, Axles, Corner, Corners, Side};
 
 use super::assembly::masses;
 use super::attitude::{Attitude, yaw_pitch_roll};
@@ -29,10 +30,10 @@ const STATIC_LOAD_TOLERANCE: f64 = 0.05;
 pub struct HandlingModel<E> {
     masses: Masses,
     handling: HandlingParameters,
-    tyres: [Tyre; 2],
+    tyres: Axles<Tyre>,
     probe: Probe,
     road: Arc<dyn Road>,
-    elements: [E; 4],
+    elements: Corners<E>,
     step_s: f64,
     steps: u64,
     rest_height_m: f64,
@@ -43,15 +44,15 @@ pub struct HandlingModel<E> {
     attitude: Attitude,
     rotation: Matrix3<f64>,
     angular: Vector3<f64>,
-    axles: [AxleCoordinates; 2],
-    axle_rates: [AxleCoordinates; 2],
-    spin: [f64; 4],
+    axles: Axles<AxleCoordinates>,
+    axle_rates: Axles<AxleCoordinates>,
+    spin: Corners<f64>,
     twist: f64,
     twist_rate: f64,
-    contacts: [ContactState; 4],
+    contacts: Corners<ContactState>,
     steer_rad: f64,
     acceleration: Accelerations,
-    wheels: [WheelState; 4],
+    wheels: Corners<WheelState>,
 }
 
 /// The handling model on two-stage struts.
@@ -65,7 +66,7 @@ impl HandlingVehicle {
     pub fn new(
         parameters: &VehicleParameters,
         handling: &HandlingParameters,
-        struts: [Strut; 4],
+        struts: Corners<Strut>,
         road: Arc<dyn Road>,
         speed_m_s: f64,
     ) -> Result<Self, RideError> {
@@ -73,7 +74,7 @@ impl HandlingVehicle {
     }
 
     /// Outputs of the four struts.
-    pub fn strut_output(&self) -> [StrutOutput; 4] {
+    pub fn strut_output(&self) -> Corners<StrutOutput> {
         self.elements.each_ref().map(StrutElement::output)
     }
 }
@@ -86,15 +87,16 @@ impl<E: SuspensionElement> HandlingModel<E> {
     pub fn with_elements(
         parameters: &VehicleParameters,
         handling: &HandlingParameters,
-        elements: [E; 4],
+        elements: Corners<E>,
         road: Arc<dyn Road>,
         speed_m_s: f64,
     ) -> Result<Self, RideError> {
         if !(speed_m_s >= 0.0 && speed_m_s.is_finite()) {
             return Err(RideError::Speed(speed_m_s));
         }
-        for (corner, (element, needed_n)) in elements.iter().zip(parameters.static_strut_load_n()).enumerate() {
-            let carried_n = element.force_n();
+        let needed = parameters.static_strut_load_n();
+        for (corner, element) in elements.iter() {
+            let (carried_n, needed_n) = (element.force_n(), needed[corner]);
             let fits = (carried_n - needed_n).abs() <= STATIC_LOAD_TOLERANCE * needed_n;
             if !fits {
                 return Err(RideError::StaticLoad {
@@ -106,17 +108,16 @@ impl<E: SuspensionElement> HandlingModel<E> {
         }
         let rest_height_m = parameters.body_cg_height_m();
         let wheel_load = parameters.static_wheel_load_n();
-        let axle_parameters = [&parameters.front_axle, &parameters.rear_axle];
-        let tyres = [0usize, 1].map(|index| {
-            let axle = axle_parameters[index];
+        let tyres = Axles::from_fn(|place| {
+            let axle = parameters.axle(place);
             Tyre {
                 stiffness_n_m: axle.tyre_stiffness_n_m,
                 damping_n_s_m: axle.tyre_damping_n_s_m,
-                free_radius_m: axle.tyre_radius_m + wheel_load[2 * index] / axle.tyre_stiffness_n_m,
+                free_radius_m: axle.tyre_radius_m + wheel_load[place.corner(Side::Left)] / axle.tyre_stiffness_n_m,
             }
         });
-        let spin = core::array::from_fn(|corner| {
-            let tyre = &tyres[corner / 2];
+        let spin = Corners::from_fn(|corner| {
+            let tyre = &tyres[corner.axle()];
             let deflection_m = wheel_load[corner] / tyre.stiffness_n_m;
             speed_m_s
                 / handling
@@ -144,27 +145,27 @@ impl<E: SuspensionElement> HandlingModel<E> {
             attitude: Attitude::level(),
             rotation: Matrix3::identity(),
             angular: Vector3::zeros(),
-            axles: [AxleCoordinates::default(); 2],
-            axle_rates: [AxleCoordinates::default(); 2],
+            axles: Axles::default(),
+            axle_rates: Axles::default(),
             spin,
             twist: 0.0,
             twist_rate: 0.0,
-            contacts: [ContactState::default(); 4],
+            contacts: Corners::default(),
             steer_rad: 0.0,
             acceleration: Accelerations::default(),
-            wheels: [WheelState::default(); 4],
+            wheels: Corners::default(),
         };
         // At rest on the road's mean level under the wheels at the start, wherever the road's zero is.
-        let height = |corner: usize| {
-            let side = if corner.is_multiple_of(2) { 0.5 } else { -0.5 };
-            let station = if corner < 2 {
-                0.0
-            } else {
-                -parameters.layout.wheelbase_m
+        let [a, b, c, d] = Corners::from_fn(|corner| {
+            let station = match corner.axle() {
+                Axle::Front => 0.0,
+                Axle::Rear => -parameters.layout.wheelbase_m,
             };
-            model.road.height_m(station, side * axle_parameters[corner / 2].track_m)
-        };
-        let datum_m = 0.25 * ((height(0) + height(1)) + (height(2) + height(3)));
+            let side = 0.5 * sign(corner.side());
+            model.road.height_m(station, side * parameters.axle_of(corner).track_m)
+        })
+        .into_array();
+        let datum_m = 0.25 * ((a + b) + (c + d));
         model.rest_height_m += datum_m;
         model.position.z = model.rest_height_m;
         let velocities = model.velocities();
@@ -173,15 +174,15 @@ impl<E: SuspensionElement> HandlingModel<E> {
     }
 
     /// Advances one step. `signals` go to the suspension elements, corner by corner.
-    pub fn step(&mut self, signals: [E::Signal; 4], controls: Controls) {
+    pub fn step(&mut self, signals: Corners<E::Signal>, controls: Controls) {
         let h = self.step_s;
         let half = 0.5 * h;
         self.kick(half);
         self.position += self.velocity * h;
         self.attitude = self.attitude.turned(self.angular, h);
         self.rotation = self.attitude.matrix();
-        for (axle, rate) in self.axles.iter_mut().zip(self.axle_rates) {
-            *axle = axle.plus(h, rate);
+        for (place, axle) in self.axles.iter_mut() {
+            *axle = axle.plus(h, self.axle_rates[place]);
         }
         self.twist += h * self.twist_rate;
         self.steps += 1;
@@ -199,12 +200,12 @@ impl<E: SuspensionElement> HandlingModel<E> {
         (self.velocity, self.angular, self.axle_rates, self.spin, self.twist_rate) = kept;
 
         let places = self.places();
-        for (index, axle) in self.masses.axles.iter().enumerate() {
-            let side = if index == 0 { 0.5 } else { -0.5 };
-            let compression = axle.compression(&places[index], self.axles[index], side * self.twist);
-            let rate = axle.compression_rate(&places[index], predicted.axles[index], side * predicted.twist);
-            for (i, (compression_m, compression_rate_m_s)) in compression.into_iter().zip(rate).enumerate() {
-                let corner = 2 * index + i;
+        for (index, axle) in self.masses.axles.iter() {
+            let half = half_twist(index);
+            let compression = axle.compression(&places[index], self.axles[index], half * self.twist);
+            let rate = axle.compression_rate(&places[index], predicted.axles[index], half * predicted.twist);
+            for ((side, compression_m), compression_rate_m_s) in Side::ALL.into_iter().zip(compression).zip(rate) {
+                let corner = index.corner(side);
                 let motion = Motion {
                     compression_m,
                     compression_rate_m_s,
@@ -224,11 +225,11 @@ impl<E: SuspensionElement> HandlingModel<E> {
         linear.z -= GRAVITY_M_S2;
         self.velocity += linear * duration_s;
         self.angular += a.angular * duration_s;
-        for (rate, axle) in self.axle_rates.iter_mut().zip(a.axles) {
-            *rate = rate.plus(duration_s, axle);
+        for (place, rate) in self.axle_rates.iter_mut() {
+            *rate = rate.plus(duration_s, a.axles[place]);
         }
-        for (spin, rate) in self.spin.iter_mut().zip(a.spin) {
-            *spin += rate * duration_s;
+        for (corner, spin) in self.spin.iter_mut() {
+            *spin += a.spin[corner] * duration_s;
         }
         self.twist_rate += a.twist * duration_s;
     }
@@ -243,61 +244,64 @@ impl<E: SuspensionElement> HandlingModel<E> {
         }
     }
 
-    fn places(&self) -> [AxlePlace; 2] {
-        [0, 1].map(|i: usize| self.masses.axles[i].place(self.axles[i]))
+    fn places(&self) -> Axles<AxlePlace> {
+        Axles::from_fn(|axle| self.masses.axles[axle].place(self.axles[axle]))
     }
 
     /// The four wheels' axes, body axes.
-    fn wheel_axes(&self, places: &[AxlePlace; 2]) -> [Vector3<f64>; 4] {
+    fn wheel_axes(&self, places: &Axles<AxlePlace>) -> Corners<Vector3<f64>> {
         let (sin, cos) = libm::sincos(self.steer_rad);
-        let front = places[0].left * cos - Vector3::new(sin, 0.0, 0.0);
-        [front, front, places[1].left, places[1].left]
+        let front = places.front.left * cos - Vector3::new(sin, 0.0, 0.0);
+        Corners::from_fn(|corner| match corner.axle() {
+            Axle::Front => front,
+            Axle::Rear => places.rear.left,
+        })
     }
 
     fn accelerate(&mut self, velocities: &Velocities, controls: Controls) -> Accelerations {
         let places = self.places();
         let axes = self.wheel_axes(&places);
         let mut loads = Loads::default();
-        let [stiffness, damping] = self.masses.torsion;
+        let (stiffness, damping) = (
+            self.masses.torsional_stiffness_n_m_rad,
+            self.masses.torsional_damping_n_m_s_rad,
+        );
         loads.twist = -(stiffness * self.twist + damping * velocities.twist);
-        for (index, place) in places.iter().enumerate() {
-            let side = if index == 0 { 0.5 } else { -0.5 };
-            let left = 2 * index;
-            let force = [self.elements[left].force_n(), self.elements[left + 1].force_n()];
+        for (index, place) in places.iter() {
+            let half = half_twist(index);
+            let force = self.elements.of_axle(index).map(SuspensionElement::force_n);
             let axle = &self.masses.axles[index];
-            let (forces, torque) = axle.suspension(place, self.axles[index], side * self.twist, force);
+            let (forces, torque) = axle.suspension(place, self.axles[index], half * self.twist, force);
             loads.axles[index] = forces;
-            loads.twist += side * torque;
+            loads.twist += half * torque;
 
-            let share = if index == 0 {
-                self.handling.drive.front_share
-            } else {
-                1.0 - self.handling.drive.front_share
+            let share = match index {
+                Axle::Front => self.handling.drive.front_share,
+                Axle::Rear => 1.0 - self.handling.drive.front_share,
             };
             let drive_n_m = 0.5 * share * controls.drive_force_n * self.tyres[index].free_radius_m;
-            let wheels = [left, left + 1].map(|corner| {
-                let loads = self.roll_wheel(corner, place, axes[corner], velocities, drive_n_m);
-                self.wheels[corner] = loads.state;
-                loads
+            let [left, right] = Side::ALL.map(|side| {
+                let corner = index.corner(side);
+                let wheel = self.roll_wheel(corner, place, axes[corner], velocities, drive_n_m);
+                self.wheels[corner] = wheel.state;
+                loads.spin[corner] = wheel.spin_torque_n_m;
+                wheel
             });
-            loads.add_pair(index, &wheels[0].wrench, &wheels[1].wrench);
-            loads.spin[left] = wheels[0].spin_torque_n_m;
-            loads.spin[left + 1] = wheels[1].spin_torque_n_m;
+            loads.add_pair(index, &left.wrench, &right.wrench);
         }
         self.masses.accelerations(&places, velocities, &loads, &axes)
     }
 
     fn roll_wheel(
         &mut self,
-        corner: usize,
+        corner: Corner,
         place: &AxlePlace,
         axis: Vector3<f64>,
         velocities: &Velocities,
         drive_n_m: f64,
     ) -> WheelLoads {
-        let index = corner / 2;
-        let side = if corner.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let centre = place.mass_centre + place.left * (side * self.masses.axles[index].half_track_m);
+        let index = corner.axle();
+        let centre = place.mass_centre + place.left * (sign(corner.side()) * self.masses.axles[index].half_track_m);
         let rate = velocities.axles[index];
         let arm = centre - place.centre;
         let relative = Vector3::new(0.0, -arm.z * rate.roll, arm.y * rate.roll + rate.heave);
@@ -374,17 +378,17 @@ impl<E: SuspensionElement> HandlingModel<E> {
     }
 
     /// The four wheels.
-    pub fn wheels(&self) -> [WheelState; 4] {
+    pub fn wheels(&self) -> Corners<WheelState> {
         self.wheels
     }
 
     /// Heave along and roll about the body's axes of front and rear axle, from rest.
-    pub fn axles(&self) -> [AxleCoordinates; 2] {
+    pub fn axles(&self) -> Axles<AxleCoordinates> {
         self.axles
     }
 
     /// Heave of an axle's middle in the world from rest, m, and its roll in the world, rad: the ride model's coordinates.
-    pub fn axle_heave_roll(&self, index: usize) -> (f64, f64) {
+    pub fn axle_heave_roll(&self, index: Axle) -> (f64, f64) {
         let place = self.masses.axles[index].place(self.axles[index]);
         let height = (self.rotation * place.mass_centre).z + self.position.z;
         let rest = self.masses.axles[index].place(AxleCoordinates::default()).mass_centre.z + self.rest_height_m;
@@ -395,22 +399,21 @@ impl<E: SuspensionElement> HandlingModel<E> {
     }
 
     /// Displacement of the four struts from rest, m, compression positive.
-    pub fn strut_displacement_m(&self) -> [f64; 4] {
+    pub fn strut_displacement_m(&self) -> Corners<f64> {
         let places = self.places();
-        let [front, rear] = [0, 1].map(|i: usize| {
-            let side = if i == 0 { 0.5 } else { -0.5 };
-            self.masses.axles[i].compression(&places[i], self.axles[i], side * self.twist)
-        });
-        [front[0], front[1], rear[0], rear[1]]
+        Corners::from_axles(Axles::from_fn(|axle| {
+            let twist = half_twist(axle) * self.twist;
+            self.masses.axles[axle].compression(&places[axle], self.axles[axle], twist)
+        }))
     }
 
     /// Force of the four suspension elements, N, compression positive.
-    pub fn suspension_force_n(&self) -> [f64; 4] {
+    pub fn suspension_force_n(&self) -> Corners<f64> {
         self.elements.each_ref().map(SuspensionElement::force_n)
     }
 
     /// The four suspension elements.
-    pub fn elements(&self) -> &[E; 4] {
+    pub fn elements(&self) -> &Corners<E> {
         &self.elements
     }
 
@@ -432,13 +435,12 @@ impl<E: SuspensionElement> HandlingModel<E> {
     pub fn energy_j(&self) -> f64 {
         let places = self.places();
         let mut potential = self.masses.body_kg * GRAVITY_M_S2 * self.position.z;
-        for (index, (axle, place)) in self.masses.axles.iter().zip(&places).enumerate() {
-            let height = (self.rotation * place.mass_centre).z + self.position.z;
-            let side = if index == 0 { 0.5 } else { -0.5 };
-            let bar = self.axles[index].roll - side * self.twist;
+        for (index, axle) in self.masses.axles.iter() {
+            let height = (self.rotation * places[index].mass_centre).z + self.position.z;
+            let bar = self.axles[index].roll - half_twist(index) * self.twist;
             potential += axle.mass_kg * GRAVITY_M_S2 * height + 0.5 * axle.anti_roll_n_m_rad * bar * bar;
         }
-        potential += 0.5 * self.masses.torsion[0] * self.twist * self.twist;
+        potential += 0.5 * self.masses.torsional_stiffness_n_m_rad * self.twist * self.twist;
         self.masses.kinetic_energy_j(&places, &self.velocities()) + potential
     }
 
@@ -449,7 +451,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
         height_m: f64,
         velocity_m_s: [f64; 3],
         rates_rad_s: [f64; 3],
-        axle_rates: [AxleCoordinates; 2],
+        axle_rates: Axles<AxleCoordinates>,
     ) {
         self.position.z = self.rest_height_m + height_m;
         self.velocity = Vector3::from(velocity_m_s);
@@ -467,14 +469,30 @@ impl<E: SuspensionElement> HandlingModel<E> {
         let (linear, angular) = self.masses.momentum(&places, &self.velocities(), &axes);
         let mut first = Vector3::zeros();
         let mut mass = self.masses.body_kg;
-        for (axle, place) in self.masses.axles.iter().zip(&places) {
-            first += place.mass_centre * axle.mass_kg;
+        for (index, axle) in self.masses.axles.iter() {
+            first += places[index].mass_centre * axle.mass_kg;
             mass += axle.mass_kg;
         }
         (
             self.rotation * linear,
             self.rotation * (angular - (first / mass).cross(&linear)),
         )
+    }
+}
+
+/// Share of the body's twist that an end of the body has turned by.
+fn half_twist(axle: Axle) -> f64 {
+    match axle {
+        Axle::Front => 0.5,
+        Axle::Rear => -0.5,
+    }
+}
+
+/// Direction of a side along y: left positive.
+fn sign(side: Side) -> f64 {
+    match side {
+        Side::Left => 1.0,
+        Side::Right => -1.0,
     }
 }
 

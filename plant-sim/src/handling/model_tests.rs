@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use oleo_interface::{Axles, StrutValves};
+
 use super::super::driver::Driver;
 use super::super::track::Track;
 use super::*;
@@ -10,11 +12,13 @@ use crate::strut::StrutModel;
 use crate::vehicle::RideModel;
 use crate::vehicle::suspension::LinearElement;
 
+const SOFT: Corners<StrutValves<bool>> = Corners::from_array([StrutValves::new(true, true, true); 4]);
+
 fn parameters() -> VehicleParameters {
     VehicleParameters::defender110()
 }
 
-fn linear(parameters: &VehicleParameters, stiffness: f64, damping: f64) -> [LinearElement; 4] {
+fn linear(parameters: &VehicleParameters, stiffness: f64, damping: f64) -> Corners<LinearElement> {
     parameters
         .static_strut_load_n()
         .map(|load| LinearElement::new(load, stiffness, damping))
@@ -42,13 +46,14 @@ fn on_struts(road: Arc<dyn Road>, speed: f64) -> HandlingVehicle {
 fn at_rest_it_stays_and_the_wheels_carry_the_weight() {
     let mut model = on_struts(Arc::new(Flat), 0.0);
     for _ in 0..1000 {
-        model.step([[true; 3]; 4], Controls::default());
+        model.step(SOFT, Controls::default());
     }
     let loads = model.wheels().map(|wheel| wheel.load_n);
     let weight = parameters().total_mass_kg() * GRAVITY_M_S2;
-    assert!((loads.iter().sum::<f64>() / weight - 1.0).abs() < 2e-4, "{loads:?}");
-    for (load, expected) in loads.into_iter().zip(parameters().static_wheel_load_n()) {
-        assert!((load / expected - 1.0).abs() < 1e-3, "{load} {expected}");
+    assert!((loads.values().sum::<f64>() / weight - 1.0).abs() < 2e-4, "{loads:?}");
+    let expected = parameters().static_wheel_load_n();
+    for (corner, load) in loads.iter() {
+        assert!((load / expected[corner] - 1.0).abs() < 1e-3, "{load} {expected:?}");
     }
     let motion = model.motion();
     assert!(
@@ -71,13 +76,13 @@ fn thrown(step_s: f64) -> HandlingModel<LinearElement> {
     };
     let elements = linear(&p, 40_000.0, 0.0);
     let mut model = HandlingModel::with_elements(&p, &handling, elements, Arc::new(Flat), 20.0).unwrap();
-    let rates = [
+    let rates = Axles::new(
         AxleCoordinates { heave: 0.4, roll: 0.8 },
         AxleCoordinates {
             heave: -0.3,
             roll: -0.5,
         },
-    ];
+    );
     model.throw(50.0, [20.0, 1.0, 5.0], [1.5, -0.4, 0.7], rates);
     model
 }
@@ -89,11 +94,12 @@ fn preset() -> HandlingParameters {
 use super::super::parameters::Frame;
 
 fn energy(model: &HandlingModel<LinearElement>) -> f64 {
-    let springs = model
-        .strut_displacement_m()
-        .into_iter()
-        .zip(parameters().static_strut_load_n());
-    model.energy_j() + springs.map(|(x, load)| load * x + 0.5 * 40_000.0 * x * x).sum::<f64>()
+    let load = parameters().static_strut_load_n();
+    let displacement = model.strut_displacement_m();
+    let springs = displacement
+        .iter()
+        .map(|(corner, x)| load[corner] * x + 0.5 * 40_000.0 * x * x);
+    model.energy_j() + springs.sum::<f64>()
 }
 
 fn drift(step_s: f64) -> (f64, f64, f64) {
@@ -103,7 +109,7 @@ fn drift(step_s: f64) -> (f64, f64, f64) {
     let steps = (1.2 / step_s).round() as usize;
     let mut worst = (0.0f64, 0.0f64);
     for i in 1..=steps {
-        model.step([(); 4], Controls::default());
+        model.step(Corners::default(), Controls::default());
         let (now, turning) = model.momentum();
         let fallen = Vector3::new(
             0.0,
@@ -114,7 +120,7 @@ fn drift(step_s: f64) -> (f64, f64, f64) {
         worst.1 = worst.1.max((turning - angular).norm() / angular.norm());
     }
     // It has turned by far more than a right angle meanwhile: nothing is small.
-    assert!(model.wheels().iter().all(|wheel| wheel.load_n == 0.0));
+    assert!(model.wheels().values().all(|wheel| wheel.load_n == 0.0));
     (worst.0, worst.1, (energy(&model) - start).abs())
 }
 
@@ -140,12 +146,12 @@ fn damping_only_takes_energy() {
         30.0,
         [0.0; 3],
         [1.0, 0.5, -0.7],
-        [AxleCoordinates { heave: 0.6, roll: 1.0 }; 2],
+        Axles::from_fn(|_| AxleCoordinates { heave: 0.6, roll: 1.0 }),
     );
     let mut last = energy(&model);
     let start = last;
     for _ in 0..1500 {
-        model.step([(); 4], Controls::default());
+        model.step(Corners::default(), Controls::default());
         let now = energy(&model);
         assert!(now < last + 0.05, "{now} {last}");
         last = now;
@@ -173,7 +179,7 @@ fn a_mirrored_drive_gives_mirrored_bits() {
         let mut driver = Driver::new(&preset(), 2.794);
         for _ in 0..4000 {
             let controls = driver.follow(&model.motion(), &track, 17.0, 0.001);
-            model.step([[true; 3]; 4], controls);
+            model.step(SOFT, controls);
         }
         model
     };
@@ -186,7 +192,11 @@ fn a_mirrored_drive_gives_mirrored_bits() {
         (-b.yaw_rad, b.pitch_rad, -b.roll_rad)
     );
     let (p, q) = (one.strut_displacement_m(), other.strut_displacement_m());
-    assert_eq!(p, [q[1], q[0], q[3], q[2]]);
+    let mirrored = Corners::from_fn(|corner| match corner.side() {
+        Side::Left => q[corner.axle().corner(Side::Right)],
+        Side::Right => q[corner.axle().corner(Side::Left)],
+    });
+    assert_eq!(p, mirrored);
 }
 
 /// Steady state at a fixed steer angle and speed: `(steer - L / R) / a_y`, rad s2/m.
@@ -196,7 +206,7 @@ fn understeer(handling: &HandlingParameters, steer_rad: f64, speed: f64) -> (f64
     for _ in 0..9000 {
         let drive_force_n = driver.drive_force_n(&model.motion(), speed, 0.001);
         model.step(
-            [(); 4],
+            Corners::default(),
             Controls {
                 steer_rad,
                 drive_force_n,
@@ -227,7 +237,7 @@ fn understeer_gradient_is_the_bicycle_models() {
     for front_share in [0.5, 0.44, 0.56] {
         p.body.front_mass_share = front_share;
         let loads = p.static_wheel_load_n();
-        let [front, rear] = [0, 2].map(|corner: usize| {
+        let [front, rear] = [Corner::FrontLeft, Corner::RearLeft].map(|corner| {
             let free = 0.382 + loads[corner] / 240_000.0;
             let tyre = handling.tyre.at(loads[corner], 0.0, free);
             (2.0 * tyre.cornering_stiffness_n_rad(), tyre.pneumatic_trail_m())
@@ -244,7 +254,7 @@ fn understeer_gradient_is_the_bicycle_models() {
         for _ in 0..12_000 {
             let drive_force_n = driver.drive_force_n(&model.motion(), 20.0, 0.001);
             model.step(
-                [(); 4],
+                Corners::default(),
                 Controls {
                     steer_rad: 0.002,
                     drive_force_n,
@@ -278,7 +288,7 @@ fn roll_in_a_steady_bend_is_that_of_the_roll_axis_model() {
     for _ in 0..12_000 {
         let drive_force_n = driver.drive_force_n(&model.motion(), 15.0, 0.001);
         model.step(
-            [(); 4],
+            Corners::default(),
             Controls {
                 steer_rad: 0.012,
                 drive_force_n,
@@ -333,11 +343,11 @@ fn with_vertical_forces_only_it_moves_as_the_ride_model_does() {
     let mut model = HandlingModel::with_elements(&p, &handling, springs(), road, 10.0).unwrap();
     let (mut difference, mut size) = ([0.0; 4], [0.0; 4]);
     for i in 0..6000 {
-        model.step([(); 4], Controls::default());
-        ride.step([(); 4]);
+        model.step(Corners::default(), Controls::default());
+        ride.step(Corners::default());
         if i > 2000 {
             let (a, b) = (model.motion(), ride.body());
-            let (axle, _) = model.axle_heave_roll(0);
+            let (axle, _) = model.axle_heave_roll(Axle::Front);
             let pairs = [
                 (a.position_m[2], b.heave_m),
                 (a.pitch_rad, b.pitch_rad),
@@ -364,10 +374,10 @@ fn with_vertical_forces_only_it_moves_as_the_ride_model_does() {
 fn tripped_it_rolls_over_and_the_equations_hold_beyond() {
     let p = parameters();
     let mut model = on_springs(&preset(), 4000.0, Arc::new(Flat), 20.0);
-    model.throw(0.0, [20.0, 0.0, 0.0], [9.0, 0.0, 0.0], [AxleCoordinates::default(); 2]);
+    model.throw(0.0, [20.0, 0.0, 0.0], [9.0, 0.0, 0.0], Axles::default());
     let mut worst: f64 = 0.0;
     for _ in 0..2000 {
-        model.step([(); 4], Controls::default());
+        model.step(Corners::default(), Controls::default());
         worst = worst.max(model.motion().roll_rad.abs());
         assert!(model.motion().position_m.iter().all(|x| x.is_finite()));
         if worst > 2.0 {
@@ -380,7 +390,13 @@ fn tripped_it_rolls_over_and_the_equations_hold_beyond() {
 #[test]
 fn a_strut_that_does_not_carry_its_corner_is_refused() {
     let p = parameters();
-    let struts = [3000.0; 4].map(|load| Strut::at_rest(&StrutModel::defender110(load), [true; 3]).unwrap());
+    let struts = Corners::from_fn(|_| Strut::at_rest(&StrutModel::defender110(3000.0), [true; 3]).unwrap());
     let refused = HandlingVehicle::new(&p, &preset(), struts, Arc::new(Flat), 10.0);
-    assert!(matches!(refused.err(), Some(RideError::StaticLoad { corner: 0, .. })));
+    assert!(matches!(
+        refused.err(),
+        Some(RideError::StaticLoad {
+            corner: Corner::FrontLeft,
+            ..
+        })
+    ));
 }

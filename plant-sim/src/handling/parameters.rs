@@ -4,6 +4,7 @@
 //! A file of its own so that the ride model's file stays what Appendix A needs. The same rules: every value of the
 //! preset carries the label of its origin; an unknown, missing or impossible value is one line with file, line and key.
 
+use oleo_interface::Axle;
 use serde::{Deserialize, Serialize};
 
 use super::magic_formula::MagicFormula;
@@ -121,6 +122,14 @@ impl HandlingParameters {
     /// The shipped Defender 110.
     pub fn defender110() -> Self {
         Self::from_toml(PRESET, "presets/defender110-handling.toml").expect("the shipped preset is parsed in the tests")
+    }
+
+    /// Parameters of an axle.
+    pub fn axle(&self, axle: Axle) -> &HandlingAxle {
+        match axle {
+            Axle::Front => &self.front_axle,
+            Axle::Rear => &self.rear_axle,
+        }
     }
 
     /// Parses and checks a file. `source_name` appears in errors.

@@ -81,7 +81,8 @@ pub fn isotropic_coherence(wavenumber_per_m: f64, separation_m: f64) -> f64 {
     if x <= 0.0 { 1.0 } else { (x * bessel_k1(x)).min(1.0) }
 }
 
-/// Modified Bessel function K1 for x > 0: Abramowitz & Stegun 9.8.3, 9.8.7, 9.8.8; relative error below 3e-7.
+/// Modified Bessel function K1 for x > 0: Abramowitz & Stegun 9.8.3, 9.8.7, 9.8.8; relative error below 3e-7. `libm` and
+/// `statrs` have none.
 fn bessel_k1(x: f64) -> f64 {
     let horner = |t: f64, coefficients: &[f64]| coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c);
     if x <= 2.0 {

@@ -24,7 +24,7 @@ mod random;
 pub mod spectrum;
 mod tracks;
 
-pub use apg::{ApgObstacle, Side};
+pub use apg::ApgObstacle;
 pub use entry::{ENTRY_M, EnteredSmoothly};
 pub use error::RoadError;
 pub use grid::GridRoad;

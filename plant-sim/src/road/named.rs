@@ -3,8 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use oleo_interface::Side;
+
 use super::iso8608::{Class, iso8608};
-use super::{ApgObstacle, EnteredSmoothly, Flat, Road, RoadError, Side, belgian, crg, profile_from_csv};
+use super::{ApgObstacle, EnteredSmoothly, Flat, Road, RoadError, belgian, crg, profile_from_csv};
 
 /// The built-in roads.
 pub const NAMES: [&str; 11] = [
@@ -41,9 +43,9 @@ pub fn from_name_or_path(spec: &str, length_m: f64, seed: u64) -> Result<Arc<dyn
     Ok(match spec {
         "flat" => Arc::new(Flat),
         "belgian" => Arc::new(belgian::belgian_block(length_m, seed)?),
-        "apg-left" => obstacle(Side::Left),
-        "apg-right" => obstacle(Side::Right),
-        "apg-both" => obstacle(Side::Both),
+        "apg-left" => obstacle(Some(Side::Left)),
+        "apg-right" => obstacle(Some(Side::Right)),
+        "apg-both" => obstacle(None),
         "iso-a" => Arc::new(iso8608(Class::A, length_m, seed)?),
         "iso-b" => Arc::new(iso8608(Class::B, length_m, seed)?),
         "iso-c" => Arc::new(iso8608(Class::C, length_m, seed)?),

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
+use oleo_interface::{Axles, Corner, Corners};
 
 use super::element::GasElement;
 use crate::handling::{Ending, HandlingModel, HandlingParameters, Manoeuvre, NotFinite, Run, Track};
@@ -15,26 +15,33 @@ use crate::strut::StrutModel;
 use crate::vehicle::{RideError, VehicleParameters};
 
 /// Static gas volumes and damper factors of front and rear.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Case {
-    /// Static gas volume, front and rear, m3.
-    pub gas_volume_m3: [f64; 2],
-    /// Factor on the damper force of the vehicle as sold, front and rear.
-    pub damper_factor: [f64; 2],
+    /// Static gas volume, m3.
+    pub gas_volume_m3: Axles<f64>,
+    /// Factor on the damper force of the vehicle as sold.
+    pub damper_factor: Axles<f64>,
 }
 
 impl Case {
     /// The same front and rear.
     pub fn alike(gas_volume_m3: f64, damper_factor: f64) -> Self {
         Self {
-            gas_volume_m3: [gas_volume_m3; 2],
-            damper_factor: [damper_factor; 2],
+            gas_volume_m3: Axles::new(gas_volume_m3, gas_volume_m3),
+            damper_factor: Axles::new(damper_factor, damper_factor),
         }
+    }
+
+    /// The four numbers: gas volumes front and rear, damper factors front and rear.
+    pub(super) fn numbers(&self) -> [f64; 4] {
+        let ([volume_f, volume_r], [factor_f, factor_r]) =
+            (self.gas_volume_m3.into_array(), self.damper_factor.into_array());
+        [volume_f, volume_r, factor_f, factor_r]
     }
 }
 
 /// How the study drives.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conditions {
     /// Speed over the rough road, m/s.
     pub ride_speed_m_s: f64,
@@ -64,7 +71,7 @@ impl Default for Conditions {
 }
 
 /// What the rough road says.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ride {
     /// BS 6841 weighted RMS at the driver, m/s2.
     pub driver_rms_m_s2: f64,
@@ -91,7 +98,7 @@ impl Ride {
 }
 
 /// What the lane change says.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Handling {
     /// Largest body roll, rad.
     pub max_roll_rad: f64,
@@ -158,12 +165,11 @@ impl Bench {
     ) -> Result<HandlingModel<GasElement>, RideError> {
         let p = &self.parameters;
         let load = p.static_strut_load_n();
-        let area_m2 = StrutModel::defender110(load[0]).piston_area_m2();
-        let elements = core::array::from_fn(|corner| {
-            let axle = corner / 2;
-            let baseline = if axle == 0 { &p.front_baseline } else { &p.rear_baseline };
+        let area_m2 = StrutModel::defender110(load[Corner::FrontLeft]).piston_area_m2();
+        let elements = Corners::from_fn(|corner| {
+            let axle = corner.axle();
             GasElement::new(
-                baseline,
+                p.baseline(axle),
                 load[corner],
                 area_m2,
                 case.gas_volume_m3[axle],
@@ -195,7 +201,7 @@ impl Bench {
             &mut model,
             p,
             &self.handling,
-            |_| ([(); 4], 0),
+            |_| Default::default(),
             |model| {
                 if model.time_s() > settling_s {
                     for (meter, (x, y)) in meters.iter_mut().zip(seats) {
@@ -228,7 +234,13 @@ impl Bench {
             speed_m_s,
             duration_s,
         };
-        Ok(manoeuvre.drive(&mut model, &self.parameters, &self.handling, |_| ([(); 4], 0), |_| {})?)
+        Ok(manoeuvre.drive(
+            &mut model,
+            &self.parameters,
+            &self.handling,
+            |_| Default::default(),
+            |_| {},
+        )?)
     }
 
     /// Drives the lane change.

@@ -3,6 +3,8 @@
 //! serde finds unknown, missing and mistyped keys; the table of limits below finds the impossible values. The line of
 //! a value is found again in the text, so that the parameter structs stay plain numbers.
 
+use oleo_interface::tick::TICK_S;
+
 use super::parameters::VehicleParameters;
 
 /// A vehicle file that cannot be used: one line saying where and why.
@@ -125,9 +127,6 @@ impl VehicleParameters {
     }
 }
 
-/// The controller's tick, s, which the plant's step must divide.
-const TICK_S: f64 = 0.005;
-
 pub(crate) fn within(
     table: &'static str,
     key: &'static str,
@@ -219,10 +218,11 @@ mod tests {
     fn weight_is_carried_by_wheels_and_shared_as_stated() {
         let preset = VehicleParameters::defender110();
         let wheels = preset.static_wheel_load_n();
-        let sum: f64 = wheels.iter().sum();
+        let [front_left, front_right, ..] = wheels.into_array();
+        let sum: f64 = wheels.values().sum();
         assert!((sum / (2050.0 * GRAVITY) - 1.0).abs() < 1e-12);
-        assert!(((wheels[0] + wheels[1]) / sum - 0.5).abs() < 1e-12);
-        assert_eq!(wheels[0].to_bits(), wheels[1].to_bits());
+        assert!(((front_left + front_right) / sum - 0.5).abs() < 1e-12);
+        assert_eq!(front_left.to_bits(), front_right.to_bits());
     }
     const GRAVITY: f64 = super::super::parameters::GRAVITY_M_S2;
 

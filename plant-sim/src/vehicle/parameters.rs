@@ -5,12 +5,13 @@
 //! `presets/defender110.toml`. A file with an unknown key, a missing key or an impossible value is refused with one
 //! line that names file, line and key: a simulation of a vehicle nobody meant is worse than none.
 
+use oleo_interface::{Axle, Corner, Corners};
 use serde::{Deserialize, Serialize};
 
 /// Standard acceleration of gravity, m/s2 (ISO 80000-3).
 pub const GRAVITY_M_S2: f64 = 9.80665;
 
-/// A vehicle, complete. All values SI; corner order front left, front right, rear left, rear right.
+/// A vehicle, complete. All values SI.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleParameters {
@@ -162,20 +163,21 @@ impl VehicleParameters {
     }
 
     /// Weight that each strut carries at rest on level ground, N: what `StrutModel::defender110` is charged for.
-    pub fn static_strut_load_n(&self) -> [f64; 4] {
+    pub fn static_strut_load_n(&self) -> Corners<f64> {
         let behind = self.body_cg_behind_front_axle_m();
         let weight_n = self.body.sprung_mass_kg * GRAVITY_M_S2;
         let rear = 0.5 * weight_n * behind / self.layout.wheelbase_m;
         let front = 0.5 * weight_n - rear;
-        [front, front, rear, rear]
+        Corners::from_fn(|corner| match corner.axle() {
+            Axle::Front => front,
+            Axle::Rear => rear,
+        })
     }
 
     /// Vertical force of the road on each wheel at rest on level ground, N.
-    pub fn static_wheel_load_n(&self) -> [f64; 4] {
+    pub fn static_wheel_load_n(&self) -> Corners<f64> {
         let strut = self.static_strut_load_n();
-        let front = strut[0] + 0.5 * self.front_axle.mass_kg * GRAVITY_M_S2;
-        let rear = strut[2] + 0.5 * self.rear_axle.mass_kg * GRAVITY_M_S2;
-        [front, front, rear, rear]
+        Corners::from_fn(|corner| strut[corner] + 0.5 * self.axle_of(corner).mass_kg * GRAVITY_M_S2)
     }
 
     /// Position of a seat relative to the body's centre of mass, `(x forward, y left)` in m.
@@ -186,9 +188,25 @@ impl VehicleParameters {
         )
     }
 
-    /// The axle a corner belongs to.
-    pub fn axle_of(&self, corner: usize) -> &AxleParameters {
-        if corner < 2 { &self.front_axle } else { &self.rear_axle }
+    /// Parameters of an axle.
+    pub fn axle(&self, axle: Axle) -> &AxleParameters {
+        match axle {
+            Axle::Front => &self.front_axle,
+            Axle::Rear => &self.rear_axle,
+        }
+    }
+
+    /// Parameters of the axle that a corner belongs to.
+    pub fn axle_of(&self, corner: Corner) -> &AxleParameters {
+        self.axle(corner.axle())
+    }
+
+    /// Coil spring and damper of the vehicle as sold at an axle.
+    pub fn baseline(&self, axle: Axle) -> &BaselineParameters {
+        match axle {
+            Axle::Front => &self.front_baseline,
+            Axle::Rear => &self.rear_baseline,
+        }
     }
 }
 

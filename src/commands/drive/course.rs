@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
+use oleo_interface::Corners;
+use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::handling::{
-    Ending, HandlingModel, HandlingParameters, HandlingVehicle, Manoeuvre, Run, Sample, Track,
+    Ending, HandlingModel, HandlingParameters, HandlingVehicle, Manoeuvre, Run, Sample, Signals, Track,
 };
 use oleo_plant_sim::road::{self, Road};
 use oleo_plant_sim::vehicle::suspension::{CoilElement, SuspensionElement};
@@ -13,8 +15,6 @@ use super::suspension::{Valves, struts};
 use super::{Args, Kind, Model, Setting};
 use crate::failure::Failure;
 
-/// Samples are taken at the controller's tick, s.
-const TICK_S: f64 = 0.005;
 /// Time before a step of steer, s.
 const STEP_AT_S: f64 = 1.0;
 
@@ -116,33 +116,25 @@ impl Course {
         })
     }
 
-    fn coils(&self) -> [CoilElement; 4] {
-        let load = self.vehicle.static_strut_load_n();
-        core::array::from_fn(|corner| {
-            let axle = if corner < 2 {
-                &self.vehicle.front_baseline
-            } else {
-                &self.vehicle.rear_baseline
-            };
-            CoilElement::new(axle, load[corner])
-        })
-    }
-
     /// With the handling model.
     pub fn handling(&self, setting: Setting) -> Result<Run, Failure> {
         let (vehicle, handling) = (&self.vehicle, &self.handling);
         let road = Arc::clone(&self.road);
         let speed_m_s = self.manoeuvre.initial_speed_m_s();
         if setting == Setting::Baseline {
-            let mut model = HandlingModel::with_elements(vehicle, handling, self.coils(), road, speed_m_s)?;
+            let mut model =
+                HandlingModel::with_elements(vehicle, handling, CoilElement::of_vehicle(vehicle), road, speed_m_s)?;
             return Ok(self
                 .manoeuvre
-                .drive(&mut model, vehicle, handling, |_| ([(); 4], 0), |_| {})?);
+                .drive(&mut model, vehicle, handling, |_| Default::default(), |_| {})?);
         }
         let mut valves = Valves::new(setting);
         let struts = struts(vehicle, valves.at_start())?;
         let mut model = HandlingVehicle::new(vehicle, handling, struts, road, speed_m_s)?;
-        let decide = |model: &HandlingVehicle| valves.decide(model.strut_displacement_m(), model.strut_output());
+        let decide = |model: &HandlingVehicle| {
+            let signals = valves.decide(model.strut_displacement_m(), model.strut_output());
+            (signals, signals)
+        };
         Ok(self.manoeuvre.drive(&mut model, vehicle, handling, decide, |_| {})?)
     }
 
@@ -150,20 +142,23 @@ impl Course {
     pub fn ride(&self, setting: Setting) -> Result<Run, Failure> {
         let road = Arc::clone(&self.road);
         if setting == Setting::Baseline {
-            let mut model = BaselineVehicle::with_elements(&self.vehicle, self.coils(), road, self.speed_m_s)?;
-            return Ok(self.ride_out(&mut model, |_| ([(); 4], 0)));
+            let mut model = BaselineVehicle::baseline(&self.vehicle, road, self.speed_m_s)?;
+            return Ok(self.ride_out(&mut model, |_| Default::default()));
         }
         let mut valves = Valves::new(setting);
         let struts = struts(&self.vehicle, valves.at_start())?;
         let mut model = RideVehicle::new(&self.vehicle, struts, road, self.speed_m_s)?;
-        let decide = |model: &RideVehicle| valves.decide(model.strut_displacement_m(), model.strut_output());
+        let decide = |model: &RideVehicle| {
+            let signals = valves.decide(model.strut_displacement_m(), model.strut_output());
+            (signals, signals)
+        };
         Ok(self.ride_out(&mut model, decide))
     }
 
     fn ride_out<E: SuspensionElement>(
         &self,
         model: &mut RideModel<E>,
-        mut decide: impl FnMut(&RideModel<E>) -> ([E::Signal; 4], u16),
+        mut decide: impl FnMut(&RideModel<E>) -> (Corners<E::Signal>, Signals),
     ) -> Run {
         let vehicle = &self.vehicle;
         let seats = [&vehicle.driver_seat, &vehicle.passenger_seat].map(|seat| vehicle.seat_position_m(seat));
@@ -201,7 +196,7 @@ impl Course {
                 ..Sample::default()
             });
             run.max_roll_rad = run.max_roll_rad.max(body.roll_rad.abs());
-            if i > 0 && model.wheels().iter().any(|wheel| wheel.force_n <= 0.0) {
+            if i > 0 && model.wheels().values().any(|wheel| wheel.force_n <= 0.0) {
                 run.wheel_lift_s += TICK_S;
             }
             if i < ticks {

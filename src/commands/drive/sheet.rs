@@ -2,7 +2,10 @@
 
 use std::io::Write as _;
 
-use oleo_plant_sim::handling::{Ending, Manoeuvre, Run, Sample};
+use oleo_controller::ValveCommand;
+use oleo_interface::tick::TICK_S;
+use oleo_interface::{Axle, Corner, StrutValves};
+use oleo_plant_sim::handling::{Ending, Manoeuvre, Run, Sample, Signals};
 use oleo_plant_sim::measures::RideMeter;
 use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Style, Table, significant};
 use serde_json::{Map, Value, json};
@@ -18,9 +21,8 @@ type Named<'a> = (&'a str, &'a str, f64, &'a str);
 
 /// Measures of one run: key, words, value, unit.
 fn measures(course: &Course, run: &Run) -> Vec<(&'static str, &'static str, f64, &'static str)> {
-    let interval_s = 0.005;
     let meter = |of: fn(&Sample) -> f64| {
-        let mut meter = RideMeter::new(interval_s);
+        let mut meter = RideMeter::new(TICK_S);
         run.history.iter().for_each(|sample| meter.add(of(sample)));
         meter.measures()
     };
@@ -216,22 +218,33 @@ const COLUMNS: [(&str, Signal); 32] = [
     ("passenger_seat_m_s2", |s| s.passenger_seat_m_s2),
     ("front_axle_heave_m", |s| s.front_axle_heave_m),
     ("front_axle_roll_rad", |s| s.front_axle_roll_rad),
-    ("wheel_load_fl_N", |s| s.wheel_load_n[0]),
-    ("wheel_load_fr_N", |s| s.wheel_load_n[1]),
-    ("wheel_load_rl_N", |s| s.wheel_load_n[2]),
-    ("wheel_load_rr_N", |s| s.wheel_load_n[3]),
-    ("strut_fl_m", |s| s.strut_displacement_m[0]),
-    ("strut_fr_m", |s| s.strut_displacement_m[1]),
-    ("strut_rl_m", |s| s.strut_displacement_m[2]),
-    ("strut_rr_m", |s| s.strut_displacement_m[3]),
-    ("strut_force_fl_N", |s| s.strut_force_n[0]),
-    ("strut_force_fr_N", |s| s.strut_force_n[1]),
-    ("strut_force_rl_N", |s| s.strut_force_n[2]),
-    ("strut_force_rr_N", |s| s.strut_force_n[3]),
-    ("valve_word", |s| f64::from(s.valves)),
-    ("front_valves_open", |s| f64::from((s.valves & 0x3F).count_ones())),
-    ("rear_valves_open", |s| f64::from((s.valves >> 6).count_ones())),
+    ("wheel_load_fl_N", |s| s.wheel_load_n[Corner::FrontLeft]),
+    ("wheel_load_fr_N", |s| s.wheel_load_n[Corner::FrontRight]),
+    ("wheel_load_rl_N", |s| s.wheel_load_n[Corner::RearLeft]),
+    ("wheel_load_rr_N", |s| s.wheel_load_n[Corner::RearRight]),
+    ("strut_fl_m", |s| s.strut_displacement_m[Corner::FrontLeft]),
+    ("strut_fr_m", |s| s.strut_displacement_m[Corner::FrontRight]),
+    ("strut_rl_m", |s| s.strut_displacement_m[Corner::RearLeft]),
+    ("strut_rr_m", |s| s.strut_displacement_m[Corner::RearRight]),
+    ("strut_force_fl_N", |s| s.strut_force_n[Corner::FrontLeft]),
+    ("strut_force_fr_N", |s| s.strut_force_n[Corner::FrontRight]),
+    ("strut_force_rl_N", |s| s.strut_force_n[Corner::RearLeft]),
+    ("strut_force_rr_N", |s| s.strut_force_n[Corner::RearRight]),
+    ("valve_word", |s| f64::from(valve_word(&s.valves))),
+    ("front_valves_open", |s| open_valves(s, Axle::Front)),
+    ("rear_valves_open", |s| open_valves(s, Axle::Rear)),
 ];
+
+/// The controller's valve word: bit `3 * corner + valve`, 1 open.
+fn valve_word(signals: &Signals) -> u16 {
+    ValveCommand::from_corners(signals.map(StrutValves::into_array).into_array()).word()
+}
+
+/// Open valves of an axle, 0 to 6.
+fn open_valves(sample: &Sample, axle: Axle) -> f64 {
+    let open = |valves: &StrutValves<bool>| valves.iter().filter(|(_, open)| **open).count();
+    sample.valves.of_axle(axle).map(open).iter().sum::<usize>() as f64
+}
 
 fn column(run: &Run, of: fn(&Sample) -> f64) -> Vec<f64> {
     run.history.iter().map(of).collect()
@@ -388,26 +401,26 @@ fn page(course: &Course, setting: Setting, runs: &[(&str, Run)], table: &Table, 
                 "Wheel load",
                 "N",
                 &[
-                    ("front left", |s| s.wheel_load_n[0]),
-                    ("front right", |s| s.wheel_load_n[1]),
-                    ("rear left", |s| s.wheel_load_n[2]),
-                    ("rear right", |s| s.wheel_load_n[3]),
+                    ("front left", |s| s.wheel_load_n[Corner::FrontLeft]),
+                    ("front right", |s| s.wheel_load_n[Corner::FrontRight]),
+                    ("rear left", |s| s.wheel_load_n[Corner::RearLeft]),
+                    ("rear right", |s| s.wheel_load_n[Corner::RearRight]),
                 ],
             ),
             (
                 "Displacement",
                 "m",
                 &[
-                    ("front left", |s| s.strut_displacement_m[0]),
-                    ("front right", |s| s.strut_displacement_m[1]),
-                    ("rear left", |s| s.strut_displacement_m[2]),
-                    ("rear right", |s| s.strut_displacement_m[3]),
+                    ("front left", |s| s.strut_displacement_m[Corner::FrontLeft]),
+                    ("front right", |s| s.strut_displacement_m[Corner::FrontRight]),
+                    ("rear left", |s| s.strut_displacement_m[Corner::RearLeft]),
+                    ("rear right", |s| s.strut_displacement_m[Corner::RearRight]),
                 ],
             ),
             (
                 "Open valves",
                 "of 12",
-                &[("open", |s| f64::from(s.valves.count_ones()))],
+                &[("open", |s| open_valves(s, Axle::Front) + open_valves(s, Axle::Rear))],
             ),
         ],
     ));

@@ -1,6 +1,8 @@
 //! The suspension as set on the command line: fixed valves, or the controller called directly, without a bus between.
 
 use oleo_controller::{Configuration, Inputs, State, tick};
+use oleo_interface::{Corners, StrutValves};
+use oleo_plant_sim::handling::Signals;
 use oleo_plant_sim::strut::{ModelError, Strut, StrutModel, StrutOutput};
 use oleo_plant_sim::vehicle::VehicleParameters;
 
@@ -28,29 +30,29 @@ impl Valves {
     }
 
     /// Signals before the first tick: what the struts start with.
-    pub fn at_start(&self) -> [bool; 3] {
-        [matches!(self, Self::Fixed(true)); 3]
+    pub fn at_start(&self) -> StrutValves<bool> {
+        StrutValves::from_fn(|_| matches!(self, Self::Fixed(true)))
     }
 
-    /// Signals for the coming tick of 5 ms, and the valve word.
-    pub fn decide(&mut self, displacement_m: [f64; 4], outputs: [StrutOutput; 4]) -> ([[bool; 3]; 4], u16) {
+    /// Signals for the coming tick of 5 ms.
+    pub fn decide(&mut self, displacement_m: Corners<f64>, outputs: Corners<StrutOutput>) -> Signals {
         match self {
-            Self::Fixed(open) => ([[*open; 3]; 4], if *open { 0x0FFF } else { 0 }),
+            Self::Fixed(open) => Corners::from_fn(|_| StrutValves::from_fn(|_| *open)),
             Self::Controlled { configuration, state } => {
                 let inputs = Inputs::from_values(
-                    displacement_m.map(|x| x as f32),
-                    outputs.map(|output| output.pressure_pa.map(|p| p as f32)),
+                    displacement_m.map(|x| x as f32).into_array(),
+                    outputs.map(|output| output.pressure_pa.map(|p| p as f32)).into_array(),
                 );
                 let command = tick(configuration, state, &inputs).command;
-                (command.corners(), command.word())
+                Corners::from_array(command.corners()).map(StrutValves::from_array)
             }
         }
     }
 }
 
 /// Four struts of the preset, each for its corner's static load.
-pub fn struts(parameters: &VehicleParameters, signals: [bool; 3]) -> Result<[Strut; 4], ModelError> {
-    let [a, b, c, d] = parameters.static_strut_load_n();
-    let strut = |load_n: f64| Strut::at_rest(&StrutModel::defender110(load_n), signals);
-    Ok([strut(a)?, strut(b)?, strut(c)?, strut(d)?])
+pub fn struts(parameters: &VehicleParameters, signals: StrutValves<bool>) -> Result<Corners<Strut>, ModelError> {
+    let [a, b, c, d] = parameters.static_strut_load_n().into_array();
+    let strut = |load_n: f64| Strut::at_rest(&StrutModel::defender110(load_n), signals.into_array());
+    Ok(Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]))
 }

@@ -3,6 +3,7 @@
 use std::io::Write as _;
 use std::process::ExitCode;
 
+use oleo_interface::{Axle, Axles};
 use oleo_plant_sim::study::{DAMPER_FACTORS, GAS_VOLUMES_M3, Objective, Optimum, Visit, Weights, optimise};
 use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Progress, Style, Table, significant};
 use serde_json::json;
@@ -75,7 +76,8 @@ fn outcome(optimum: &Optimum) -> Table {
     let mut row = |name: &str, value: f64, unit: &str| {
         table.row([name.to_owned(), significant(value, 4), unit.to_owned()]);
     };
-    for (axle, name) in ["front", "rear"].into_iter().enumerate() {
+    for axle in Axle::ALL {
+        let name = axle.key();
         row(
             &format!("static gas volume, {name}"),
             1e3 * best.case.gas_volume_m3[axle],
@@ -106,8 +108,8 @@ fn outcome(optimum: &Optimum) -> Table {
 
 fn write(out: &mut OutputDirectory, optimum: &Optimum, table: &Table) -> Result<(), Failure> {
     let column = |of: &dyn Fn(&Visit) -> f64| optimum.path.iter().map(of).collect::<Vec<f64>>();
-    let volume = [0, 1].map(|axle: usize| column(&|v| 1e3 * v.case.gas_volume_m3[axle]));
-    let factor = [0, 1].map(|axle: usize| column(&|v| v.case.damper_factor[axle]));
+    let volume = Axles::from_fn(|axle| column(&|v| 1e3 * v.case.gas_volume_m3[axle]));
+    let factor = Axles::from_fn(|axle| column(&|v| v.case.damper_factor[axle]));
     let objective = column(&|v| v.objective);
     let number: Vec<f64> = (1..=optimum.path.len()).map(|i| i as f64).collect();
     let best: Vec<f64> = objective
@@ -125,10 +127,10 @@ fn write(out: &mut OutputDirectory, optimum: &Optimum, table: &Table) -> Result<
         "path.csv",
         &[
             ("point", &number),
-            ("gas_volume_front_l", &volume[0]),
-            ("gas_volume_rear_l", &volume[1]),
-            ("damper_factor_front", &factor[0]),
-            ("damper_factor_rear", &factor[1]),
+            ("gas_volume_front_l", &volume.front),
+            ("gas_volume_rear_l", &volume.rear),
+            ("damper_factor_front", &factor.front),
+            ("damper_factor_rear", &factor.rear),
             ("objective", &objective),
             ("weighted_rms_m_s2", &rms),
             ("msdv_m_s1_5", &dose),
@@ -147,16 +149,16 @@ fn write(out: &mut OutputDirectory, optimum: &Optimum, table: &Table) -> Result<
     );
     path.caption("Every point looked at, in its order; the search begins with the reference case.");
     let panel = path.panel(Axis::new("Damper factor", "").range(DAMPER_FACTORS[0] - 0.1, DAMPER_FACTORS[6] + 0.1));
-    panel.series(Style::LineAndPoints, "front", &volume[0], &factor[0]);
-    if volume[0] != volume[1] || factor[0] != factor[1] {
-        panel.series(Style::LineAndPoints, "rear", &volume[1], &factor[1]);
+    panel.series(Style::LineAndPoints, "front", &volume.front, &factor.front);
+    if volume.front != volume.rear || factor.front != factor.rear {
+        panel.series(Style::LineAndPoints, "rear", &volume.rear, &factor.rear);
     }
     let case = optimum.best.case;
     panel.series(
         Style::Points,
         "best",
-        &[1e3 * case.gas_volume_m3[0]],
-        &[case.damper_factor[0]],
+        &[1e3 * case.gas_volume_m3.front],
+        &[case.damper_factor.front],
     );
     let mut progress = Curves::new("Objective", Axis::new("Point", ""));
     let panel = progress.panel(Axis::new("Objective", ""));
@@ -166,8 +168,8 @@ fn write(out: &mut OutputDirectory, optimum: &Optimum, table: &Table) -> Result<
     out.json(
         "summary.json",
         &json!({
-            "gas_volume_l": case.gas_volume_m3.map(|v| 1e3 * v),
-            "damper_factor": case.damper_factor,
+            "gas_volume_l": case.gas_volume_m3.map(|v| 1e3 * v).into_array(),
+            "damper_factor": case.damper_factor.into_array(),
             "objective": optimum.best.objective,
             "points": optimum.path.len(),
             "simulations": optimum.runs,

@@ -18,6 +18,7 @@ pub mod linear;
 pub(crate) mod parameter_file;
 mod parameters;
 mod ride;
+mod seat;
 pub mod suspension;
 
 pub use parameter_file::ParameterError;
@@ -26,3 +27,4 @@ pub use parameters::{
     SolverParameters, TyreParameters, VehicleParameters,
 };
 pub use ride::{BaselineVehicle, BodyMotion, RideError, RideModel, RideVehicle, WheelMotion};
+pub use seat::{Seat, SeatAcceleration, Seats};

@@ -211,3 +211,16 @@ impl VehicleParameters {
 }
 
 const DEFENDER110_TOML: &str = include_str!("../../presets/defender110.toml");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Table 1 of the seed report counts one "anti-rollbar stiffness" between the two halves of one bar.
+    #[test]
+    fn the_preset_has_one_anti_roll_bar() {
+        let preset = VehicleParameters::defender110();
+        let bars = Axle::ALL.map(|axle| preset.axle(axle).anti_roll_stiffness_n_m_rad);
+        assert_eq!(bars.iter().filter(|stiffness| **stiffness > 0.0).count(), 1, "{bars:?}");
+    }
+}

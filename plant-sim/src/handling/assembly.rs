@@ -1,10 +1,11 @@
 //! From the two parameter files to the inertias and geometry that the equations of motion know.
 
 use nalgebra::Vector3;
-use oleo_interface::Axles;
+use oleo_interface::{Axle, Axles};
 
 use super::axle::AxleGeometry;
 use super::dynamics::Masses;
+use super::guide::Guide;
 use super::parameters::HandlingParameters;
 use crate::vehicle::VehicleParameters;
 
@@ -16,6 +17,17 @@ pub(super) fn masses(parameters: &VehicleParameters, handling: &HandlingParamete
     let ahead_m = Axles::new(ahead_m, ahead_m - parameters.layout.wheelbase_m);
     let axles = Axles::from_fn(|place| {
         let (axle, more) = (parameters.axle(place), handling.axle(place));
+        // Radius arms point backwards from the front axle, trailing links forwards from the rear one. The axle's roll against
+        // the body is opposite to the body's lean, hence the signs of the yaw that understeers.
+        let (ahead, understeers) = match place {
+            Axle::Front => (-1.0, 1.0),
+            Axle::Rear => (1.0, -1.0),
+        };
+        let guide = Guide {
+            pitch_per_heave_rad_m: ahead / more.side_view_swing_arm_m,
+            instant_centre_z_m: more.side_view_instant_centre_height_m - height_m,
+            yaw_per_roll: understeers * more.roll_understeer,
+        };
         AxleGeometry {
             mass_kg: axle.mass_kg,
             roll_inertia_kg_m2: axle.inertia_kg_m2,
@@ -25,6 +37,7 @@ pub(super) fn masses(parameters: &VehicleParameters, handling: &HandlingParamete
             half_track_m: 0.5 * axle.track_m,
             half_strut_spacing_m: 0.5 * axle.strut_spacing_m,
             anti_roll_n_m_rad: axle.anti_roll_stiffness_n_m_rad,
+            guide,
         }
     });
     let stiffness = handling.frame.torsional_stiffness_n_m_rad;

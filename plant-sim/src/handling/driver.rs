@@ -13,7 +13,8 @@
 //! 1992), so `gain` 1 asks for just that arc. The integral is for long bends only; the report has none. A first-order lag
 //! stands for arms and steering box; angle and rate are limited in the vehicle ("steering angle limiter", table 1).
 //!
-//! Speed ("forward speed", a constraint in table 1) is held by a proportional-integral force, limited.
+//! Speed ("forward speed", a constraint in table 1) is held by a proportional-integral force: drive within engine power and
+//! traction, or brake.
 
 use super::motion::{Controls, HandlingMotion};
 use super::parameters::HandlingParameters;
@@ -62,20 +63,25 @@ impl Driver {
         self.steer_rad += (wanted - self.steer_rad) * (step_s / (driver.lag_s + step_s));
         Controls {
             steer_rad: self.steer_rad,
-            drive_force_n: self.drive_force_n(motion, speed_m_s, step_s),
+            ..self.hold_speed(motion, speed_m_s, step_s)
         }
     }
 
-    /// Force that holds `speed_m_s`, N.
-    pub fn drive_force_n(&mut self, motion: &HandlingMotion, speed_m_s: f64, step_s: f64) -> f64 {
+    /// Drive and brake that hold `speed_m_s`, straight ahead.
+    pub fn hold_speed(&mut self, motion: &HandlingMotion, speed_m_s: f64, step_s: f64) -> Controls {
         let drive = &self.handling.drive;
         let error = speed_m_s - motion.speed_m_s;
         let force = drive.speed_gain_n_s_m * error + self.force_integral_n;
+        let most = drive.most_n(motion.speed_m_s);
         // The integral waits while the force is at its limit.
-        if force.abs() < drive.max_force_n {
+        if force > -drive.max_brake_force_n && force < most {
             self.force_integral_n += drive.speed_integral_n_m * step_s * error;
         }
-        force.clamp(-drive.max_force_n, drive.max_force_n)
+        Controls {
+            steer_rad: 0.0,
+            drive_force_n: force.clamp(0.0, most),
+            brake_force_n: (-force).clamp(0.0, drive.max_brake_force_n),
+        }
     }
 }
 

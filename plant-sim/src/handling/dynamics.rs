@@ -9,15 +9,18 @@
 //!
 //! Kane's form of Newton and Euler in body axes (T. R. Kane, D. A. Levinson, *Dynamics: Theory and Applications*, 1985):
 //! every body's `m a_G` and `J W' + W x (J W + h)` are projected on what each coordinate moves. For an axle at `g` from the
-//! body's centre of mass, with `t = e_x x arm` and W = w + e_x p':
+//! body's centre of mass, with `l = dg/ds` (up, and a little fore and aft: `guide`), `t = e_x x arm` and W = w + e_x p':
 //!
 //! ```text
-//! a_G = a + w' x g + e_z s'' + t p'' + w x (w x g) + 2 w x (e_z s' + t p') - arm p'^2
+//! a_G = a + w' x g + l s'' + t p'' + w x (w x g) + 2 w x (l s' + t p') - arm p'^2 + l' s'
 //! W'  = w' + e_x p'' + w x e_x p'
 //! ```
 //!
 //! The axles' coordinates couple to the body only, so they are eliminated axle by axle (a 2 x 2 inverse each) and one
 //! 6 x 6 positive definite system remains (Cholesky). Nothing is linearised: the equations hold for any roll angle.
+//!
+//! Heave and roll bring a little pitch and yaw of the axle with them (`guide`); loads and gyroscopic torques are projected on
+//! those too.
 //!
 //! Wheels are rotors in the axle: `I Omega' = drive torque + tyre torque` about the wheel's axis, and `h = sum I Omega y_w` gives
 //! the gyroscopic torque. The bearing passes everything but that tyre torque to the axle; the axle takes the reaction
@@ -32,6 +35,7 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use oleo_interface::{Axle, Axles, Corners};
 
 use super::axle::{AxleCoordinates, AxleGeometry, AxlePlace};
+use super::guide::Guide;
 
 /// Inertia of the body and what the axles are.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,15 +99,16 @@ pub(super) struct Wrench {
 
 impl Wrench {
     /// Of a force (N) at a point of the axle and a moment (N m), body axes.
-    pub(super) fn on_axle(place: &AxlePlace, force: Vector3<f64>, point: Vector3<f64>, moment: Vector3<f64>) -> Self {
-        let arm = point - place.centre;
+    pub(super) fn on_axle(
+        (place, guide): (&AxlePlace, &Guide),
+        force: Vector3<f64>,
+        point: Vector3<f64>,
+        moment: Vector3<f64>,
+    ) -> Self {
         Self {
             force,
             moment: point.cross(&force) + moment,
-            axle: AxleCoordinates {
-                heave: force.z,
-                roll: arm.y * force.z - arm.z * force.y + moment.x,
-            },
+            axle: guide.generalised(place, &force, &point, &moment),
         }
     }
 }
@@ -157,7 +162,6 @@ impl Masses {
     ) -> Accelerations {
         let w = velocities.angular;
         let e_x = Vector3::new(1.0, 0.0, 0.0);
-        let e_z = Vector3::new(0.0, 0.0, 1.0);
         let j = self.body_inertia_kg_m2;
 
         let mut mass = self.body_kg;
@@ -169,13 +173,17 @@ impl Masses {
         let parts = Axles::from_fn(|index| {
             let (axle, place) = (&self.axles[index], &places[index]);
             let rate = velocities.axles[index];
-            let (m, g, t) = (axle.mass_kg, place.mass_centre, place.swing);
+            let (m, g, l, t) = (axle.mass_kg, place.mass_centre, place.lift, place.swing);
 
-            let relative = e_z * rate.heave + t * rate.roll;
-            let bias = w.cross(&(w.cross(&g) + relative * 2.0)) - place.arm * (rate.roll * rate.roll);
+            let relative = l * rate.heave + t * rate.roll;
+            let sliding = axle.guide.pitch_per_heave_rad_m * rate.heave * (rate.heave + place.arm.y * rate.roll);
+            let bias = w.cross(&(w.cross(&g) + relative * 2.0)) - place.arm * (rate.roll * rate.roll) + e_x * sliding;
             let turn = w + e_x * rate.roll;
-            let momentum = place.inertia * turn + self.wheel_momentum(index, velocities, axes);
-            let turn_bias = place.inertia * (w.cross(&e_x) * rate.roll) + turn.cross(&momentum);
+            // The wheels' axes turn with the axle as its links guide it, which makes their gyroscopic torque.
+            let gyroscopic = (w + axle.guide.turn(place, rate)).cross(&self.wheel_momentum(index, velocities, axes));
+            let guided = axle.guide.guided(place, &gyroscopic);
+            let turn_bias =
+                place.inertia * (w.cross(&e_x) * rate.roll) + turn.cross(&(place.inertia * turn)) + gyroscopic;
 
             let g_skew = skew(g);
             mass += m;
@@ -184,18 +192,21 @@ impl Masses {
             force -= bias * m;
             moment -= g.cross(&bias) * m + turn_bias;
 
-            let heave = g.cross(&e_z) * m;
+            let heave = g.cross(&l) * m;
             let roll = g.cross(&t) * m + e_x * axle.roll_inertia_kg_m2;
-            let (a, b, c) = (m, m * t.z, m * t.dot(&t) + axle.roll_inertia_kg_m2);
+            let (a, b, c) = (m * l.dot(&l), m * l.dot(&t), m * t.dot(&t) + axle.roll_inertia_kg_m2);
             let determinant = a * c - b * b;
             let load = loads.axles[index];
             Eliminated {
                 inverse: [c / determinant, -b / determinant, a / determinant],
                 coupling: [
-                    SVector::from([0.0, 0.0, m, heave.x, heave.y, heave.z]),
+                    SVector::from([m * l.x, 0.0, m * l.z, heave.x, heave.y, heave.z]),
                     SVector::from([m * t.x, m * t.y, m * t.z, roll.x, roll.y, roll.z]),
                 ],
-                right: [load.heave - m * bias.z, load.roll - m * t.dot(&bias) - turn_bias.x],
+                right: [
+                    load.heave - m * l.dot(&bias) - guided.heave,
+                    load.roll - m * t.dot(&bias) - turn_bias.x - guided.roll,
+                ],
             }
         });
 
@@ -286,5 +297,5 @@ fn axle_motion(place: &AxlePlace, velocities: &Velocities, index: Axle) -> (Vect
     let rate = velocities.axles[index];
     let speed = velocities.linear + velocities.angular.cross(&place.mass_centre) + place.swing * rate.roll;
     let turn = velocities.angular + Vector3::new(rate.roll, 0.0, 0.0);
-    (speed + Vector3::new(0.0, 0.0, rate.heave), turn)
+    (speed + place.lift * rate.heave, turn)
 }

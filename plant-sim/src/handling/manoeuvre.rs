@@ -11,8 +11,8 @@ use super::model::HandlingModel;
 use super::motion::Controls;
 use super::parameters::HandlingParameters;
 use super::track::Track;
-use crate::vehicle::VehicleParameters;
 use crate::vehicle::suspension::SuspensionElement;
+use crate::vehicle::{SeatAcceleration, Seats, VehicleParameters};
 
 /// Side slip beyond which the vehicle has spun, rad: 45 degrees.
 const SPUN_RAD: f64 = core::f64::consts::FRAC_PI_4;
@@ -100,8 +100,7 @@ pub struct Sample {
     pub wheel_load_n: Corners<f64>,
     pub strut_displacement_m: Corners<f64>,
     pub strut_force_n: Corners<f64>,
-    pub driver_seat_m_s2: f64,
-    pub passenger_seat_m_s2: f64,
+    pub seat: Seats<SeatAcceleration>,
     pub front_axle_heave_m: f64,
     pub front_axle_roll_rad: f64,
     /// Switching signals of the valves, `true` open; all closed for a suspension that has none.
@@ -185,7 +184,7 @@ impl Manoeuvre {
         let steps_a_tick = (TICK_S / h).round().max(1.0) as u64;
         let ticks = (self.duration_s() / TICK_S).round() as u64;
         let mut driver = Driver::new(handling, parameters.layout.wheelbase_m);
-        let seats = [&parameters.driver_seat, &parameters.passenger_seat].map(|seat| parameters.seat_position_m(seat));
+        let seats = Seats::from_fn(|seat| parameters.seat_place_m(seat));
         let mut run = Run {
             ending: Ending::Completed,
             history: Vec::with_capacity(ticks as usize + 1),
@@ -252,7 +251,7 @@ impl Manoeuvre {
                 ..
             } => Controls {
                 steer_rad: if time_s >= *at_s { *angle_rad } else { 0.0 },
-                drive_force_n: driver.drive_force_n(&motion, *speed_m_s, step_s),
+                ..driver.hold_speed(&motion, *speed_m_s, step_s)
             },
         }
     }
@@ -262,7 +261,7 @@ impl Run {
     fn note<E: SuspensionElement>(
         &mut self,
         model: &HandlingModel<E>,
-        seats: [(f64, f64); 2],
+        seats: Seats<[f64; 3]>,
         valves: Signals,
         track: &Track,
         parameters: &VehicleParameters,
@@ -270,7 +269,6 @@ impl Run {
     ) {
         let motion = model.motion();
         let wheels = model.wheels();
-        let [driver_seat, passenger_seat] = seats.map(|(x, y)| model.vertical_acceleration_at(x, y));
         let (front_axle_heave_m, front_axle_roll_rad) = model.axle_heave_roll(Axle::Front);
         let sample = Sample {
             time_s: model.time_s(),
@@ -289,8 +287,7 @@ impl Run {
             wheel_load_n: wheels.map(|wheel| wheel.load_n),
             strut_displacement_m: model.strut_displacement_m(),
             strut_force_n: model.suspension_force_n(),
-            driver_seat_m_s2: driver_seat,
-            passenger_seat_m_s2: passenger_seat,
+            seat: seats.map(|place| model.acceleration_at(place)),
             front_axle_heave_m,
             front_axle_roll_rad,
             valves,

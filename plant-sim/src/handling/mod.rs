@@ -17,11 +17,13 @@ mod axle;
 mod driver;
 mod dynamics;
 mod ground;
+mod guide;
 mod magic_formula;
 mod manoeuvre;
 mod model;
 mod motion;
 mod parameters;
+mod steering;
 mod track;
 mod wheel;
 

@@ -5,19 +5,22 @@
 //! are implicit (see `wheel`). The suspension elements are the ride model's too, so every spring of one model runs in
 //! the other.
 
+mod observe;
+
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
 use oleo_interface::{Axle, Axles, Corner, Corners, Side};
 
 use super::assembly::masses;
-use super::attitude::{Attitude, yaw_pitch_roll};
+use super::attitude::Attitude;
 use super::axle::{AxleCoordinates, AxlePlace};
 use super::dynamics::{Accelerations, Loads, Masses, Velocities};
 use super::ground::Probe;
-use super::motion::{Controls, HandlingMotion};
+use super::motion::Controls;
 use super::parameters::HandlingParameters;
-use super::wheel::{ContactState, Tyre, WheelLoads, WheelMotion, WheelState};
+use super::steering::SteeringState;
+use super::wheel::{ContactState, Tyre, WheelLoads, WheelMotion, WheelState, WheelTorque};
 use crate::road::Road;
 use crate::strut::{Strut, StrutOutput};
 use crate::vehicle::suspension::{Motion, StrutElement, SuspensionElement};
@@ -50,7 +53,7 @@ pub struct HandlingModel<E> {
     twist: f64,
     twist_rate: f64,
     contacts: Corners<ContactState>,
-    steer_rad: f64,
+    steering: SteeringState,
     acceleration: Accelerations,
     wheels: Corners<WheelState>,
 }
@@ -151,7 +154,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
             twist: 0.0,
             twist_rate: 0.0,
             contacts: Corners::default(),
-            steer_rad: 0.0,
+            steering: SteeringState::default(),
             acceleration: Accelerations::default(),
             wheels: Corners::default(),
         };
@@ -186,12 +189,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
         }
         self.twist += h * self.twist_rate;
         self.steps += 1;
-        let steering = &self.handling.steering;
-        let most = steering.max_rate_rad_s * h;
-        let wanted = controls
-            .steer_rad
-            .clamp(-steering.max_angle_rad, steering.max_angle_rad);
-        self.steer_rad += (wanted - self.steer_rad).clamp(-most, most);
+        self.steering.turn(&self.handling.steering, controls.steer_rad, h);
 
         // Speeds half a step on, for the forces; the true ones follow from those forces.
         let kept = (self.velocity, self.angular, self.axle_rates, self.spin, self.twist_rate);
@@ -215,7 +213,16 @@ impl<E: SuspensionElement> HandlingModel<E> {
             }
         }
         self.acceleration = self.accelerate(&predicted, controls);
+        self.steering
+            .give_way(&self.handling.steering, self.swivel_torque_n_m(), h);
         self.kick(half);
+    }
+
+    /// Torque of the front tyres about the swivel pins, N m, left positive.
+    fn swivel_torque_n_m(&self) -> f64 {
+        let trail_m = self.handling.steering.castor_trail_m;
+        let [left, right] = self.wheels.of_axle(Axle::Front);
+        (left.aligning_n_m + right.aligning_n_m) - trail_m * (left.lateral_n + right.lateral_n)
     }
 
     /// Velocities after `duration_s` of the present accelerations.
@@ -250,12 +257,16 @@ impl<E: SuspensionElement> HandlingModel<E> {
 
     /// The four wheels' axes, body axes.
     fn wheel_axes(&self, places: &Axles<AxlePlace>) -> Corners<Vector3<f64>> {
-        let (sin, cos) = libm::sincos(self.steer_rad);
-        let front = places.front.left * cos - Vector3::new(sin, 0.0, 0.0);
-        Corners::from_fn(|corner| match corner.axle() {
-            Axle::Front => front,
-            Axle::Rear => places.rear.left,
-        })
+        let axis = Axles::from_fn(|axle| {
+            let steer_rad = match axle {
+                Axle::Front => self.steering.wheel_rad(),
+                Axle::Rear => 0.0,
+            };
+            let yaw = self.masses.axles[axle].guide.yaw_rad(self.axles[axle]);
+            let (sin, cos) = libm::sincos(yaw + steer_rad);
+            places[axle].left * cos - Vector3::new(sin, 0.0, 0.0)
+        });
+        Corners::from_fn(|corner| axis[corner.axle()])
     }
 
     fn accelerate(&mut self, velocities: &Velocities, controls: Controls) -> Accelerations {
@@ -275,14 +286,18 @@ impl<E: SuspensionElement> HandlingModel<E> {
             loads.axles[index] = forces;
             loads.twist += half * torque;
 
-            let share = match index {
-                Axle::Front => self.handling.drive.front_share,
-                Axle::Rear => 1.0 - self.handling.drive.front_share,
+            let drive = &self.handling.drive;
+            let share = |front: f64| match index {
+                Axle::Front => 0.5 * front * self.tyres[index].free_radius_m,
+                Axle::Rear => 0.5 * (1.0 - front) * self.tyres[index].free_radius_m,
             };
-            let drive_n_m = 0.5 * share * controls.drive_force_n * self.tyres[index].free_radius_m;
+            let torque = WheelTorque {
+                drive_n_m: share(drive.front_share) * controls.drive_force_n,
+                brake_n_m: share(drive.brake_front_share) * controls.brake_force_n,
+            };
             let [left, right] = Side::ALL.map(|side| {
                 let corner = index.corner(side);
-                let wheel = self.roll_wheel(corner, place, axes[corner], velocities, drive_n_m);
+                let wheel = self.roll_wheel(corner, place, axes[corner], velocities, torque);
                 self.wheels[corner] = wheel.state;
                 loads.spin[corner] = wheel.spin_torque_n_m;
                 wheel
@@ -298,18 +313,17 @@ impl<E: SuspensionElement> HandlingModel<E> {
         place: &AxlePlace,
         axis: Vector3<f64>,
         velocities: &Velocities,
-        drive_n_m: f64,
+        torque: WheelTorque,
     ) -> WheelLoads {
         let index = corner.axle();
-        let centre = place.mass_centre + place.left * (sign(corner.side()) * self.masses.axles[index].half_track_m);
+        let axle = &self.masses.axles[index];
+        let centre = place.mass_centre + place.left * (sign(corner.side()) * axle.half_track_m);
         let rate = velocities.axles[index];
-        let arm = centre - place.centre;
-        let relative = Vector3::new(0.0, -arm.z * rate.roll, arm.y * rate.roll + rate.heave);
         let motion = WheelMotion {
             centre,
             axis,
-            velocity: velocities.linear + velocities.angular.cross(&centre) + relative,
-            turn: velocities.angular + Vector3::new(rate.roll, 0.0, 0.0),
+            velocity: velocities.linear + velocities.angular.cross(&centre) + axle.guide.velocity(place, &centre, rate),
+            turn: velocities.angular + axle.guide.turn(place, rate),
             spin: velocities.spin[corner],
             height_m: 0.0,
         };
@@ -328,120 +342,10 @@ impl<E: SuspensionElement> HandlingModel<E> {
             &motion,
             &plane,
             &self.rotation,
-            place,
-            drive_n_m,
+            (place, &axle.guide),
+            torque,
             self.step_s,
         )
-    }
-
-    /// Time since the start, s: an exact multiple of the step.
-    pub fn time_s(&self) -> f64 {
-        self.steps as f64 * self.step_s
-    }
-
-    /// The fixed step, s.
-    pub fn step_s(&self) -> f64 {
-        self.step_s
-    }
-
-    /// Steer angle of the front wheels, rad, left positive.
-    pub fn steer_rad(&self) -> f64 {
-        self.steer_rad
-    }
-
-    /// Motion of the body.
-    pub fn motion(&self) -> HandlingMotion {
-        let (yaw_rad, pitch_rad, roll_rad) = yaw_pitch_roll(&self.rotation);
-        let (sin, cos) = libm::sincos(yaw_rad);
-        let mut acceleration = self.rotation * self.acceleration.linear;
-        acceleration.z -= GRAVITY_M_S2;
-        let v = self.velocity;
-        let foot = self.position - self.rotation * Vector3::new(0.0, 0.0, self.body_height_m);
-        let (along, across) = (v.x * cos + v.y * sin, v.y * cos - v.x * sin);
-        HandlingMotion {
-            position_m: [self.position.x, self.position.y, self.position.z - self.rest_height_m],
-            foot_m: [foot.x, foot.y],
-            velocity_m_s: [v.x, v.y, v.z],
-            yaw_rad,
-            pitch_rad,
-            roll_rad,
-            rates_rad_s: [self.angular.x, self.angular.y, self.angular.z],
-            speed_m_s: along,
-            lateral_acceleration_m_s2: acceleration.y * cos - acceleration.x * sin,
-            vertical_acceleration_m_s2: acceleration.z,
-            side_slip_rad: if along.abs() > 0.1 {
-                libm::atan(across / along.abs())
-            } else {
-                0.0
-            },
-        }
-    }
-
-    /// The four wheels.
-    pub fn wheels(&self) -> Corners<WheelState> {
-        self.wheels
-    }
-
-    /// Heave along and roll about the body's axes of front and rear axle, from rest.
-    pub fn axles(&self) -> Axles<AxleCoordinates> {
-        self.axles
-    }
-
-    /// Heave of an axle's middle in the world from rest, m, and its roll in the world, rad: the ride model's coordinates.
-    pub fn axle_heave_roll(&self, index: Axle) -> (f64, f64) {
-        let place = self.masses.axles[index].place(self.axles[index]);
-        let height = (self.rotation * place.mass_centre).z + self.position.z;
-        let rest = self.masses.axles[index].place(AxleCoordinates::default()).mass_centre.z + self.rest_height_m;
-        (
-            height - rest,
-            libm::asin((self.rotation * place.left).z.clamp(-1.0, 1.0)),
-        )
-    }
-
-    /// Displacement of the four struts from rest, m, compression positive.
-    pub fn strut_displacement_m(&self) -> Corners<f64> {
-        let places = self.places();
-        Corners::from_axles(Axles::from_fn(|axle| {
-            let twist = half_twist(axle) * self.twist;
-            self.masses.axles[axle].compression(&places[axle], self.axles[axle], twist)
-        }))
-    }
-
-    /// Force of the four suspension elements, N, compression positive.
-    pub fn suspension_force_n(&self) -> Corners<f64> {
-        self.elements.each_ref().map(SuspensionElement::force_n)
-    }
-
-    /// The four suspension elements.
-    pub fn elements(&self) -> &Corners<E> {
-        &self.elements
-    }
-
-    /// Twist of the body's front half against its rear half, rad.
-    pub fn twist_rad(&self) -> f64 {
-        self.twist
-    }
-
-    /// Acceleration along the body's vertical axis less gravity at rest, m/s2, at a place of the body ahead and to the
-    /// left of its centre of mass: what a seat's accelerometer reads.
-    pub fn vertical_acceleration_at(&self, x_m: f64, y_m: f64) -> f64 {
-        let place = Vector3::new(x_m, y_m, 0.0);
-        let w = self.angular;
-        let a = self.acceleration.angular;
-        self.acceleration.linear.z + (a.x * y_m - a.y * x_m) + w.cross(&w.cross(&place)).z - GRAVITY_M_S2
-    }
-
-    /// Kinetic energy, gravity and what anti-roll bars and the body's torsion hold, J (suspension and tyres not counted).
-    pub fn energy_j(&self) -> f64 {
-        let places = self.places();
-        let mut potential = self.masses.body_kg * GRAVITY_M_S2 * self.position.z;
-        for (index, axle) in self.masses.axles.iter() {
-            let height = (self.rotation * places[index].mass_centre).z + self.position.z;
-            let bar = self.axles[index].roll - half_twist(index) * self.twist;
-            potential += axle.mass_kg * GRAVITY_M_S2 * height + 0.5 * axle.anti_roll_n_m_rad * bar * bar;
-        }
-        potential += 0.5 * self.masses.torsional_stiffness_n_m_rad * self.twist * self.twist;
-        self.masses.kinetic_energy_j(&places, &self.velocities()) + potential
     }
 
     /// Puts the body into a motion, for tests against closed forms: height above rest, velocity in the world, angular
@@ -459,24 +363,6 @@ impl<E: SuspensionElement> HandlingModel<E> {
         self.axle_rates = axle_rates;
         let velocities = self.velocities();
         self.acceleration = self.accelerate(&velocities, Controls::default());
-    }
-
-    /// Momentum and angular momentum about the whole's centre of mass, world axes.
-    #[cfg(test)]
-    pub(super) fn momentum(&self) -> (Vector3<f64>, Vector3<f64>) {
-        let places = self.places();
-        let axes = self.wheel_axes(&places);
-        let (linear, angular) = self.masses.momentum(&places, &self.velocities(), &axes);
-        let mut first = Vector3::zeros();
-        let mut mass = self.masses.body_kg;
-        for (index, axle) in self.masses.axles.iter() {
-            first += places[index].mass_centre * axle.mass_kg;
-            mass += axle.mass_kg;
-        }
-        (
-            self.rotation * linear,
-            self.rotation * (angular - (first / mass).cross(&linear)),
-        )
     }
 }
 
@@ -497,5 +383,6 @@ fn sign(side: Side) -> f64 {
 }
 
 #[cfg(test)]
-#[path = "model_tests.rs"]
+mod steady_tests;
+#[cfg(test)]
 mod tests;

@@ -3,10 +3,13 @@
 /// What driver or test asks of the vehicle in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Controls {
-    /// Steer angle of the front wheels wanted, rad, left positive; limited in angle and rate by the vehicle.
+    /// Steer angle wanted: angle of the steering wheel over the steering ratio, rad, left positive; limited in angle and rate
+    /// by the vehicle.
     pub steer_rad: f64,
-    /// Drive (positive) or brake force wanted of all wheels, N.
+    /// Drive force wanted of all wheels together, N, 0 or more.
     pub drive_force_n: f64,
+    /// Brake force wanted of all wheels together, N, 0 or more.
+    pub brake_force_n: f64,
 }
 
 /// Motion of the body in the world.

@@ -15,7 +15,7 @@ use crate::vehicle::parameter_file::{Limits, describe, line_at, line_of, within}
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandlingParameters {
-    /// Limits of the steering.
+    /// Steering: limits, elasticity, castor.
     pub steering: Steering,
     /// Front live axle: located sideways by the Panhard rod.
     pub front_axle: HandlingAxle,
@@ -23,7 +23,7 @@ pub struct HandlingParameters {
     pub rear_axle: HandlingAxle,
     /// Torsion of the body between the axles.
     pub frame: Frame,
-    /// Drive and speed control.
+    /// Drive, brakes and speed control.
     pub drive: Drive,
     /// Preview driver.
     pub driver: DriverParameters,
@@ -35,7 +35,7 @@ pub struct HandlingParameters {
     pub tyre: MagicFormula,
 }
 
-/// Limits of the steering, at the road wheels.
+/// Steering, at the road wheels: angles and torques of the steering wheel are referred to them by the steering ratio.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Steering {
@@ -43,6 +43,12 @@ pub struct Steering {
     pub max_angle_rad: f64,
     /// Largest rate of steer, rad/s.
     pub max_rate_rad_s: f64,
+    /// Torque about the swivel pins of both wheels per angle that the linkage gives way, N m/rad.
+    pub linkage_stiffness_n_m_rad: f64,
+    /// Time in which the linkage gives way, s.
+    pub linkage_time_constant_s: f64,
+    /// Distance of the contact point behind the swivel axis, m.
+    pub castor_trail_m: f64,
 }
 
 /// A live axle.
@@ -55,6 +61,12 @@ pub struct HandlingAxle {
     pub housing_pitch_inertia_kg_m2: f64,
     /// Inertia of one wheel with all that turns with it, kg m2.
     pub wheel_spin_inertia_kg_m2: f64,
+    /// Distance from the axle to the side-view instant centre of its links, m: behind the front axle, ahead of the rear one.
+    pub side_view_swing_arm_m: f64,
+    /// Height above ground of the side-view instant centre at static load, m.
+    pub side_view_instant_centre_height_m: f64,
+    /// Yaw of the axle per roll of the body against it, rad/rad; positive understeers, negative oversteers.
+    pub roll_understeer: f64,
 }
 
 /// Torsion of the body.
@@ -67,18 +79,24 @@ pub struct Frame {
     pub torsional_damping_ratio: f64,
 }
 
-/// Drive and speed control: force wanted of all four wheels together.
+/// Drive, brakes and speed control; forces are those of all four wheels together.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drive {
-    /// Share of the torque at the front axle, 0..1.
+    /// Share of the drive torque at the front axle, 0..1.
     pub front_share: f64,
+    /// Share of the brake force at the front axle, 0..1.
+    pub brake_front_share: f64,
     /// Force per speed error, N s/m.
     pub speed_gain_n_s_m: f64,
     /// Force per integral of the speed error, N/m.
     pub speed_integral_n_m: f64,
-    /// Limit of the force, drive or brake, N.
-    pub max_force_n: f64,
+    /// Limit of the drive force, N.
+    pub max_drive_force_n: f64,
+    /// Limit of the drive power at the wheels, W.
+    pub max_drive_power_w: f64,
+    /// Limit of the brake force, N.
+    pub max_brake_force_n: f64,
 }
 
 /// The report's preview driver.
@@ -113,6 +131,14 @@ pub struct Outline {
     pub front_overhang_m: f64,
     /// Behind the rear axle, m.
     pub rear_overhang_m: f64,
+}
+
+impl Drive {
+    /// Largest drive force at a speed, N: the limit of the force, and of the power.
+    pub fn most_n(&self, speed_m_s: f64) -> f64 {
+        // Below walking pace the force is limited, not the power.
+        self.max_drive_force_n.min(self.max_drive_power_w / speed_m_s.max(1.0))
+    }
 }
 
 const PRESET: &str = include_str!("../../presets/defender110-handling.toml");
@@ -164,6 +190,19 @@ impl HandlingParameters {
             self.steering.max_rate_rad_s,
             (0.01, 100.0),
         )?;
+        within(
+            "steering",
+            "linkage_stiffness_n_m_rad",
+            self.steering.linkage_stiffness_n_m_rad,
+            (1e3, 1e9),
+        )?;
+        within(
+            "steering",
+            "linkage_time_constant_s",
+            self.steering.linkage_time_constant_s,
+            (0.0, 1.0),
+        )?;
+        within("steering", "castor_trail_m", self.steering.castor_trail_m, (-0.5, 0.5))?;
         for (table, axle) in [("front_axle", &self.front_axle), ("rear_axle", &self.rear_axle)] {
             within(table, "roll_centre_height_m", axle.roll_centre_height_m, (-1.0, 3.0))?;
             let inertia: Limits = (0.01, 1e4);
@@ -179,6 +218,16 @@ impl HandlingParameters {
                 axle.wheel_spin_inertia_kg_m2,
                 inertia,
             )?;
+        }
+        for (table, axle) in [("front_axle", &self.front_axle), ("rear_axle", &self.rear_axle)] {
+            within(table, "side_view_swing_arm_m", axle.side_view_swing_arm_m, (0.2, 1e6))?;
+            within(
+                table,
+                "side_view_instant_centre_height_m",
+                axle.side_view_instant_centre_height_m,
+                (-2.0, 1e6),
+            )?;
+            within(table, "roll_understeer", axle.roll_understeer, (-0.5, 0.5))?;
         }
         let frame = &self.frame;
         within(
@@ -197,7 +246,10 @@ impl HandlingParameters {
         within("drive", "front_share", drive.front_share, (0.0, 1.0))?;
         within("drive", "speed_gain_n_s_m", drive.speed_gain_n_s_m, (0.0, 1e6))?;
         within("drive", "speed_integral_n_m", drive.speed_integral_n_m, (0.0, 1e6))?;
-        within("drive", "max_force_n", drive.max_force_n, (0.0, 1e6))?;
+        within("drive", "brake_front_share", drive.brake_front_share, (0.0, 1.0))?;
+        within("drive", "max_drive_force_n", drive.max_drive_force_n, (0.0, 1e6))?;
+        within("drive", "max_drive_power_w", drive.max_drive_power_w, (0.0, 1e7))?;
+        within("drive", "max_brake_force_n", drive.max_brake_force_n, (0.0, 1e6))?;
         let driver = &self.driver;
         within("driver", "preview_time_s", driver.preview_time_s, (0.05, 10.0))?;
         within("driver", "gain", driver.gain, (0.0, 100.0))?;

@@ -9,10 +9,10 @@ use oleo_interface::{Axles, Corner, Corners};
 
 use super::element::GasElement;
 use crate::handling::{Ending, HandlingModel, HandlingParameters, Manoeuvre, NotFinite, Run, Track};
-use crate::measures::RideMeter;
+use crate::measures::SeatMeter;
 use crate::road::{Flat, Road, RoadError};
 use crate::strut::StrutModel;
-use crate::vehicle::{RideError, VehicleParameters};
+use crate::vehicle::{RideError, Seats, VehicleParameters};
 
 /// Static gas volumes and damper factors of front and rear.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -194,23 +194,21 @@ impl Bench {
             duration_s,
         };
         let p = &self.parameters;
-        let seats = [&p.driver_seat, &p.passenger_seat].map(|seat| p.seat_position_m(seat));
-        let mut meters = [RideMeter::new(model.step_s()), RideMeter::new(model.step_s())];
+        let seats = Seats::from_fn(|seat| p.seat_place_m(seat));
         let settling_s = self.conditions.ride_settling_s;
+        let mut meters = Seats::from_fn(|_| SeatMeter::new(model.step_s(), settling_s));
         let run = manoeuvre.drive(
             &mut model,
             p,
             &self.handling,
             |_| Default::default(),
             |model| {
-                if model.time_s() > settling_s {
-                    for (meter, (x, y)) in meters.iter_mut().zip(seats) {
-                        meter.add(model.vertical_acceleration_at(x, y));
-                    }
+                for (seat, meter) in meters.iter_mut() {
+                    meter.add(model.acceleration_at(seats[seat]));
                 }
             },
         )?;
-        let [driver, passenger] = meters.map(|meter| meter.measures());
+        let Seats { driver, passenger } = meters.map(|meter| meter.measures().vertical);
         Ok(Ride {
             driver_rms_m_s2: driver.weighted_rms_m_s2,
             passenger_rms_m_s2: passenger.weighted_rms_m_s2,

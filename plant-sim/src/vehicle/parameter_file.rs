@@ -101,6 +101,7 @@ impl VehicleParameters {
         ] {
             within(table, "behind_front_axle_m", seat.behind_front_axle_m, (-10.0, 20.0))?;
             within(table, "left_of_centre_m", seat.left_of_centre_m, (-5.0, 5.0))?;
+            within(table, "above_ground_m", seat.above_ground_m, (-2.0, 10.0))?;
         }
         let step_s = self.solver.step_s;
         within("solver", "step_s", step_s, (1e-6, 0.005))?;

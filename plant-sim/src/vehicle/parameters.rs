@@ -8,6 +8,8 @@
 use oleo_interface::{Axle, Corner, Corners};
 use serde::{Deserialize, Serialize};
 
+use super::seat::Seat;
+
 /// Standard acceleration of gravity, m/s2 (ISO 80000-3).
 pub const GRAVITY_M_S2: f64 = 9.80665;
 
@@ -123,6 +125,8 @@ pub struct SeatParameters {
     pub behind_front_axle_m: f64,
     /// Distance to the left of the centre plane, m (right is negative).
     pub left_of_centre_m: f64,
+    /// Height of the seat surface above ground at static load, m.
+    pub above_ground_m: f64,
 }
 
 /// Fixed-step integration.
@@ -186,6 +190,16 @@ impl VehicleParameters {
             self.body_cg_behind_front_axle_m() - seat.behind_front_axle_m,
             seat.left_of_centre_m,
         )
+    }
+
+    /// A seat's place in body axes (ahead, left, up) from the body's centre of mass, m.
+    pub fn seat_place_m(&self, seat: Seat) -> [f64; 3] {
+        let seat = match seat {
+            Seat::Driver => &self.driver_seat,
+            Seat::Passenger => &self.passenger_seat,
+        };
+        let (x, y) = self.seat_position_m(seat);
+        [x, y, seat.above_ground_m - self.body_cg_height_m()]
     }
 
     /// Parameters of an axle.

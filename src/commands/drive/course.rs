@@ -9,7 +9,7 @@ use oleo_plant_sim::handling::{
 };
 use oleo_plant_sim::road::{self, Road};
 use oleo_plant_sim::vehicle::suspension::{CoilElement, SuspensionElement};
-use oleo_plant_sim::vehicle::{BaselineVehicle, RideModel, RideVehicle, VehicleParameters};
+use oleo_plant_sim::vehicle::{BaselineVehicle, RideModel, RideVehicle, SeatAcceleration, Seats, VehicleParameters};
 
 use super::suspension::{Valves, struts};
 use super::{Args, Kind, Model, Setting};
@@ -161,7 +161,7 @@ impl Course {
         mut decide: impl FnMut(&RideModel<E>) -> (Corners<E::Signal>, Signals),
     ) -> Run {
         let vehicle = &self.vehicle;
-        let seats = [&vehicle.driver_seat, &vehicle.passenger_seat].map(|seat| vehicle.seat_position_m(seat));
+        let seats = Seats::from_fn(|seat| vehicle.seat_place_m(seat));
         let steps_a_tick = (TICK_S / model.step_s()).round().max(1.0) as usize;
         let ticks = (self.duration_s / TICK_S).round() as usize;
         let mut run = Run {
@@ -175,7 +175,10 @@ impl Course {
         for i in 0..=ticks {
             let (signals, valves) = decide(model);
             let body = model.body();
-            let [driver, passenger] = seats.map(|(x, y)| model.vertical_acceleration_at(x, y));
+            let seat = seats.map(|[x, y, _]| SeatAcceleration {
+                vertical_m_s2: model.vertical_acceleration_at(x, y),
+                ..SeatAcceleration::default()
+            });
             let (axles, _) = model.state();
             run.history.push(Sample {
                 time_s: model.time_s(),
@@ -188,8 +191,7 @@ impl Course {
                 wheel_load_n: model.wheels().map(|wheel| wheel.force_n),
                 strut_displacement_m: model.strut_displacement_m(),
                 strut_force_n: model.suspension_force_n(),
-                driver_seat_m_s2: driver,
-                passenger_seat_m_s2: passenger,
+                seat,
                 front_axle_heave_m: axles.front_heave,
                 front_axle_roll_rad: axles.front_roll,
                 valves,

@@ -26,7 +26,10 @@ fn measures(course: &Course, run: &Run) -> Vec<(&'static str, &'static str, f64,
         run.history.iter().for_each(|sample| meter.add(of(sample)));
         meter.measures()
     };
-    let (driver, passenger) = (meter(|s| s.driver_seat_m_s2), meter(|s| s.passenger_seat_m_s2));
+    let (driver, passenger) = (
+        meter(|s| s.seat.driver.vertical_m_s2),
+        meter(|s| s.seat.passenger.vertical_m_s2),
+    );
     let peak = |of: fn(&Sample) -> f64| run.history.iter().map(|s| of(s).abs()).fold(0.0, f64::max);
     let mut list = vec![
         (
@@ -214,8 +217,8 @@ const COLUMNS: [(&str, Signal); 32] = [
     ("lateral_acceleration_m_s2", |s| s.lateral_acceleration_m_s2),
     ("vertical_acceleration_m_s2", |s| s.vertical_acceleration_m_s2),
     ("steer_rad", |s| s.steer_rad),
-    ("driver_seat_m_s2", |s| s.driver_seat_m_s2),
-    ("passenger_seat_m_s2", |s| s.passenger_seat_m_s2),
+    ("driver_seat_m_s2", |s| s.seat.driver.vertical_m_s2),
+    ("passenger_seat_m_s2", |s| s.seat.passenger.vertical_m_s2),
     ("front_axle_heave_m", |s| s.front_axle_heave_m),
     ("front_axle_roll_rad", |s| s.front_axle_roll_rad),
     ("wheel_load_fl_N", |s| s.wheel_load_n[Corner::FrontLeft]),

@@ -1,5 +1,6 @@
 //! `oleo-plant-sim`
 
+pub mod course;
 pub mod handling;
 pub mod measures;
 pub mod rig;

@@ -1,6 +1,6 @@
 //! `oleo drive`: the vehicle through a manoeuvre, with the ride model, the handling model or both.
 
-mod course;
+mod plan;
 mod sheet;
 mod suspension;
 
@@ -8,17 +8,20 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::ValueEnum;
+use oleo_plant_sim::course::DriverStyle;
 use oleo_plant_sim::handling::HandlingParameters;
-use oleo_plant_sim::vehicle::VehicleParameters;
+use oleo_plant_sim::vehicle::{Load, VehicleParameters};
 
 use crate::failure::Failure;
-use course::Course;
+use plan::Plan;
 
 /// Drive the vehicle through a manoeuvre and report its motion, comfort and handling.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  oleo drive --manoeuvre lane-change --speed-km-h 60 --setting controlled --out lane\n  \
                   oleo drive --manoeuvre belgian --model both --setting baseline --out figures-2-to-5\n  \
+                  oleo drive --manoeuvre lane-change --road iso-d --driver hard --load laden --setting baseline\n  \
+                  oleo drive --manoeuvre straight --side-slope-percent 10 --setting soft\n  \
                   oleo drive --manoeuvre bump --speed-km-h 10 --model both --setting baseline\n\n\
                   Steer, yaw and lateral values are positive to the left, roll with the left side up, pitch with the nose down."
 )]
@@ -32,21 +35,40 @@ pub struct Args {
     /// Suspension: struts with all valves open, all closed, under the controller, or the coil springs of the vehicle as sold
     #[arg(long, value_enum, default_value_t = Setting::Controlled)]
     setting: Setting,
-    /// Speed, km/h [default: 60, bump 5; constant-radius: speed at the end]
+    /// Speed, km/h [default: 60, bump 5, braking in a bend and acceleration 40; constant-radius: speed at the end]
     #[arg(long, value_name = "KM_H", allow_negative_numbers = true)]
     speed_km_h: Option<f64>,
-    /// Road for `straight`: belgian, apg-left, apg-right, apg-both, iso-a .. iso-f, flat, or a .crg or .csv file
-    #[arg(long, value_name = "ROAD", default_value = "flat")]
-    road: String,
+    /// Road: belgian, apg-left, apg-right, apg-both, iso-a .. iso-f, flat, or a .crg or .csv file [default: flat; belgian and
+    /// bump have their own]
+    #[arg(long, value_name = "ROAD")]
+    road: Option<String>,
+    /// Side slope of the road, %, positive where the left side is the higher one; it grows over 30 m
+    #[arg(long, value_name = "PERCENT", default_value_t = 0.0, allow_negative_numbers = true)]
+    side_slope_percent: f64,
+    /// Who drives: eased cuts corners, hard asks for all that a lane change takes
+    #[arg(long, value_name = "eased|hard", default_value = "eased", value_parser = word::<DriverStyle>)]
+    driver: DriverStyle,
+    /// What the vehicle carries: as-sold (nothing), laden (900 kg), roof (150 kg on the roof) or laden-roof (750 and 150 kg)
+    #[arg(long, value_name = "LOAD", default_value = "as-sold", value_parser = word::<Load>)]
+    load: Load,
     /// Time to drive, s [default: 20; lane changes end behind the last cones]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     duration_s: Option<f64>,
-    /// Radius of constant-radius, m, positive to the left
+    /// Way to drive straight ahead before the first cones of a lane change, m
+    #[arg(long, value_name = "M", default_value_t = 25.0, allow_negative_numbers = true)]
+    entry_m: f64,
+    /// Radius of constant-radius and braking-in-bend, m, positive to the left
     #[arg(long, value_name = "M", default_value_t = 40.0, allow_negative_numbers = true)]
     radius_m: f64,
-    /// Steer angle of step-steer at the road wheels, degrees, positive to the left
+    /// Angle of the steering wheel over the steering ratio in step-steer, degrees, positive to the left
     #[arg(long, value_name = "DEG", default_value_t = 2.0, allow_negative_numbers = true)]
     steer_deg: f64,
+    /// Deceleration or acceleration asked for, m/s2 [default: 5 for braking, 2 for acceleration]
+    #[arg(long, value_name = "M_S2", allow_negative_numbers = true)]
+    change_m_s2: Option<f64>,
+    /// Time at the start that does not count for comfort, s
+    #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
+    score_from_s: f64,
     /// Phases of random roads
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -78,6 +100,34 @@ pub(crate) enum Kind {
     StepSteer,
     /// Straight over any road
     Straight,
+    /// Braking straight ahead to a stop
+    Braking,
+    /// ISO 7975, braking in a bend with the steering wheel held
+    BrakingInBend,
+    /// Acceleration straight ahead
+    Acceleration,
+}
+
+impl Kind {
+    /// Needs the handling model: steering, brakes or drive.
+    fn steers(self) -> bool {
+        !matches!(self, Self::Belgian | Self::Bump | Self::Straight)
+    }
+
+    fn title(self) -> &'static str {
+        match self {
+            Self::Belgian => "Belgian block",
+            Self::Bump => "APG obstacle, left wheels",
+            Self::LaneChange => "Severe double lane change, ISO 3888-1",
+            Self::LaneChange2 => "Obstacle avoidance, ISO 3888-2",
+            Self::ConstantRadius => "Constant radius, ISO 4138",
+            Self::StepSteer => "Step of steer, ISO 7401",
+            Self::Straight => "Straight ahead",
+            Self::Braking => "Braking straight ahead",
+            Self::BrakingInBend => "Braking in a bend, ISO 7975",
+            Self::Acceleration => "Acceleration straight ahead",
+        }
+    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -113,6 +163,21 @@ impl Setting {
     }
 }
 
+/// One of the words of `T`.
+pub(crate) fn word<T>(text: &str) -> Result<T, String>
+where
+    T: std::str::FromStr + strum::VariantArray + Copy + Into<&'static str>,
+{
+    let words = || {
+        T::VARIANTS
+            .iter()
+            .map(|word| (*word).into())
+            .collect::<Vec<&str>>()
+            .join(", ")
+    };
+    text.parse().map_err(|_| format!("give one of {}", words()))
+}
+
 /// Parameters from files or built in.
 pub(crate) fn parameters(
     vehicle: Option<&PathBuf>,
@@ -145,14 +210,20 @@ pub(crate) fn parameters(
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let out = args.out.as_ref().map(oleo_report::OutputDirectory::stage).transpose()?;
     let (vehicle, handling) = parameters(args.vehicle.as_ref(), args.handling.as_ref())?;
-    let course = Course::new(&args, vehicle, handling)?;
+    let plan = Plan::new(&args, vehicle, handling)?;
+    if !(args.score_from_s >= 0.0 && args.score_from_s <= 3600.0) {
+        return Err(Failure::new(format!(
+            "--score-from-s {}: give a value from 0 to 3600",
+            args.score_from_s
+        )));
+    }
     let mut runs = Vec::new();
     if args.model != Model::Handling {
-        runs.push(("ride model", course.ride(args.setting)?));
+        runs.push(("ride model", plan.ride(args.setting)?));
     }
     if args.model != Model::Ride {
-        runs.push(("handling model", course.handling(args.setting)?));
+        runs.push(("handling model", plan.handling(args.setting)?));
     }
-    sheet::publish(&course, args.setting, &runs, out)?;
+    sheet::publish(&plan, &args, &runs, out)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -32,6 +32,10 @@ pub struct HandlingMotion {
     pub rates_rad_s: [f64; 3],
     /// Horizontal speed along the heading, m/s.
     pub speed_m_s: f64,
+    /// Horizontal velocity of the foot to the left of the heading, m/s.
+    pub foot_lateral_m_s: f64,
+    /// Horizontal acceleration along the heading, m/s2.
+    pub longitudinal_acceleration_m_s2: f64,
     /// Horizontal acceleration to the left of the heading, m/s2.
     pub lateral_acceleration_m_s2: f64,
     /// Vertical acceleration in the world, m/s2.

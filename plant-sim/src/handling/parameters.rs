@@ -99,7 +99,7 @@ pub struct Drive {
     pub max_brake_force_n: f64,
 }
 
-/// The report's preview driver.
+/// The report's preview driver, and the one who steers by optimal preview control.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DriverParameters {
@@ -111,6 +111,8 @@ pub struct DriverParameters {
     pub integral_per_s: f64,
     /// First-order lag of arms and steering box, s.
     pub lag_s: f64,
+    /// How far the driver looks ahead who steers by optimal preview control, s.
+    pub optimal_preview_time_s: f64,
 }
 
 /// Base of the plane through an uneven road below a tyre.
@@ -255,6 +257,12 @@ impl HandlingParameters {
         within("driver", "gain", driver.gain, (0.0, 100.0))?;
         within("driver", "integral_per_s", driver.integral_per_s, (0.0, 100.0))?;
         within("driver", "lag_s", driver.lag_s, (0.0, 5.0))?;
+        within(
+            "driver",
+            "optimal_preview_time_s",
+            driver.optimal_preview_time_s,
+            (0.05, 10.0),
+        )?;
         within("ground", "plane_length_m", self.ground.plane_length_m, (0.01, 2.0))?;
         within("ground", "plane_width_m", self.ground.plane_width_m, (0.01, 2.0))?;
         within(

@@ -8,11 +8,15 @@ use std::sync::Arc;
 use oleo_interface::{Axles, Corner, Corners};
 
 use super::element::GasElement;
-use crate::handling::{Ending, HandlingModel, HandlingParameters, Manoeuvre, NotFinite, Run, Track};
+use crate::course::{Course, Drive, DriverStyle, Ending, LaneChange, Manoeuvre, NotFinite, Run};
+use crate::handling::HandlingParameters;
 use crate::measures::SeatMeter;
 use crate::road::{Flat, Road, RoadError};
 use crate::strut::StrutModel;
 use crate::vehicle::{RideError, Seats, VehicleParameters};
+
+/// How far the vehicle drives straight ahead before the first cones, m.
+const ENTRY_M: f64 = 25.0;
 
 /// Static gas volumes and damper factors of front and rear.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,6 +57,8 @@ pub struct Conditions {
     pub seed: u64,
     /// Speed in the lane change, m/s.
     pub lane_change_speed_m_s: f64,
+    /// Who drives the lane change.
+    pub driver: DriverStyle,
     /// Polytropic exponent of the gas.
     pub polytropic_exponent: f64,
 }
@@ -65,6 +71,7 @@ impl Default for Conditions {
             ride_settling_s: 1.0,
             seed: 1,
             lane_change_speed_m_s: 60.0 / 3.6,
+            driver: DriverStyle::Eased,
             polytropic_exponent: 1.4,
         }
     }
@@ -157,12 +164,7 @@ impl Bench {
         })
     }
 
-    fn vehicle(
-        &self,
-        case: &Case,
-        road: Arc<dyn Road>,
-        speed_m_s: f64,
-    ) -> Result<HandlingModel<GasElement>, RideError> {
+    fn begin(&self, case: &Case, manoeuvre: Manoeuvre, road: Arc<dyn Road>) -> Result<Drive<GasElement>, RideError> {
         let p = &self.parameters;
         let load = p.static_strut_load_n();
         let area_m2 = StrutModel::defender110(load[Corner::FrontLeft]).piston_area_m2();
@@ -177,7 +179,12 @@ impl Bench {
                 case.damper_factor[axle],
             )
         });
-        HandlingModel::with_elements(p, &self.handling, elements, road, speed_m_s)
+        let course = Course {
+            manoeuvre,
+            driver: self.conditions.driver,
+            road,
+        };
+        Drive::begin(&course, p, &self.handling, elements)
     }
 
     /// Drives over the rough road.
@@ -185,26 +192,19 @@ impl Bench {
     /// # Errors
     /// [`StudyError`].
     pub fn ride(&self, case: &Case) -> Result<Ride, StudyError> {
-        let speed_m_s = self.conditions.ride_speed_m_s;
-        let mut model = self.vehicle(case, Arc::clone(&self.rough), speed_m_s)?;
-        let duration_s = self.conditions.ride_duration_s;
-        let manoeuvre = Manoeuvre::Follow {
-            track: Track::straight(),
-            speed_m_s,
-            duration_s,
+        let manoeuvre = Manoeuvre::Straight {
+            speed_m_s: self.conditions.ride_speed_m_s,
+            duration_s: self.conditions.ride_duration_s,
         };
-        let p = &self.parameters;
-        let seats = Seats::from_fn(|seat| p.seat_place_m(seat));
+        let drive = self.begin(case, manoeuvre, Arc::clone(&self.rough))?;
+        let places = drive.seat_places_m();
         let settling_s = self.conditions.ride_settling_s;
-        let mut meters = Seats::from_fn(|_| SeatMeter::new(model.step_s(), settling_s));
-        let run = manoeuvre.drive(
-            &mut model,
-            p,
-            &self.handling,
+        let mut meters = Seats::from_fn(|_| SeatMeter::new(drive.model().step_s(), settling_s));
+        let run = drive.to_end(
             |_| Default::default(),
             |model| {
                 for (seat, meter) in meters.iter_mut() {
-                    meter.add(model.acceleration_at(seats[seat]));
+                    meter.add(model.acceleration_at(places[seat]));
                 }
             },
         )?;
@@ -223,22 +223,13 @@ impl Bench {
     /// # Errors
     /// [`StudyError`].
     pub fn lane_change(&self, case: &Case) -> Result<Run, StudyError> {
-        let speed_m_s = self.conditions.lane_change_speed_m_s;
-        let mut model = self.vehicle(case, Arc::new(Flat), speed_m_s)?;
-        let track = Track::severe_lane_change(self.parameters.layout.width_m);
-        let duration_s = 2.0 * track.end_m().unwrap_or(0.0) / speed_m_s.max(1.0);
-        let manoeuvre = Manoeuvre::Follow {
-            track,
-            speed_m_s,
-            duration_s,
+        let manoeuvre = Manoeuvre::LaneChange {
+            kind: LaneChange::Severe,
+            speed_m_s: self.conditions.lane_change_speed_m_s,
+            entry_m: ENTRY_M,
         };
-        Ok(manoeuvre.drive(
-            &mut model,
-            &self.parameters,
-            &self.handling,
-            |_| Default::default(),
-            |_| {},
-        )?)
+        let drive = self.begin(case, manoeuvre, Arc::new(Flat))?;
+        Ok(drive.to_end(|_| Default::default(), |_| {})?)
     }
 
     /// Drives the lane change.

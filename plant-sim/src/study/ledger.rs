@@ -18,7 +18,7 @@ use fnv::FnvHasher;
 use super::case::{Bench, Case, Handling, Ride};
 
 /// Raised with every change of the models that changes results.
-const MODEL_VERSION: u32 = 3;
+const MODEL_VERSION: u32 = 4;
 
 /// A ledger that cannot be read or written.
 #[derive(Debug, thiserror::Error)]

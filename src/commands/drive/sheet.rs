@@ -5,13 +5,14 @@ use std::io::Write as _;
 use oleo_controller::ValveCommand;
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Axle, Corner, StrutValves};
-use oleo_plant_sim::handling::{Ending, Manoeuvre, Run, Sample, Signals};
-use oleo_plant_sim::measures::RideMeter;
+use oleo_plant_sim::course::{Ending, Manoeuvre, Run, Sample, Signals};
+use oleo_plant_sim::measures::SeatMeter;
+use oleo_plant_sim::vehicle::Seats;
 use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Style, Table, significant};
 use serde_json::{Map, Value, json};
 
-use super::Setting;
-use super::course::Course;
+use super::Args;
+use super::plan::Plan;
 use crate::failure::Failure;
 
 /// Lateral acceleration between which the understeer gradient is fitted, m/s2 (ISO 4138: the linear range).
@@ -20,34 +21,30 @@ const LINEAR_RANGE_M_S2: (f64, f64) = (0.5, 3.0);
 type Named<'a> = (&'a str, &'a str, f64, &'a str);
 
 /// Measures of one run: key, words, value, unit.
-fn measures(course: &Course, run: &Run) -> Vec<(&'static str, &'static str, f64, &'static str)> {
-    let meter = |of: fn(&Sample) -> f64| {
-        let mut meter = RideMeter::new(TICK_S);
-        run.history.iter().for_each(|sample| meter.add(of(sample)));
-        meter.measures()
-    };
-    let (driver, passenger) = (
-        meter(|s| s.seat.driver.vertical_m_s2),
-        meter(|s| s.seat.passenger.vertical_m_s2),
-    );
+fn measures(plan: &Plan, run: &Run, score_from_s: f64) -> Vec<(&'static str, &'static str, f64, &'static str)> {
+    let mut meters = Seats::from_fn(|_| SeatMeter::new(TICK_S, score_from_s));
+    for sample in &run.history {
+        meters.iter_mut().for_each(|(seat, meter)| meter.add(sample.seat[seat]));
+    }
+    let Seats { driver, passenger } = meters.map(|meter| meter.measures());
     let peak = |of: fn(&Sample) -> f64| run.history.iter().map(|s| of(s).abs()).fold(0.0, f64::max);
     let mut list = vec![
         (
             "driver_weighted_rms_m_s2",
             "weighted RMS at the driver (BS 6841)",
-            driver.weighted_rms_m_s2,
+            driver.vertical.weighted_rms_m_s2,
             "m/s2",
         ),
         (
             "passenger_weighted_rms_m_s2",
             "weighted RMS at the left rear passenger",
-            passenger.weighted_rms_m_s2,
+            passenger.vertical.weighted_rms_m_s2,
             "m/s2",
         ),
         (
             "driver_msdv_m_s1_5",
             "motion sickness dose at the driver",
-            driver.msdv_m_s1_5,
+            driver.vertical.msdv_m_s1_5,
             "m/s^1.5",
         ),
         (
@@ -69,6 +66,37 @@ fn measures(course: &Course, run: &Run) -> Vec<(&'static str, &'static str, f64,
             "s",
         ),
     ];
+    if driver.lateral_weighted_rms_m_s2 + driver.fore_aft_weighted_rms_m_s2 > 0.0 {
+        for (key, words, value) in [
+            (
+                "driver_lateral_weighted_rms_m_s2",
+                "lateral weighted RMS at the driver (Wd)",
+                driver.lateral_weighted_rms_m_s2,
+            ),
+            (
+                "passenger_lateral_weighted_rms_m_s2",
+                "lateral weighted RMS at the left rear passenger",
+                passenger.lateral_weighted_rms_m_s2,
+            ),
+            (
+                "driver_fore_aft_weighted_rms_m_s2",
+                "fore-aft weighted RMS at the driver (Wd)",
+                driver.fore_aft_weighted_rms_m_s2,
+            ),
+            (
+                "driver_combined_rms_m_s2",
+                "three axes combined at the driver",
+                driver.combined_rms_m_s2,
+            ),
+            (
+                "passenger_combined_rms_m_s2",
+                "three axes combined at the left rear passenger",
+                passenger.combined_rms_m_s2,
+            ),
+        ] {
+            list.push((key, words, value, "m/s2"));
+        }
+    }
     if run.max_lateral_m_s2 > 0.0 {
         list.push((
             "max_lateral_m_s2",
@@ -92,7 +120,7 @@ fn measures(course: &Course, run: &Run) -> Vec<(&'static str, &'static str, f64,
     if let Some(margin) = run.cone_margin_m {
         list.push(("cone_margin_m", "least room to the cones (negative: hit)", margin, "m"));
     }
-    match &course.manoeuvre {
+    match &plan.course.manoeuvre {
         Manoeuvre::ConstantRadius { .. } => {
             if let Some(gradient) = understeer_gradient(&run.history) {
                 let gradient = gradient.to_degrees();
@@ -119,7 +147,13 @@ fn measures(course: &Course, run: &Run) -> Vec<(&'static str, &'static str, f64,
                 list.push(("yaw_response_s", "time to 90 % of the steady yaw rate", time_s, "s"));
             }
         }
-        Manoeuvre::Follow { .. } => {}
+        Manoeuvre::Braking { at_s, .. } => {
+            if let Some((distance_m, mean_m_s2)) = stopping(&run.history, *at_s) {
+                list.push(("stopping_distance_m", "way from the brake to the end", distance_m, "m"));
+                list.push(("mean_deceleration_m_s2", "mean deceleration", mean_m_s2, "m/s2"));
+            }
+        }
+        Manoeuvre::Straight { .. } | Manoeuvre::LaneChange { .. } | Manoeuvre::Acceleration { .. } => {}
     }
     list
 }
@@ -159,6 +193,19 @@ fn step_response(history: &[Sample], at_s: f64) -> Option<(f64, f64, f64)> {
     let most = history.iter().map(|s| side * s.yaw_rate_rad_s).fold(0.0, f64::max);
     let reached = history.iter().find(|s| side * s.yaw_rate_rad_s >= 0.9 * steady.abs())?;
     Some((steady, most / steady.abs() - 1.0, reached.time_s - at_s))
+}
+
+/// Way and mean deceleration from the begin of braking to the end of the drive.
+fn stopping(history: &[Sample], at_s: f64) -> Option<(f64, f64)> {
+    let begin = history.iter().find(|s| s.time_s >= at_s)?;
+    let (mut way_m, mut from) = (0.0, begin);
+    for sample in history.iter().filter(|s| s.time_s > at_s) {
+        let (dx, dy) = (sample.station_m - from.station_m, sample.lateral_m - from.lateral_m);
+        way_m += (dx * dx + dy * dy).sqrt();
+        from = sample;
+    }
+    let took_s = from.time_s - begin.time_s;
+    (took_s > 0.0).then(|| (way_m, (begin.speed_m_s - from.speed_m_s) / took_s))
 }
 
 /// RMS of the difference over RMS of the first, at the same places of the road: the handling model's speed gives way on
@@ -203,7 +250,7 @@ const COMPARED: [(&str, &str, Signal); 5] = [
     ("pitch", "body pitch angle", |s| s.pitch_rad),
 ];
 
-const COLUMNS: [(&str, Signal); 32] = [
+const COLUMNS: [(&str, Signal); 36] = [
     ("time_s", |s| s.time_s),
     ("station_m", |s| s.station_m),
     ("lateral_m", |s| s.lateral_m),
@@ -214,11 +261,15 @@ const COLUMNS: [(&str, Signal); 32] = [
     ("speed_m_s", |s| s.speed_m_s),
     ("side_slip_rad", |s| s.side_slip_rad),
     ("yaw_rate_rad_s", |s| s.yaw_rate_rad_s),
+    ("longitudinal_acceleration_m_s2", |s| s.longitudinal_acceleration_m_s2),
     ("lateral_acceleration_m_s2", |s| s.lateral_acceleration_m_s2),
     ("vertical_acceleration_m_s2", |s| s.vertical_acceleration_m_s2),
     ("steer_rad", |s| s.steer_rad),
+    ("wheel_steer_rad", |s| s.wheel_steer_rad),
     ("driver_seat_m_s2", |s| s.seat.driver.vertical_m_s2),
     ("passenger_seat_m_s2", |s| s.seat.passenger.vertical_m_s2),
+    ("driver_seat_lateral_m_s2", |s| s.seat.driver.lateral_m_s2),
+    ("passenger_seat_lateral_m_s2", |s| s.seat.passenger.lateral_m_s2),
     ("front_axle_heave_m", |s| s.front_axle_heave_m),
     ("front_axle_roll_rad", |s| s.front_axle_roll_rad),
     ("wheel_load_fl_N", |s| s.wheel_load_n[Corner::FrontLeft]),
@@ -254,12 +305,7 @@ fn column(run: &Run, of: fn(&Sample) -> f64) -> Vec<f64> {
 }
 
 /// Prints the table and writes the folder.
-pub fn publish(
-    course: &Course,
-    setting: Setting,
-    runs: &[(&str, Run)],
-    out: Option<OutputDirectory>,
-) -> Result<(), Failure> {
+pub fn publish(plan: &Plan, args: &Args, runs: &[(&str, Run)], out: Option<OutputDirectory>) -> Result<(), Failure> {
     let mut columns = vec![Column::text("Measure")];
     columns.extend(runs.iter().map(|(name, _)| Column::number(name)));
     columns.push(Column::text("Unit"));
@@ -269,7 +315,10 @@ pub fn publish(
     row.extend(runs.iter().map(|(_, run)| ending(run.ending)));
     row.push(String::new());
     table.row(row);
-    let all: Vec<Vec<Named>> = runs.iter().map(|(_, run)| measures(course, run)).collect();
+    let all: Vec<Vec<Named>> = runs
+        .iter()
+        .map(|(_, run)| measures(plan, run, args.score_from_s))
+        .collect();
     let longest = all.iter().max_by_key(|list| list.len()).cloned().unwrap_or_default();
     for (key, words, _, unit) in longest {
         let value = |list: &Vec<Named>| list.iter().find(|m| m.0 == key).map(|m| m.2);
@@ -301,7 +350,7 @@ pub fn publish(
         comparison = Some(rows);
     }
     if let Some(mut out) = out {
-        let page = page(course, setting, runs, &table, comparison.as_ref());
+        let page = page(plan, args, runs, &table, comparison.as_ref());
         for (name, run) in runs {
             let columns: Vec<(&str, Vec<f64>)> = COLUMNS.iter().map(|(name, of)| (*name, column(run, *of))).collect();
             let columns: Vec<(&str, &[f64])> = columns
@@ -329,16 +378,20 @@ fn ending(ending: Ending) -> String {
     }
 }
 
-fn page(course: &Course, setting: Setting, runs: &[(&str, Run)], table: &Table, comparison: Option<&Table>) -> Page {
+fn page(plan: &Plan, args: &Args, runs: &[(&str, Run)], table: &Table, comparison: Option<&Table>) -> Page {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let mut page = Page::new(
-        &format!("Drive: {}", course.title),
+        &format!("Drive: {}", plan.title),
         &format!("oleo {}", arguments.join(" ")),
     );
-    page.fact("Vehicle", &course.vehicle.name)
-        .fact("Suspension", setting.name())
-        .fact("Road", &course.road_name)
-        .fact("Speed", &format!("{:.1} km/h", 3.6 * course.speed_m_s))
+    page.fact("Vehicle", &plan.vehicle.name)
+        .fact("Suspension", args.setting.name())
+        .fact("Driver", args.driver.key())
+        .fact("Road", &plan.road_name)
+        .fact(
+            "Speed",
+            &format!("{:.1} km/h", 3.6 * plan.course.manoeuvre.initial_speed_m_s()),
+        )
         .outcome(table.clone());
     if let Some(comparison) = comparison {
         page.section("Ride model against handling model")
@@ -376,17 +429,18 @@ fn page(course: &Course, setting: Setting, runs: &[(&str, Run)], table: &Table, 
             ("Front axle heave", "m", &[("front axle", |s| s.front_axle_heave_m)]),
         ],
     ));
-    if runs.iter().any(|(name, _)| *name == "handling model") && course.track.gates().is_empty().eq(&false)
-        || !matches!(course.manoeuvre, Manoeuvre::Follow { .. })
-    {
-        page.section("Course").figure(map(course, runs)).figure(panels(
+    if !matches!(plan.course.manoeuvre, Manoeuvre::Straight { .. }) {
+        page.section("Course").figure(map(plan, runs)).figure(panels(
             "Steering and response",
             &[
                 ("Steer angle", "degrees", &[("steer", |s| s.steer_rad.to_degrees())]),
                 (
-                    "Lateral acceleration",
+                    "Acceleration",
                     "m/s2",
-                    &[("lateral", |s| s.lateral_acceleration_m_s2)],
+                    &[
+                        ("lateral", |s| s.lateral_acceleration_m_s2),
+                        ("fore-aft", |s| s.longitudinal_acceleration_m_s2),
+                    ],
                 ),
                 (
                     "Yaw rate",
@@ -431,7 +485,7 @@ fn page(course: &Course, setting: Setting, runs: &[(&str, Run)], table: &Table, 
 }
 
 /// The course from above with its cones.
-fn map(course: &Course, runs: &[(&str, Run)]) -> Curves {
+fn map(plan: &Plan, runs: &[(&str, Run)]) -> Curves {
     let mut figure = Curves::new("From above", Axis::new("Ahead", "m"));
     let panel = figure.panel(Axis::new("Left", "m"));
     for (name, run) in runs {
@@ -442,7 +496,7 @@ fn map(course: &Course, runs: &[(&str, Run)]) -> Curves {
         );
     }
     let (mut x, mut y) = (Vec::new(), Vec::new());
-    for gate in course.track.gates() {
+    for gate in plan.track.gates() {
         for i in 0..=4 {
             let station = gate.from_m + (gate.to_m - gate.from_m) * f64::from(i) / 4.0;
             x.extend([station, station]);
@@ -451,11 +505,11 @@ fn map(course: &Course, runs: &[(&str, Run)]) -> Curves {
     }
     if !x.is_empty() {
         panel.series(Style::Points, "cones", &x, &y);
-        let (first, last) = (0.0, course.track.end_m().unwrap_or(0.0));
+        let (first, last) = (0.0, plan.track.end_m().unwrap_or(0.0));
         let stations: Vec<f64> = (0..=200)
             .map(|i| first + (last - first) * f64::from(i) / 200.0)
             .collect();
-        let line: Vec<f64> = stations.iter().map(|x| course.track.lateral_m(*x)).collect();
+        let line: Vec<f64> = stations.iter().map(|x| plan.track.lateral_m(*x)).collect();
         panel.series(Style::Dashed, "line wanted", &stations, &line);
     }
     figure

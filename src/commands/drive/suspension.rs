@@ -2,7 +2,7 @@
 
 use oleo_controller::{Configuration, Inputs, State, tick};
 use oleo_interface::{Corners, StrutValves};
-use oleo_plant_sim::handling::Signals;
+use oleo_plant_sim::course::Signals;
 use oleo_plant_sim::strut::{ModelError, Strut, StrutModel, StrutOutput};
 use oleo_plant_sim::vehicle::VehicleParameters;
 

@@ -44,7 +44,9 @@ impl<E: SuspensionElement> HandlingModel<E> {
         let mut acceleration = self.rotation * self.acceleration.linear;
         acceleration.z -= GRAVITY_M_S2;
         let v = self.velocity;
-        let foot = self.position - self.rotation * Vector3::new(0.0, 0.0, self.body_height_m);
+        let below = Vector3::new(0.0, 0.0, -self.body_height_m);
+        let foot = self.position + self.rotation * below;
+        let foot_velocity = v + self.rotation * self.angular.cross(&below);
         let (along, across) = (v.x * cos + v.y * sin, v.y * cos - v.x * sin);
         HandlingMotion {
             position_m: [self.position.x, self.position.y, self.position.z - self.rest_height_m],
@@ -55,6 +57,8 @@ impl<E: SuspensionElement> HandlingModel<E> {
             roll_rad,
             rates_rad_s: [self.angular.x, self.angular.y, self.angular.z],
             speed_m_s: along,
+            foot_lateral_m_s: foot_velocity.y * cos - foot_velocity.x * sin,
+            longitudinal_acceleration_m_s2: acceleration.x * cos + acceleration.y * sin,
             lateral_acceleration_m_s2: acceleration.y * cos - acceleration.x * sin,
             vertical_acceleration_m_s2: acceleration.z,
             side_slip_rad: if along.abs() > 0.1 {

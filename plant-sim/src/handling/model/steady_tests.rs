@@ -5,18 +5,26 @@ use std::sync::Arc;
 
 use oleo_interface::{Axle, Corner, Corners};
 
-use super::super::driver::Driver;
 use super::tests::{linear, on_springs, parameters, preset, without_links};
 use super::*;
 use crate::road::Flat;
 use crate::vehicle::suspension::LinearElement;
 
+/// Drive that keeps about to a speed.
+fn hold(model: &HandlingModel<LinearElement>, speed_m_s: f64) -> Controls {
+    let force = 20_000.0 * (speed_m_s - model.motion().speed_m_s);
+    Controls {
+        drive_force_n: force.max(0.0),
+        brake_force_n: (-force).max(0.0),
+        ..Controls::default()
+    }
+}
+
 /// Steady state at a fixed steer angle and speed: `(steer - L / R) / a_y`, rad s2/m.
 fn understeer(handling: &HandlingParameters, steer_rad: f64, speed: f64) -> (f64, f64) {
     let mut model = on_springs(handling, 4000.0, Arc::new(Flat), speed);
-    let mut driver = Driver::new(handling, 2.794);
     for _ in 0..9000 {
-        let held = driver.hold_speed(&model.motion(), speed, 0.001);
+        let held = hold(&model, speed);
         model.step(Corners::default(), Controls { steer_rad, ..held });
     }
     let motion = model.motion();
@@ -57,9 +65,8 @@ fn understeer_gradient_is_the_bicycle_models() {
 
         let elements = linear(&p, 40_000.0, 4000.0);
         let mut model = HandlingModel::with_elements(&p, &handling, elements, Arc::new(Flat), 20.0).unwrap();
-        let mut driver = Driver::new(&handling, wheelbase);
         for _ in 0..12_000 {
-            let held = driver.hold_speed(&model.motion(), 20.0, 0.001);
+            let held = hold(&model, 20.0);
             let steer_rad = 0.002;
             model.step(Corners::default(), Controls { steer_rad, ..held });
         }
@@ -86,9 +93,8 @@ fn roll_in_a_steady_bend_is_that_of_the_roll_axis_model() {
     let p = parameters();
     let handling = without_links();
     let mut model = on_springs(&handling, 4000.0, Arc::new(Flat), 15.0);
-    let mut driver = Driver::new(&handling, 2.794);
     for _ in 0..12_000 {
-        let held = driver.hold_speed(&model.motion(), 15.0, 0.001);
+        let held = hold(&model, 15.0);
         let steer_rad = 0.012;
         model.step(Corners::default(), Controls { steer_rad, ..held });
     }
@@ -117,9 +123,8 @@ fn roll_in_a_steady_bend_is_that_of_the_roll_axis_model() {
 /// Understeer gradient of a small steer angle, rad s2/m, and the model at its end.
 fn gradient(handling: &HandlingParameters) -> (f64, HandlingModel<LinearElement>) {
     let mut model = on_springs(handling, 4000.0, Arc::new(Flat), 20.0);
-    let mut driver = Driver::new(handling, 2.794);
     for _ in 0..12_000 {
-        let held = driver.hold_speed(&model.motion(), 20.0, 0.001);
+        let held = hold(&model, 20.0);
         let steer_rad = 0.004;
         model.step(Corners::default(), Controls { steer_rad, ..held });
     }

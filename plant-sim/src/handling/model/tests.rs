@@ -4,8 +4,6 @@ use std::sync::Arc;
 
 use oleo_interface::{Axles, StrutValves};
 
-use super::super::driver::Driver;
-use super::super::track::Track;
 use super::*;
 use crate::road::{Flat, Road};
 use crate::strut::StrutModel;
@@ -209,46 +207,6 @@ fn damping_only_takes_energy() {
         last = now;
     }
     assert!(start - last > 100.0);
-}
-
-/// A road with left and right unlike each other.
-struct Rough {
-    side: f64,
-}
-impl Road for Rough {
-    fn height_m(&self, station_m: f64, lateral_m: f64) -> f64 {
-        let y = self.side * lateral_m;
-        0.02 * libm::sin(station_m * 1.3 + 2.0 * y) + 0.015 * libm::sin(station_m * 4.1 - 3.0 * y)
-    }
-}
-
-#[test]
-fn a_mirrored_drive_gives_mirrored_bits() {
-    let drive = |side: f64| {
-        let mut model = on_struts(Arc::new(Rough { side }), 17.0);
-        let track = Track::severe_lane_change(1.79);
-        let track = if side < 0.0 { track.mirrored() } else { track };
-        let mut driver = Driver::new(&preset(), 2.794);
-        for _ in 0..4000 {
-            let controls = driver.follow(&model.motion(), &track, 17.0, 0.001);
-            model.step(SOFT, controls);
-        }
-        model
-    };
-    let (one, other) = (drive(1.0), drive(-1.0));
-    let (a, b) = (one.motion(), other.motion());
-    assert!(a.position_m[1].abs() > 1.0 && a.roll_rad.abs() > 1e-4);
-    assert_eq!(a.position_m, [b.position_m[0], -b.position_m[1], b.position_m[2]]);
-    assert_eq!(
-        (a.yaw_rad, a.pitch_rad, a.roll_rad),
-        (-b.yaw_rad, b.pitch_rad, -b.roll_rad)
-    );
-    let (p, q) = (one.strut_displacement_m(), other.strut_displacement_m());
-    let mirrored = Corners::from_fn(|corner| match corner.side() {
-        Side::Left => q[corner.axle().corner(Side::Right)],
-        Side::Right => q[corner.axle().corner(Side::Left)],
-    });
-    assert_eq!(p, mirrored);
 }
 
 /// Waves of 2 m and 1 m, left and right unlike: over a base of 2 m their slope is nothing.

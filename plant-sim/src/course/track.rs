@@ -1,20 +1,41 @@
 //! Where the driver wants to go, and the cones beside it.
 //!
 //! ISO 3888-1 (severe double lane change) and ISO 3888-2 (obstacle avoidance) as lanes of cones whose width depends on the
-//! vehicle's width w; ISO 4138 as a circle. Lengths and widths: `../shared/vehicle.md`, "Measures".
+//! vehicle's width w; ISO 4138 as a circle.
 //!
 //! ```text
 //! 3888-1  lane 1 15 m (1.1 w + 0.25) | 30 m | lane 2 25 m (1.2 w + 0.25, right edge 3.5 m left of lane 1's) | 25 m | lane 3 15 m (1.3 w + 0.25)
 //! 3888-2  lane 1 12 m (1.1 w + 0.25) | 13.5 m | lane 2 11 m (w + 1, 1 m beside lane 1) | 12.5 m | lane 3 12 m (3.0 m)
 //! ```
 //!
-//! The driver's line runs in the middle of each lane and changes lanes on a fifth-order polynomial (no step in curvature)
-//! that begins and ends some metres inside the lanes, as far as their width allows: a driver uses the room there is.
+//! The line runs in the middle of each lane and changes lanes in one of two ways ([`LaneChangeLine`]), of which the second asks
+//! for the least lateral acceleration that the length between the lanes allows, and for all of it at once.
 
-/// Before the first cones, m: the vehicle settles.
-const ENTRY_M: f64 = 25.0;
 /// After the last cones, m.
 const EXIT_M: f64 = 20.0;
+
+/// How a line goes from lane to lane.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LaneChangeLine {
+    /// A fifth-order polynomial without a step in curvature, which begins and ends well inside the lanes: a driver who uses the
+    /// room there is.
+    Eased,
+    /// Two parabolas of equal and opposite curvature: full lock one way and the other, `4 y V^2 / l^2` of lateral
+    /// acceleration for an offset y in a length l. Between the lanes of ISO 3888-1; between those of ISO 3888-2, which are too
+    /// close for that at any speed worth testing, from 3.5 m inside the lanes.
+    Hard,
+}
+
+impl LaneChangeLine {
+    /// Share of the lateral offset at the share `s` of the length, both 0..1.
+    fn share(self, s: f64) -> f64 {
+        match self {
+            Self::Eased => s * s * s * (10.0 - s * (15.0 - 6.0 * s)),
+            Self::Hard if s < 0.5 => 2.0 * s * s,
+            Self::Hard => 1.0 - 2.0 * (1.0 - s) * (1.0 - s),
+        }
+    }
+}
 
 /// A lane of cones.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,6 +61,7 @@ enum Line {
     Straight,
     /// Changes between the gates' middles; each starts and ends `ease_m` inside the lanes.
     Lanes {
+        shape: LaneChangeLine,
         ease_m: f64,
     },
     /// Signed radius: positive turns left.
@@ -75,31 +97,33 @@ impl Track {
         }
     }
 
-    /// ISO 3888-1 for a vehicle of width `width_m`, first lane change to the left.
-    pub fn severe_lane_change(width_m: f64) -> Self {
+    /// ISO 3888-1 for a vehicle of width `width_m`, first lane change to the left; the first cones stand at `entry_m`.
+    pub fn severe_lane_change(width_m: f64, entry_m: f64, shape: LaneChangeLine) -> Self {
+        let ease_m = match shape {
+            LaneChangeLine::Eased => 7.0,
+            LaneChangeLine::Hard => 0.0,
+        };
         let widths = [1.1 * width_m + 0.25, 1.2 * width_m + 0.25, 1.3 * width_m + 0.25];
         // Right edges: lanes 1 and 3 in line, lane 2 3.5 m to the left. Lateral 0 is the middle of lane 1.
         let right = -0.5 * widths[0];
-        let gates = lanes([15.0, 30.0, 25.0, 25.0, 15.0], [right, right + 3.5, right], widths);
+        let lengths = [15.0, 30.0, 25.0, 25.0, 15.0];
+        let gates = lanes(entry_m, lengths, [right, right + 3.5, right], widths);
         Self {
-            line: Line::Lanes { ease_m: 7.0 },
+            line: Line::Lanes { shape, ease_m },
             gates,
             side: 1.0,
         }
     }
 
-    /// ISO 3888-2 for a vehicle of width `width_m`, first lane change to the left.
-    pub fn obstacle_avoidance(width_m: f64) -> Self {
+    /// ISO 3888-2 for a vehicle of width `width_m`, first lane change to the left; the first cones stand at `entry_m`.
+    pub fn obstacle_avoidance(width_m: f64, entry_m: f64, shape: LaneChangeLine) -> Self {
         let widths = [1.1 * width_m + 0.25, width_m + 1.0, (1.3 * width_m + 0.25).max(3.0)];
         let left = 0.5 * widths[0];
         // Lane 2 begins 1 m beside lane 1; lanes 1 and 3 are in line on the side of lane 2.
-        let gates = lanes(
-            [12.0, 13.5, 11.0, 12.5, 12.0],
-            [-left, left + 1.0, left - widths[2]],
-            widths,
-        );
+        let lengths = [12.0, 13.5, 11.0, 12.5, 12.0];
+        let gates = lanes(entry_m, lengths, [-left, left + 1.0, left - widths[2]], widths);
         Self {
-            line: Line::Lanes { ease_m: 3.5 },
+            line: Line::Lanes { shape, ease_m: 3.5 },
             gates,
             side: 1.0,
         }
@@ -149,13 +173,14 @@ impl Track {
 
     /// The line at a station, m to the left; 0 for a circle.
     pub fn lateral_m(&self, x_m: f64) -> f64 {
-        let Line::Lanes { ease_m } = self.line else { return 0.0 };
+        let Line::Lanes { shape, ease_m } = self.line else {
+            return 0.0;
+        };
         let mut lateral = 0.0;
         for pair in self.gates.windows(2) {
             let (from, to) = (pair[0].to_m - ease_m, pair[1].from_m + ease_m);
             let s = ((x_m - from) / (to - from)).clamp(0.0, 1.0);
-            let blend = s * s * s * (10.0 - s * (15.0 - 6.0 * s));
-            lateral += blend * (pair[1].middle_m() - pair[0].middle_m());
+            lateral += shape.share(s) * (pair[1].middle_m() - pair[0].middle_m());
         }
         self.side * lateral
     }
@@ -168,9 +193,9 @@ impl Track {
     }
 }
 
-/// Lanes from the five lengths, the lanes' right edges and widths.
-fn lanes(lengths_m: [f64; 5], right_m: [f64; 3], widths_m: [f64; 3]) -> Vec<Gate> {
-    let mut station = ENTRY_M;
+/// Lanes from the station of the first cones, the five lengths, the lanes' right edges and widths.
+fn lanes(entry_m: f64, lengths_m: [f64; 5], right_m: [f64; 3], widths_m: [f64; 3]) -> Vec<Gate> {
+    let mut station = entry_m;
     let mut gates = Vec::new();
     for (section, length) in lengths_m.into_iter().enumerate() {
         if section % 2 == 0 {
@@ -194,25 +219,28 @@ mod tests {
 
     #[test]
     fn iso_3888_1_has_the_published_centre_path() {
-        let track = Track::severe_lane_change(1.79);
+        let track = Track::severe_lane_change(1.79, 25.0, LaneChangeLine::Eased);
         let gates = track.gates();
         assert!((gates[1].middle_m() - 3.590).abs() < 1e-3 && (gates[2].middle_m() - 0.179).abs() < 1e-3);
         assert!((gates[2].to_m - gates[0].from_m - 110.0).abs() < 1e-12);
         assert!(track.lateral_m(0.0).abs() < 1e-12);
-        assert!((track.lateral_m(ENTRY_M + 57.0) - 3.590).abs() < 1e-3);
+        assert!((track.lateral_m(25.0 + 57.0) - 3.590).abs() < 1e-3);
         assert!((track.lateral_m(500.0) - 0.179).abs() < 1e-3);
     }
 
     #[test]
     fn iso_3888_2_has_a_metre_between_the_lanes() {
-        let gates = Track::obstacle_avoidance(1.79).gates();
+        let gates = Track::obstacle_avoidance(1.79, 25.0, LaneChangeLine::Eased).gates();
         assert!((gates[1].right_m - gates[0].left_m - 1.0).abs() < 1e-12);
         assert!((gates[2].to_m - gates[0].from_m - 61.0).abs() < 1e-12);
     }
 
     #[test]
     fn the_line_itself_keeps_a_car_between_the_cones() {
-        for track in [Track::severe_lane_change(1.79), Track::obstacle_avoidance(1.79)] {
+        for track in [
+            Track::severe_lane_change(1.79, 25.0, LaneChangeLine::Eased),
+            Track::obstacle_avoidance(1.79, 25.0, LaneChangeLine::Eased),
+        ] {
             let mut worst = f64::INFINITY;
             for i in 0..2000 {
                 let x = 0.1 * f64::from(i);
@@ -224,13 +252,32 @@ mod tests {
         }
     }
 
+    /// Curvature times the square of the speed is the lateral acceleration asked for: `4 y V^2 / l^2`, and no more.
+    #[test]
+    fn the_hard_line_asks_for_the_least_peak_of_its_length() {
+        let track = Track::severe_lane_change(1.79, 25.0, LaneChangeLine::Hard);
+        let gates = track.gates();
+        let d = 0.05;
+        let (mut most, mut x) = (0.0f64, 30.0);
+        while x < 60.0 + 25.0 {
+            let curvature = (track.lateral_m(x + d) - 2.0 * track.lateral_m(x) + track.lateral_m(x - d)) / (d * d);
+            most = most.max(curvature.abs());
+            x += 0.1;
+        }
+        let (offset, length) = (
+            gates[1].middle_m() - gates[0].middle_m(),
+            gates[1].from_m - gates[0].to_m,
+        );
+        assert!((most / (4.0 * offset / (length * length)) - 1.0).abs() < 1e-3, "{most}");
+    }
+
     #[test]
     fn error_is_positive_where_the_line_is_to_the_left() {
         assert_eq!(Track::straight().error_m(10.0, -2.0), 2.0);
         let left = Track::circle(50.0);
         assert!((left.error_m(0.0, -1.0) - 1.0).abs() < 1e-12 && (left.error_m(52.0, 50.0) - 2.0).abs() < 1e-12);
         assert_eq!(Track::circle(-50.0).error_m(3.0, 4.0), -left.error_m(3.0, -4.0));
-        let track = Track::severe_lane_change(1.79);
+        let track = Track::severe_lane_change(1.79, 25.0, LaneChangeLine::Eased);
         assert_eq!(track.clone().mirrored().error_m(60.0, -1.0), -track.error_m(60.0, 1.0));
         assert_eq!(track.clone().mirrored().margin_m(30.0, -0.3), track.margin_m(30.0, 0.3));
     }

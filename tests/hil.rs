@@ -187,7 +187,7 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         (&["--scenario", "belgium"], "belgian, apg"),
         (&["--scenario", &path("bad.toml")], "bad.toml:4: duration_s is -2"),
         (&["--scenario", &path("bytes.toml")], "bytes.toml"),
-        (&["--scenario", &path("empty.toml")], "missing field"),
+        (&["--scenario", &path("empty.toml")], "empty.toml:1: name is missing"),
         (&["--scenario", &path("nowhere.toml")], "nowhere.toml"),
         (&["--strut", &path("strut.toml")], "strut.toml"),
         (&["--strut", &path("nowhere.toml")], "nowhere.toml"),

@@ -75,14 +75,13 @@ fn drive(target: fn(&[u8]), seeds: &[&[u8]]) {
 #[test]
 fn can_frames() {
     use oleo_controller::Inputs;
+    use oleo_interface::{Corners, Gauge, StrutPressures};
+    let pressure = Corners::splat(StrutPressures::splat(Gauge(4.0e6)));
+    let inputs = Inputs::from_values(Corners::splat(0.01), pressure);
     let mut plant = oleo_controller::can::PlantEnd::new();
     let mut proper = Vec::new();
     for tick in 0..40 {
-        for (index, frame) in plant
-            .encode(tick, &Inputs::from_values([0.01; 4], [[4.0e6; 4]; 4]))
-            .iter()
-            .enumerate()
-        {
+        for (index, frame) in plant.encode(tick, &inputs).iter().enumerate() {
             proper.extend([index as u8, if index == 5 { 8 + 16 } else { 8 }]);
             proper.extend(frame.data);
         }

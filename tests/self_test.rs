@@ -92,6 +92,10 @@ fn bad_arguments_are_one_line_that_says_what_to_do() {
     let folder = tempfile::tempdir().expect("a folder");
     for (arguments, says) in [
         (&["--self-test", "--terms", "seal_fraction"][..], "seal_friction"),
+        (
+            &["--self-test", "--terms", "none", "--without-names"],
+            "no name to leave out",
+        ),
         (&["--self-test", "--campaigns", "0"], "above 0"),
         (&["--self-test", "--threads", "0"], "above 0"),
         (&["--self-test", "--out", "no/such/folder"], "no/such"),

@@ -1,32 +1,56 @@
 //! How often a bypass valve may move.
 //!
-//! A valve that takes 40 to 90 ms gains nothing from signals that change faster, and wears. After each change a bypass valve rests for
-//! 100 ms. A closing that safety wants does not come through here: the mode machine acts on the command itself.
+//! A valve that takes 40 to 90 ms gains nothing from signals that change faster, and it wears. After each change a bypass
+//! valve rests for 100 ms. A closing that safety requires does not come through here: the mode machine acts on the
+//! command itself.
+
+use oleo_interface::{Corner, Corners, StrutValves, Valve};
 
 use crate::timing::ticks;
-use crate::valves::CORNERS;
+use crate::valves::ValveCommand;
 
-/// Shortest time between two changes of one valve.
-pub const BYPASS_DWELL_TICKS: u8 = ticks(100) as u8;
+/// Shortest time between two changes of one valve, ticks.
+const BYPASS_DWELL_TICKS: u32 = ticks(100) as u32;
 
-/// State of the bypass signals of the four corners (valves 1 and 2 go together).
+/// The valves that rest: 1 and 2 of every strut.
+const BYPASS_VALVES: [Valve; 2] = [Valve::Bypass1, Valve::Bypass2];
+const BYPASS_BITS: u16 = 0b011_011_011_011;
+
+/// State of the eight bypass signals.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Dwell {
-    open: [bool; CORNERS],
-    since: [u8; CORNERS],
+    open: ValveCommand,
+    /// Number of ticks so far. It wraps after 248 days; a valve that last moved exactly then rests once more.
+    now: u32,
+    /// Value of `now` at the last change of each valve.
+    changed_at: Corners<StrutValves<u32>>,
 }
 
 impl Dwell {
-    /// One tick; `at_once` lets a closing pass without rest.
-    pub fn step(&mut self, wanted: [bool; CORNERS], at_once: bool) -> [bool; CORNERS] {
-        for ((open, since), wanted) in self.open.iter_mut().zip(&mut self.since).zip(wanted) {
-            *since = since.saturating_add(1);
-            if wanted != *open && (*since >= BYPASS_DWELL_TICKS || (at_once && !wanted)) {
-                *open = wanted;
-                *since = 0;
-            }
+    /// One tick: takes over the bypass signals of `wanted` whose valves have rested, and returns all of them. The spring
+    /// valves are closed in what it returns. `at_once` lets a closing pass without rest.
+    pub fn step(&mut self, wanted: ValveCommand, at_once: bool) -> ValveCommand {
+        self.now = self.now.wrapping_add(1);
+        if (wanted.word() ^ self.open.word()) & BYPASS_BITS != 0 {
+            self.change(wanted, at_once);
         }
         self.open
+    }
+
+    /// Called in ticks in which some bypass valve is wanted elsewhere; most ticks have none.
+    #[inline(never)]
+    fn change(&mut self, wanted: ValveCommand, at_once: bool) {
+        for corner in Corner::ALL {
+            for valve in BYPASS_VALVES {
+                let open = wanted.is_open(corner, valve);
+                let changed_at = &mut self.changed_at[corner][valve];
+                let rested = self.now.wrapping_sub(*changed_at) >= BYPASS_DWELL_TICKS;
+                if open != self.open.is_open(corner, valve) && (rested || (at_once && !open)) {
+                    self.open = self.open.with(corner, valve, open);
+                    *changed_at = self.now;
+                }
+            }
+        }
     }
 }
 
@@ -34,19 +58,49 @@ impl Dwell {
 mod tests {
     use super::*;
 
+    const BYPASS: ValveCommand = ValveCommand::from_word(BYPASS_BITS);
+
     #[test]
-    fn a_chattering_wish_moves_the_valve_at_most_every_twenty_ticks() {
+    fn a_chattering_signal_moves_the_valve_at_most_every_twenty_ticks() {
         let mut dwell = Dwell::default();
-        let (mut changes, mut before) = (0, false);
+        let (mut changes, mut before) = (0, ValveCommand::SAFE);
         for n in 0..400 {
-            let [open, ..] = dwell.step([n % 2 == 0; 4], false);
+            let wanted = if n % 2 == 0 { BYPASS } else { ValveCommand::SAFE };
+            let open = dwell.step(wanted, false);
             changes += i32::from(core::mem::replace(&mut before, open) != open);
         }
         assert!(changes <= 20, "{changes}");
-        dwell.step([true; 4], false);
+        dwell.step(BYPASS, false);
         for _ in 0..BYPASS_DWELL_TICKS {
-            dwell.step([true; 4], false);
+            dwell.step(BYPASS, false);
         }
-        assert_eq!(dwell.step([false; 4], true), [false; 4]);
+        assert_eq!(dwell.step(ValveCommand::SAFE, true), ValveCommand::SAFE);
+    }
+
+    #[test]
+    fn each_valve_rests_for_itself() {
+        let mut dwell = Dwell::default();
+        let one = ValveCommand::SAFE.with(Corner::RearLeft, Valve::Bypass1, true);
+        let two = one.with(Corner::RearLeft, Valve::Bypass2, true);
+        for _ in 0..BYPASS_DWELL_TICKS {
+            dwell.step(one, false);
+        }
+        // Valve 1 has just moved and must rest; valve 2 has not.
+        assert_eq!(dwell.step(two, false), two);
+        assert_eq!(dwell.step(ValveCommand::SAFE, false), two);
+        for _ in 3..BYPASS_DWELL_TICKS {
+            assert_eq!(dwell.step(ValveCommand::SAFE, false), two);
+        }
+        assert_eq!(
+            dwell.step(ValveCommand::SAFE, false),
+            one.with(Corner::RearLeft, Valve::Bypass1, false)
+                .with(Corner::RearLeft, Valve::Bypass2, true)
+        );
+        assert_eq!(dwell.step(ValveCommand::SAFE, false), ValveCommand::SAFE);
+        // The spring valves are not decided here.
+        assert_eq!(
+            dwell.step(ValveCommand::from_word(!BYPASS_BITS), true),
+            ValveCommand::SAFE
+        );
     }
 }

@@ -1,9 +1,9 @@
 //! Motion of the body and the struts, from displacements and pressures alone.
 //!
-//! There is no accelerometer. A strut's force is its main pressure times the piston area, and the struts carry the whole body, so their sum
-//! says how the body accelerates, and their differences how it is turned. With `F` the four forces, `W` their
-//! slow mean (the static load, measured, so that payload needs no parameter), `y` and `x` the struts' places to the left and ahead of
-//! the centre of gravity and `phi_f`, `phi_r` the roll relative to each axle:
+//! There is no accelerometer. A strut's force is its main pressure times the piston area, and the struts carry the whole body. So
+//! the sum of their forces tells how the body accelerates, and the differences tell how it is turned. With `F` the four forces,
+//! `W` their slow mean (the static load; it is measured, so that the payload needs no parameter), `y` and `x` the distances of
+//! the struts to the left of and ahead of the centre of gravity, and `phi_f` and `phi_r` the roll relative to each axle:
 //!
 //! ```text
 //!   heave       z''     = g (sum F / sum W - 1)
@@ -13,29 +13,121 @@
 //!   corner      z_i''   = z'' + y_i phi'' - x_i theta''
 //! ```
 //!
-//! Newton and Euler for the sprung mass, small angles; the lateral line is the moment balance about the roll axis at low frequency, where
-//! `J_x phi''` vanishes. Signs: x forward, y left, z up; roll positive right side down, pitch positive nose down, so a left turn
-//! (positive `a_y`) rolls the body positive.
+//! Source: Newton and Euler for the sprung mass at small angles. The line for `a_y` is the moment balance about the roll axis at
+//! low frequency, where `J_x phi''` vanishes. Signs: x forward, y left, z up; roll is positive with the right side down, pitch
+//! with the nose down. So a left turn, in which `a_y` is positive, rolls the body in the positive direction.
 //!
-//! What this cannot know: a side slope looks like cornering (so it does to an accelerometer); seal friction, links, bushes and
-//! stops that press past the oil are not in p1; axle roll on the tyres is missing from `phi`. Figures in `docs/controller.md`.
+//! Limits: a side slope looks like cornering, as it does to an accelerometer. Forces that do not pass through the oil are not in
+//! p1: seal friction, links, bushes and stops. `phi` lacks the roll of the axles on the tyres. Figures are in
+//! `docs/controller.md`.
 
-use crate::configuration::Configuration;
-use crate::filter::{DerivativeState, at_least};
+use oleo_interface::tick::TICKS_PER_SECOND;
+use oleo_interface::{Axles, Corners};
+
+use crate::filter::{Derivative, DerivativeState, LeakyIntegrator, LowPass, at_least};
 use crate::plausibility::Trusted;
-use crate::valves::CORNERS;
+use crate::range::{ConfigurationError, within};
+use crate::vehicle::VehicleDescription;
 
 /// Standard gravity, m/s2 (ISO 80000-3).
 pub const GRAVITY_M_S2: f32 = 9.806_65;
 
-/// Largest lateral offset that is learnt as uneven load or sensor bias, m/s2: a long bend must not be learnt away.
+/// Largest lateral offset that is learnt as uneven load or sensor bias, m/s2. The bound keeps a long bend from being learnt as a
+/// bias.
 const MAX_BIAS_M_S2: f32 = 0.5;
 
-/// Estimated motion. Body quantities are about its centre of gravity, x forward, y left, z up; struts compression positive.
+/// Corner frequency of the filter that differentiates the strut displacement, Hz. It is high enough for everything that valves of
+/// 40 to 90 ms can follow, and low enough for the 0.01 mm steps of the displacement signal (`vehicle.md`: 15 to 20 Hz).
+const SPEED_CORNER_HZ: f32 = 18.0;
+const _: () = assert!(
+    SPEED_CORNER_HZ * 8.0 <= TICKS_PER_SECOND as f32,
+    "fastest filter: at least eight ticks a period of its corner, or its discrete form is not what was designed"
+);
+
+/// What a person may choose about the estimate.
+///
+/// ```
+/// use oleo_controller::{Builder, estimate};
+/// let mut builder = Builder::default();
+/// builder.tuning.estimate = estimate::Tuning { running_rms_s: 0.5, ..estimate::Tuning::default() };
+/// assert!(builder.build().is_ok());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// Corner frequency of the lateral surrogate's two lags, Hz, 0.1 to 5: below the body's roll resonance.
+    pub lateral_corner_hz: f32,
+    /// Time constant of the running mean squares, s, 0.1 to 20.
+    pub running_rms_s: f32,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self {
+            lateral_corner_hz: 1.0, // vehicle.md: 0.5 to 1 Hz
+            running_rms_s: 1.0,     // recalled: Els, about 1 s
+        }
+    }
+}
+
+impl Tuning {
+    /// Whether every value is within its range.
+    pub(crate) fn check(&self) -> Result<(), ConfigurationError> {
+        within("tuning.estimate.lateral_corner_hz", self.lateral_corner_hz, 0.1, 5.0)?;
+        within("tuning.estimate.running_rms_s", self.running_rms_s, 0.1, 20.0)
+    }
+}
+
+/// Dimensions and filters, as the equations above use them. See [`State`] for an example.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    piston_area_m2: f32,
+    half_spacing_m: Axles<f32>,
+    per_spacing: Axles<f32>,
+    axle_distance_m: Axles<f32>,
+    per_wheelbase: f32,
+    per_roll_arm: f32,
+    anti_roll_stiffness_n_m_rad: Axles<f32>,
+    per_roll_gyration_2: f32,
+    per_pitch_gyration_2: f32,
+    strut_speed: Derivative,
+    static_load: LowPass,
+    lateral: LowPass,
+    lateral_bias: LowPass,
+    running: LowPass,
+    body_velocity: LeakyIntegrator,
+}
+
+impl Parameters {
+    /// From a description and a tuning that have been checked.
+    pub(crate) fn new(vehicle: &VehicleDescription, tuning: &Tuning) -> Self {
+        let square = |x: f32| x * x;
+        let Axles { front, rear } = vehicle.axle_distance_m;
+        Self {
+            piston_area_m2: vehicle.piston_area_m2,
+            half_spacing_m: vehicle.strut_spacing_m.map(|spacing| 0.5 * spacing),
+            per_spacing: vehicle.strut_spacing_m.map(|spacing| 1.0 / spacing),
+            axle_distance_m: vehicle.axle_distance_m,
+            per_wheelbase: 1.0 / (front + rear),
+            per_roll_arm: 1.0 / vehicle.roll_arm_m,
+            anti_roll_stiffness_n_m_rad: vehicle.anti_roll_stiffness_n_m_rad,
+            per_roll_gyration_2: 1.0 / square(vehicle.roll_gyration_m),
+            per_pitch_gyration_2: 1.0 / square(vehicle.pitch_gyration_m),
+            strut_speed: Derivative::from_corner_hz(SPEED_CORNER_HZ),
+            static_load: LowPass::from_time_constant_s(20.0),
+            lateral: LowPass::from_corner_hz(tuning.lateral_corner_hz),
+            lateral_bias: LowPass::from_time_constant_s(30.0),
+            running: LowPass::from_time_constant_s(tuning.running_rms_s),
+            body_velocity: LeakyIntegrator::from_corner_hz(0.2),
+        }
+    }
+}
+
+/// Estimated motion. Quantities of the body are those of its centre of gravity, with x forward, y left and z up; compression of a
+/// strut is positive. See [`estimate::State`](State) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// Strut speed, m/s, compression positive.
-    pub strut_speed_m_s: [f32; CORNERS],
+    pub strut_speed_m_s: Corners<f32>,
     /// Heave of the body relative to the axles, m, up positive.
     pub heave_m: f32,
     /// Roll of the body relative to the axles, rad, right side down positive.
@@ -57,23 +149,23 @@ pub struct Estimate {
     /// Running mean square of the vertical acceleration, m2/s4.
     pub vertical_mean_square: f32,
     /// Vertical acceleration of the body over each strut, m/s2, up positive.
-    pub corner_acceleration_m_s2: [f32; CORNERS],
+    pub corner_acceleration_m_s2: Corners<f32>,
     /// Vertical velocity of the body over each strut above 0.2 Hz, m/s, up positive.
-    pub corner_velocity_m_s: [f32; CORNERS],
+    pub corner_velocity_m_s: Corners<f32>,
     /// Static load on each strut, N.
-    pub static_load_n: [f32; CORNERS],
+    pub static_load_n: Corners<f32>,
 }
 
 impl Estimate {
-    /// Whether all arithmetic gave numbers.
+    /// Whether every quantity is a finite number.
     pub fn is_finite(&self) -> bool {
-        // Every quantity above enters one of these sums, and NaN or infinity survives addition.
+        // Every quantity above enters one of these sums, and a value that is not finite makes its sum not finite.
         let corners: f32 = self
             .strut_speed_m_s
-            .iter()
-            .chain(&self.corner_acceleration_m_s2)
-            .chain(&self.corner_velocity_m_s)
-            .chain(&self.static_load_n)
+            .values()
+            .chain(self.corner_acceleration_m_s2.values())
+            .chain(self.corner_velocity_m_s.values())
+            .chain(self.static_load_n.values())
             .sum();
         let body = self.heave_m
             + self.roll_rad
@@ -87,11 +179,27 @@ impl Estimate {
 }
 
 /// Memory of the estimator.
+///
+/// ```
+/// use oleo_controller::plausibility::Trusted;
+/// use oleo_controller::{Configuration, Corners, Gauge, StrutPressures, estimate};
+/// let parameters = Configuration::defender110().estimate;
+/// let mut state = estimate::State::default();
+/// let under = |pressure_pa: f32| Trusted {
+///     pressure: Corners::splat(StrutPressures::splat(Gauge(pressure_pa))),
+///     ..Trusted::default()
+/// };
+/// // The first tick takes the load for the static load: the body is at rest.
+/// assert_eq!(state.step(&parameters, &under(2.0e6)).vertical_acceleration_m_s2, 0.0);
+/// // A tenth more force at every strut accelerates the body upwards by a tenth of gravity.
+/// let estimate = state.step(&parameters, &under(2.2e6));
+/// assert!((estimate.vertical_acceleration_m_s2 - 0.980_665).abs() < 1e-3);
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct State {
-    speed: [DerivativeState; CORNERS],
-    static_load_n: [f32; CORNERS],
-    velocity: [f32; CORNERS],
+    speed: Corners<DerivativeState>,
+    static_load_n: Corners<f32>,
+    velocity: Corners<f32>,
     lateral: [f32; 2],
     lateral_bias: f32,
     lateral_mean_square: f32,
@@ -100,37 +208,31 @@ pub struct State {
 }
 
 impl State {
-    /// One tick from readings that may be used.
-    pub fn step(&mut self, c: &Configuration, trusted: &Trusted) -> Estimate {
-        let mut strut_speed_m_s = [0.0; CORNERS];
-        for ((speed, state), x) in strut_speed_m_s
-            .iter_mut()
-            .zip(&mut self.speed)
-            .zip(trusted.displacement_m)
-        {
-            *speed = c.strut_speed.step(state, x);
-        }
-        let relative = Relative::from_struts(c, &trusted.displacement_m);
-        let relative_rate = Relative::from_struts(c, &strut_speed_m_s);
+    /// One tick; returns the motion that follows from readings that may be used.
+    pub fn step(&mut self, c: &Parameters, trusted: &Trusted) -> Estimate {
+        let speeds = self.speed.each_mut().zip(trusted.displacement_m);
+        let strut_speed_m_s = speeds.map(|(state, x)| c.strut_speed.step(state, x));
+        let relative = Relative::from_struts(c, trusted.displacement_m);
+        let relative_rate = Relative::from_struts(c, strut_speed_m_s);
 
-        let force = trusted.pressure_pa.map(|[p1, ..]| p1 * c.piston_area_m2);
+        let force = trusted.pressure.map(|pressure| pressure.p1.pa() * c.piston_area_m2);
         if !self.started {
             self.started = true;
             self.static_load_n = force;
         }
-        for (load, force) in self.static_load_n.iter_mut().zip(force) {
-            // A strut without load (jacked up, empty) must not divide by nothing.
+        for (load, force) in self.static_load_n.each_mut().zip(force).into_array() {
+            // A strut without load (jacked up, or empty) must not lead to a division by zero.
             *load = at_least(c.static_load.step(load, force), 1.0);
         }
-        let weight: f32 = self.static_load_n.iter().sum();
+        let weight: f32 = self.static_load_n.values().sum();
         let per_mass = GRAVITY_M_S2 / weight;
 
-        let [hf, hr] = c.half_spacing_m;
-        let [a, b] = c.axle_distance_m;
-        let [kf, kr] = c.anti_roll_stiffness_n_m_rad;
-        let bars_n_m = kf * relative.roll_front_rad + kr * relative.roll_rear_rad;
-        let [w0, w1, w2, w3] = self.static_load_n;
-        let [f0, f1, f2, f3] = force;
+        let Axles { front: hf, rear: hr } = c.half_spacing_m;
+        let Axles { front: a, rear: b } = c.axle_distance_m;
+        let Axles { front: kf, rear: kr } = c.anti_roll_stiffness_n_m_rad;
+        let bars_n_m = kf * relative.axle_roll_rad.front + kr * relative.axle_roll_rad.rear;
+        let [w0, w1, w2, w3] = self.static_load_n.into_array();
+        let [f0, f1, f2, f3] = force.into_array();
         let left_up_n_m = hf * (f0 - f1) + hr * (f2 - f3);
         let static_left_up_n_m = hf * (w0 - w1) + hr * (w2 - w3);
 
@@ -145,13 +247,13 @@ impl State {
             .step(&mut self.lateral_bias, lagged.clamp(-MAX_BIAS_M_S2, MAX_BIAS_M_S2));
         let lateral = lagged - self.lateral_bias;
 
-        let corner_acceleration_m_s2 = [
+        let corner_acceleration_m_s2 = Corners::from_array([
             vertical + hf * roll - a * pitch,
             vertical - hf * roll - a * pitch,
             vertical + hr * roll + b * pitch,
             vertical - hr * roll + b * pitch,
-        ];
-        for (velocity, acceleration) in self.velocity.iter_mut().zip(corner_acceleration_m_s2) {
+        ]);
+        for (velocity, acceleration) in self.velocity.each_mut().zip(corner_acceleration_m_s2).into_array() {
             c.body_velocity.step(velocity, acceleration);
         }
         Estimate {
@@ -173,30 +275,28 @@ impl State {
     }
 }
 
-/// Body relative to the axles, from strut displacements (or rates, from strut speeds).
+/// Motion of the body relative to the axles: positions from strut displacements, or rates from strut speeds.
 struct Relative {
     heave_m: f32,
     roll_rad: f32,
-    roll_front_rad: f32,
-    roll_rear_rad: f32,
+    axle_roll_rad: Axles<f32>,
     pitch_rad: f32,
 }
 
 impl Relative {
-    fn from_struts(c: &Configuration, &[fl, fr, rl, rr]: &[f32; CORNERS]) -> Self {
-        let [front, rear] = c.per_spacing;
-        let [a, b] = c.axle_distance_m;
-        let roll_front_rad = (fr - fl) * front;
-        let roll_rear_rad = (rr - rl) * rear;
-        let front_m = 0.5 * (fl + fr);
-        let rear_m = 0.5 * (rl + rr);
+    fn from_struts(c: &Parameters, displacement: Corners<f32>) -> Self {
+        let struts = displacement.by_axle();
+        let Axles { front: a, rear: b } = c.axle_distance_m;
+        let axle_roll_rad = struts
+            .zip(c.per_spacing)
+            .map(|((left, right), per)| (right - left) * per);
+        let Axles { front, rear } = struts.map(|(left, right)| 0.5 * (left + right));
         Self {
             // Compression lowers the body; the centre of gravity is nearer to one axle.
-            heave_m: -(front_m * b + rear_m * a) * c.per_wheelbase,
-            roll_rad: 0.5 * (roll_front_rad + roll_rear_rad),
-            roll_front_rad,
-            roll_rear_rad,
-            pitch_rad: (front_m - rear_m) * c.per_wheelbase,
+            heave_m: -(front * b + rear * a) * c.per_wheelbase,
+            roll_rad: 0.5 * (axle_roll_rad.front + axle_roll_rad.rear),
+            axle_roll_rad,
+            pitch_rad: (front - rear) * c.per_wheelbase,
         }
     }
 }

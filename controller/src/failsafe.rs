@@ -1,8 +1,8 @@
-//! The mode machine: what the controller is allowed to do, given what is broken.
+//! The mode machine: what the controller may do, given what is broken.
 //!
-//! It is a pure function of the health of the inputs, counted in ticks, and it has the last word: whatever a strategy wants passes
-//! through [`permitted`]. De-energised (all valves closed: stiff spring, high damping) is the safe state, so every doubt
-//! ends there. Closing is never delayed: a fault that is seen in a tick shapes the command of that tick.
+//! It is a pure function of the health of the inputs, counted in ticks. It decides last: everything that a strategy wants passes
+//! through [`permitted`]. The safe state is de-energised, with all valves closed, which is a stiff spring and high damping; a
+//! doubt always leads there. A closing is never delayed: a fault that is seen in a tick changes the command of that tick.
 //!
 //! ```text
 //!                    healthy for 20 ticks
@@ -19,172 +19,164 @@
 //!       +-------------------> Latched  <---- solenoid or internal fault (from anywhere)
 //! ```
 //!
-//! *Severe*: readings are missing on both axles. *One axle affected*: any reading of one axle is missing.
-//! From `StartUp` a severe fault leads to `Safe` only after it was once healthy: before the first complete set of sensors
-//! the machine just waits, with the valves closed. `Latched` ends only with a new [`State`], that is a restart.
+//! A fault is *severe* if readings are missing on both axles; *one axle is affected* if any of its readings is missing. From
+//! `StartUp` a severe fault leads to `Safe` only if the vehicle was healthy before: until the first complete set of readings
+//! the machine waits with closed valves. `Latched` ends only with a new [`State`], which is a restart.
 //!
 //! | mode | springs (valve 3) | bypass valves 1, 2 |
 //! |---|---|---|
 //! | Normal | strategy | strategy |
-//! | Degraded | closed, all four: roll stiffness and balance of the safe state | strategy on the healthy axle, closed on the other |
+//! | Degraded | closed at all four, for the roll stiffness and balance of the safe state | strategy on the healthy axle, closed on the other |
 //! | StartUp, Safe, Latched | closed | closed |
 
-use crate::timing::ticks;
-use crate::valves::{BYPASS_1, BYPASS_2, CORNERS, SPRING, ValveCommand};
+use oleo_interface::{Axles, Corners, Valve};
+use strum::{FromRepr, IntoStaticStr, VariantArray};
 
-/// Ticks of health from `StartUp` to `Normal`.
+use crate::timing::ticks;
+use crate::valves::ValveCommand;
+
+/// Number of healthy ticks in a row that lead from `StartUp` to `Normal`.
 pub const START_UP_TICKS: u16 = ticks(100);
-/// Ticks of health from `Degraded` to `Normal` and from `Safe` to `StartUp`.
+/// Number of healthy ticks in a row that lead from `Degraded` to `Normal` and from `Safe` to `StartUp`.
 pub const RECOVERY_TICKS: u16 = ticks(1_000);
-/// Ticks in `Safe` after which it latches.
+/// Number of ticks in `Safe` after which the machine latches.
 pub const LATCH_TICKS: u16 = ticks(10_000);
-/// Entry into `Safe` that latches.
+/// Number of entries into `Safe` at which the machine latches.
 pub const LATCH_ENTRIES: u8 = 3;
 
-/// What the controller is doing.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+/// What the controller is doing. The numbers are those on the bus.
+///
+/// ```
+/// use oleo_controller::Mode;
+/// assert_eq!((Mode::StartUp.raw(), Mode::StartUp.name()), (0, "start-up"));
+/// assert_eq!(Mode::from_repr(4), Some(Mode::Latched));
+/// assert_eq!(Mode::from_repr(5), None);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, FromRepr, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "kebab-case")]
+#[repr(u8)]
 pub enum Mode {
-    /// Waiting for a complete and plausible set of sensors. Valves closed.
+    /// The controller waits for a complete and plausible set of readings. All valves are closed.
     #[default]
-    StartUp,
+    StartUp = 0,
     /// The strategy decides.
-    Normal,
-    /// One axle's sensors are incomplete: limp. Springs stiff, dampers by strategy on the other axle.
-    Degraded,
-    /// Valves closed; recovers when everything is healthy again.
-    Safe,
-    /// Valves closed until restart.
-    Latched,
+    Normal = 1,
+    /// Readings of one axle are missing. All springs are stiff, and only the other axle's dampers follow the strategy.
+    Degraded = 2,
+    /// Readings of both axles are missing. All valves are closed; the machine recovers when everything is healthy again.
+    Safe = 3,
+    /// All valves are closed until a restart.
+    Latched = 4,
 }
 
 impl Mode {
-    /// Number on the bus.
+    /// Number on the bus, 0 to 4.
     pub const fn raw(self) -> u8 {
-        match self {
-            Self::StartUp => 0,
-            Self::Normal => 1,
-            Self::Degraded => 2,
-            Self::Safe => 3,
-            Self::Latched => 4,
-        }
+        self as u8
     }
 
-    /// From the number on the bus.
-    pub const fn from_raw(raw: u8) -> Option<Self> {
-        Some(match raw {
-            0 => Self::StartUp,
-            1 => Self::Normal,
-            2 => Self::Degraded,
-            3 => Self::Safe,
-            4 => Self::Latched,
-            _ => return None,
-        })
+    /// Name in logs, tables and scenario files.
+    pub fn name(self) -> &'static str {
+        self.into()
     }
 }
 
-/// What was found to be wrong. The first cause of leaving `Normal` (or of not reaching it) is kept until all is well.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+/// What was found to be wrong. The numbers are those on the bus; the graver of two faults has the higher one.
+///
+/// ```
+/// use oleo_controller::FaultCode;
+/// assert_eq!((FaultCode::SensorRange.raw(), FaultCode::SensorRange.name()), (1, "sensor-range"));
+/// assert!(FaultCode::BusSilent > FaultCode::MessageLost);
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, FromRepr, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "kebab-case")]
+#[repr(u8)]
 pub enum FaultCode {
-    /// Nothing.
+    /// Nothing is wrong.
     #[default]
-    None,
+    None = 0,
     /// A reading is flagged by its sensor, not finite, or outside its range.
-    SensorRange,
-    /// A reading changes faster than the hardware can.
-    SensorRate,
+    SensorRange = 1,
+    /// A reading changes faster than the hardware can move.
+    SensorRate = 2,
     /// A reading does not change while its neighbours do.
-    SensorStuck,
+    SensorStuck = 3,
     /// One pressure of a strut disagrees with the others at rest.
-    SensorVote,
+    SensorVote = 4,
     /// Displacement and gas volumes of a strut disagree.
-    OilBalance,
+    OilBalance = 5,
     /// A sensor message is late or not trustworthy.
-    MessageLost,
+    MessageLost = 6,
     /// No sensor message arrives any more.
-    BusSilent,
+    BusSilent = 7,
     /// A solenoid could not be switched.
-    Solenoid,
-    /// The controller's own arithmetic gave no number.
-    Internal,
+    Solenoid = 8,
+    /// The controller's own arithmetic gave something that is not a finite number.
+    Internal = 9,
 }
 
 impl FaultCode {
-    /// Number on the bus.
+    /// Number on the bus, 0 to 9.
     pub const fn raw(self) -> u8 {
-        match self {
-            Self::None => 0,
-            Self::SensorRange => 1,
-            Self::SensorRate => 2,
-            Self::SensorStuck => 3,
-            Self::SensorVote => 4,
-            Self::OilBalance => 5,
-            Self::MessageLost => 6,
-            Self::BusSilent => 7,
-            Self::Solenoid => 8,
-            Self::Internal => 9,
-        }
+        self as u8
     }
 
-    /// From the number on the bus.
-    pub const fn from_raw(raw: u8) -> Option<Self> {
-        Some(match raw {
-            0 => Self::None,
-            1 => Self::SensorRange,
-            2 => Self::SensorRate,
-            3 => Self::SensorStuck,
-            4 => Self::SensorVote,
-            5 => Self::OilBalance,
-            6 => Self::MessageLost,
-            7 => Self::BusSilent,
-            8 => Self::Solenoid,
-            9 => Self::Internal,
-            _ => return None,
-        })
+    /// Name in logs, tables and scenario files.
+    pub fn name(self) -> &'static str {
+        self.into()
     }
 }
 
-/// Health of one tick's inputs, as the plausibility checks leave it.
+/// Health of the inputs of one tick, as the plausibility checks found it. See [`State`] for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Health {
-    /// Corners with at least one reading that may not be used.
-    pub affected: [bool; CORNERS],
-    /// Why (the gravest cause present), [`FaultCode::None`] if healthy.
+    /// Whether each corner has at least one reading that may not be used.
+    pub affected: Corners<bool>,
+    /// The gravest cause present, [`FaultCode::None`] if all readings are healthy.
     pub cause: FaultCode,
 }
 
-impl Health {
-    /// (front, rear)
-    fn axles(&self) -> (bool, bool) {
-        let [fl, fr, rl, rr] = self.affected;
-        (fl || fr, rl || rr)
-    }
+/// Whether either corner of each axle is affected.
+fn affected_axles(affected: Corners<bool>) -> Axles<bool> {
+    affected.by_axle().map(|(left, right)| left || right)
 }
 
 /// Memory of the mode machine.
+///
+/// ```
+/// use oleo_controller::failsafe::{Health, START_UP_TICKS, State};
+/// use oleo_controller::{Corner, FaultCode, Mode};
+/// let mut state = State::default();
+/// let healthy = Health::default();
+/// assert!((1..START_UP_TICKS).all(|_| state.step(&healthy) == Mode::StartUp));
+/// assert_eq!(state.step(&healthy), Mode::Normal);
+///
+/// let mut broken = Health { cause: FaultCode::SensorStuck, ..healthy };
+/// broken.affected[Corner::RearLeft] = true;
+/// assert_eq!(state.step(&broken), Mode::Degraded);
+/// broken.affected[Corner::FrontLeft] = true;
+/// assert_eq!(state.step(&broken), Mode::Safe);
+/// assert_eq!(state.first_cause(), FaultCode::SensorStuck);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct State {
     mode: Mode,
     first_cause: FaultCode,
-    /// Healthy ticks in a row.
+    /// Number of healthy ticks in a row; it saturates.
     healthy: u16,
-    /// Ticks in `Safe`.
+    /// Number of ticks in `Safe`; it saturates.
     dwell: u16,
     safe_entries: u8,
     was_normal: bool,
 }
 
 impl State {
-    /// Present mode.
-    pub const fn mode(&self) -> Mode {
-        self.mode
-    }
-
-    /// Whether `Normal` was ever reached.
+    /// Whether the mode was ever [`Mode::Normal`].
     pub const fn was_normal(&self) -> bool {
         self.was_normal
     }
 
-    /// First cause of the present trouble; `None` in `Normal`.
+    /// First cause of leaving [`Mode::Normal`], or of not reaching it; [`FaultCode::None`] in [`Mode::Normal`].
     pub const fn first_cause(&self) -> FaultCode {
         self.first_cause
     }
@@ -199,12 +191,12 @@ impl State {
         };
     }
 
-    /// One tick.
+    /// One tick; returns the mode that holds for it.
     pub fn step(&mut self, health: &Health) -> Mode {
         if self.mode == Mode::Latched {
             return self.mode;
         }
-        let (front, rear) = health.axles();
+        let Axles { front, rear } = affected_axles(health.affected);
         let terminal = matches!(health.cause, FaultCode::Solenoid | FaultCode::Internal);
         let severe = front && rear;
         let healthy = !front && !rear && !terminal;
@@ -260,21 +252,23 @@ impl State {
     }
 }
 
-/// The part of a wanted command that a mode permits. `affected` as in [`Health`].
-pub fn permitted(mode: Mode, affected: &[bool; CORNERS], wanted: ValveCommand) -> ValveCommand {
+/// The part of a wanted command that a mode permits, with the corners that [`Health`] calls affected.
+///
+/// ```
+/// use oleo_controller::failsafe::permitted;
+/// use oleo_controller::{Corners, Mode, ValveCommand};
+/// let healthy = Corners::splat(false);
+/// assert_eq!(permitted(Mode::Normal, healthy, ValveCommand::SOFT), ValveCommand::SOFT);
+/// assert_eq!(permitted(Mode::Safe, healthy, ValveCommand::SOFT), ValveCommand::SAFE);
+/// ```
+pub fn permitted(mode: Mode, affected: Corners<bool>, wanted: ValveCommand) -> ValveCommand {
     match mode {
         Mode::Normal => wanted,
         Mode::Degraded => {
-            let [fl, fr, rl, rr] = *affected;
-            let (front, rear) = (fl || fr, rl || rr);
-            let mut command = wanted;
-            for (corner, axle_affected) in [front, front, rear, rear].into_iter().enumerate() {
-                command = command.with(corner, SPRING, false);
-                if axle_affected {
-                    command = command.with(corner, BYPASS_1, false).with(corner, BYPASS_2, false);
-                }
-            }
-            command
+            let axles = affected_axles(affected);
+            ValveCommand::from_fn(|corner, valve| {
+                valve != Valve::Spring && !axles[corner.axle()] && wanted.is_open(corner, valve)
+            })
         }
         Mode::StartUp | Mode::Safe | Mode::Latched => ValveCommand::SAFE,
     }

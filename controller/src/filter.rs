@@ -3,31 +3,23 @@
 //! Coefficients are computed once, from physical units, when the configuration is built; a tick then only multiplies and
 //! adds. All sections are exact at steady state and unconditionally stable (0 < alpha < 1).
 
-use crate::timing::TICK_S;
+use oleo_interface::tick::TICK_S_F32 as TICK_S;
 
 /// `y += alpha (x - y)`, the step-invariant form of a first-order lag: `alpha = 1 - exp(-T / tau)`.
-///
-/// ```
-/// use oleo_controller::filter::LowPass;
-/// let filter = LowPass::from_time_constant_s(0.1);
-/// let mut y = 0.0;
-/// for _ in 0..20 { filter.step(&mut y, 1.0); } // 20 ticks are 0.1 s
-/// assert!((y - (1.0 - (-1.0f32).exp())).abs() < 1e-5);
-/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LowPass {
     alpha: f32,
 }
 
 impl LowPass {
-    /// Lag with a time constant, s (> 0).
+    /// Lag with a time constant, s, above 0.
     pub fn from_time_constant_s(time_constant_s: f32) -> Self {
         Self {
             alpha: -libm::expm1f(-TICK_S / time_constant_s),
         }
     }
 
-    /// Lag with a corner frequency, Hz (> 0).
+    /// Lag with a corner frequency, Hz, above 0.
     pub fn from_corner_hz(corner_hz: f32) -> Self {
         Self::from_time_constant_s(1.0 / (2.0 * core::f32::consts::PI * corner_hz))
     }
@@ -39,13 +31,14 @@ impl LowPass {
     }
 }
 
-/// The greater of a value and its bound. `f32::max` is a library call on a Cortex-M4F; this is three instructions. NaN gives the bound.
-pub(crate) fn at_least(value: f32, least: f32) -> f32 {
+/// The greater of a value and its lower bound; the bound where the value is not a number. `f32::max` is a library call on a
+/// Cortex-M4F, this takes three instructions.
+pub fn at_least(value: f32, least: f32) -> f32 {
     if value > least { value } else { least }
 }
 
-/// Derivative behind two first-order lags of the same corner: a plain difference would turn each 0.01 mm step of the displacement signal
-/// into 2 mm/s of speed.
+/// Derivative behind two first-order lags of the same corner frequency. A plain difference would turn each 0.01 mm step of
+/// the displacement signal into 2 mm/s of speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Derivative {
     lag: LowPass,
@@ -60,14 +53,14 @@ pub struct DerivativeState {
 }
 
 impl Derivative {
-    /// Both corners at this frequency, Hz.
+    /// Both lags with this corner frequency, Hz, above 0.
     pub fn from_corner_hz(corner_hz: f32) -> Self {
         Self {
             lag: LowPass::from_corner_hz(corner_hz),
         }
     }
 
-    /// One tick; the derivative per second. The first sample gives 0.
+    /// One tick; returns the derivative per second, which is 0 for the first sample.
     pub fn step(&self, state: &mut DerivativeState, input: f32) -> f32 {
         if !state.started {
             *state = DerivativeState {
@@ -82,15 +75,15 @@ impl Derivative {
     }
 }
 
-/// Integrator that forgets: `v = k (v + a T)`, an integrator above its corner and zero at rest, so that a constant error of
-/// an estimated acceleration does not run away.
+/// Leaky integrator `v = k (v + a T)`. It integrates above its corner frequency and returns to zero below it, so that a
+/// constant error of an estimated acceleration does not add up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeakyIntegrator {
     keep: f32,
 }
 
 impl LeakyIntegrator {
-    /// Integrates above a corner frequency, Hz.
+    /// Integrates above a corner frequency, Hz, above 0.
     pub fn from_corner_hz(corner_hz: f32) -> Self {
         Self {
             keep: libm::expf(-TICK_S * 2.0 * core::f32::consts::PI * corner_hz),
@@ -123,6 +116,15 @@ mod tests {
     }
 
     #[test]
+    fn low_pass_reaches_63_per_cent_after_its_time_constant() {
+        let (filter, mut state) = (LowPass::from_time_constant_s(0.1), 0.0);
+        for _ in 0..20 {
+            filter.step(&mut state, 1.0); // 20 ticks are 0.1 s
+        }
+        assert!((state - (1.0 - libm::expf(-1.0))).abs() < 1e-5);
+    }
+
+    #[test]
     fn low_pass_is_3_db_down_at_its_corner() {
         let (filter, mut state) = (LowPass::from_corner_hz(1.0), 0.0);
         assert!((gain(1.0, |x| filter.step(&mut state, x)) - core::f32::consts::FRAC_1_SQRT_2).abs() < 0.02);
@@ -137,7 +139,8 @@ mod tests {
 
     #[test]
     fn derivative_at_its_corner_is_6_db_down() {
-        // Two lags at 18 Hz: the analogue gain is one half; the step-invariant form is within a tenth of it at 200 Hz sampling.
+        // The analogue gain of two lags at their corner frequency is one half; at 200 Hz sampling the step-invariant form is
+        // within a tenth of it.
         let (filter, mut state) = (Derivative::from_corner_hz(18.0), DerivativeState::default());
         let omega = 2.0 * core::f32::consts::PI * 18.0;
         let measured = gain(18.0, |x| filter.step(&mut state, x)) / omega;

@@ -1,39 +1,64 @@
 //! The suspension controller: four displacements and sixteen pressures in, twelve valve positions out, every 5 ms.
 //!
 //! ```text
-//!  frames --> node --> tick:  plausibility --> estimate --> strategy --> failsafe --> node --> frames
-//!             (can)                                                                   \--> solenoids
+//!  frames --> Node --> tick:  plausibility --> estimate --> strategy --> spring, dwell --> failsafe --> Node --> frames
+//!             (can)           which readings   motion       what is      how and how       what is             \-> Solenoids
+//!                             may be used                   wanted       often             permitted
 //! ```
 //!
-//! [`tick`] is a pure function of an immutable [`Configuration`], a [`State`] and [`Inputs`]; the caller owns time. [`Node`] wraps it
-//! with the CAN bus, [`can`] is the bus's database in Rust. No heap, no panic, no clock, no std; f32 only, with the same `libm`
-//! on every machine, so that the sequence of valve words is the same on a desk computer and in the vehicle.
+//! | to do what | use |
+//! |---|---|
+//! | one period, without a bus | [`tick`], a pure function of [`Configuration`], [`State`] and [`Inputs`] |
+//! | one period with CAN frames | [`Node::receive`] any number of times, then [`Node::tick`] |
+//! | the same on a CAN peripheral | [`Port`], over `embedded_can::nb::Can` |
+//! | switch the valves | [`Solenoids`], over `embedded_hal::digital::OutputPin` |
+//! | another vehicle or another tuning | [`Builder`] |
+//! | stand at the other end of the bus | [`can::PlantEnd`] |
+//!
+//! The caller owns time: one call is one period, and nothing here reads a clock. The crate has no heap, needs no std and
+//! never panics. It computes in `f32` with the same `libm` on every machine, so that the sequence of valve commands is the
+//! same, bit for bit, on a desk computer and in the vehicle.
+//!
+//! Everything public is listed on one page, with units, ranges and errors: `docs/api-controller.md`. The examples
+//! `readings` and `frames` of this crate show both ways of use.
 #![no_std]
 #![forbid(unsafe_code)]
 
 pub mod can;
-pub mod configuration;
-pub mod dwell;
+mod configuration;
+mod dwell;
 pub mod estimate;
 pub mod failsafe;
-pub mod filter;
-pub mod node;
+mod filter;
+mod node;
 pub mod plausibility;
-pub mod port;
-pub mod reading;
-pub mod solenoids;
+mod port;
+mod range;
+mod reading;
+mod receiver;
+mod sensor_message;
+mod solenoids;
 pub mod spring;
 pub mod strategy;
-pub mod tick;
-pub mod timing;
-pub mod valves;
+mod tick;
+mod timing;
+mod valves;
+mod vehicle;
 
-pub use configuration::Configuration;
+pub use configuration::{Builder, Configuration, Tuning};
 pub use estimate::Estimate;
 pub use failsafe::{FaultCode, Mode};
-pub use node::Node;
+pub use node::{BusCounters, MAX_SENT, Node};
+pub use oleo_interface as interface;
+pub use oleo_interface::{
+    Absolute, Axle, Axles, Corner, Corners, Gauge, PressurePoint, Side, StrutPressures, StrutValves, Valve,
+};
+pub use port::{Port, PortCounters};
+pub use range::{ConfigurationError, Hysteresis};
 pub use reading::{Inputs, Reading};
-pub use solenoids::Solenoids;
+pub use sensor_message::{MessageSet, SensorMessage};
+pub use solenoids::{SolenoidError, Solenoids};
 pub use strategy::{DamperPolicy, Strategy};
 pub use tick::{Outputs, State, tick};
 pub use valves::ValveCommand;
+pub use vehicle::VehicleDescription;

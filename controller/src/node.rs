@@ -1,104 +1,83 @@
 //! A controller on a bus: frames in, frames out, one tick at a time.
 //!
-//! The node owns what the pure [`tick`] must not know: counters, check values, how old a message is. Hosts, the firmware
-//! and the tests all use this one, so a rule about messages exists once.
+//! The node owns what the pure [`tick()`](crate::tick()) must not know: counters, check values, how old a message is. Hosts, the
+//! firmware and the tests all use this one, so a rule about messages exists once.
 //!
-//! A message is *lost* when no usable frame came for its contract's `timeout_ticks`; until then its last values stand in. It is
-//! *untrusted* when frames with wrong CRC, repeated or out of sequence outnumber right ones: a counter goes up with each
-//! bad and down with each good frame, saturating at [`TRUST_LIMIT`], where trust ends until it is back at 0 (after opendbc's
-//! `wrong_counters`, with hysteresis). A lost or untrusted message makes its readings invalid.
+//! A message is *lost* when no usable frame came for its contract's `timeout_ticks`; until then its last values are used. It
+//! is *untrusted* when frames with a wrong CRC, repeated frames or frames out of sequence outnumber right ones: a counter
+//! goes up by one with each bad frame and down by one with each good frame, and it saturates at five. There trust ends until
+//! the counter is back at zero (after opendbc's `wrong_counters`, with hysteresis). The readings of a lost or untrusted
+//! message are invalid.
+
+use heapless::Vec;
+use oleo_interface::tick::TICK_MS;
+use oleo_interface::{Axle, Side, StrutPressures};
 
 use crate::can::{
-    COMMAND, CheckStatus, Checker, CommandMessage, DISPLACEMENT, DisplacementMessage, FRAME_BYTES, Frame, PRESSURE,
-    PressureMessage, Protector, SENSOR_MESSAGES, STATUS, StatusMessage,
+    COMMAND, CheckStatus, CommandMessage, DISPLACEMENT, DisplacementMessage, FRAME_BYTES, Frame, PRESSURE,
+    PressureMessage, Protector, STATUS, StatusMessage, sensor_message,
 };
 use crate::configuration::Configuration;
 use crate::reading::{Inputs, Reading};
+use crate::receiver::Receiver;
+use crate::sensor_message::{MessageSet, PerSensorMessage, SensorMessage};
 use crate::tick::{Outputs, State, tick};
-use crate::timing::TICK_MS;
-use heapless::Vec;
 
-/// Bad frames, less good ones, at which a message is no longer trusted.
-pub const TRUST_LIMIT: u8 = 5;
-
-/// Frames a tick can send: the command, and every 100 ms the status.
+/// Most frames that a tick sends: the command, and every 100 ms the status.
 pub const MAX_SENT: usize = 2;
 
 const STATUS_TICKS: u32 = STATUS.period_ms / TICK_MS;
 
-/// Receive side of one sensor message.
-#[derive(Clone, Copy, Debug)]
-struct Receiver {
-    checker: Checker,
-    timeout_ticks: u8,
-    /// Ticks since the last usable frame, saturating.
-    age: u8,
-    fresh: bool,
-    bad: u8,
-    untrusted: bool,
-}
-
-impl Receiver {
-    const fn new(contract: &crate::can::Contract) -> Self {
-        Self {
-            checker: Checker::new(contract),
-            timeout_ticks: contract.timeout_ticks,
-            age: contract.timeout_ticks,
-            fresh: false,
-            bad: 0,
-            untrusted: false,
-        }
-    }
-
-    fn receive(&mut self, data: &[u8; FRAME_BYTES]) -> CheckStatus {
-        let status = self.checker.check(data);
-        if status.is_usable() {
-            self.fresh = true;
-            self.age = 0;
-            self.bad = self.bad.saturating_sub(1);
-            if self.bad == 0 {
-                self.untrusted = false;
-            }
-        } else if status.is_error() {
-            self.bad = self.bad.saturating_add(1).min(TRUST_LIMIT);
-            if self.bad == TRUST_LIMIT {
-                self.untrusted = true;
-            }
-        }
-        status
-    }
-
-    /// Ends the tick's reception; whether the content must not be used.
-    fn end_of_tick(&mut self) -> bool {
-        if !core::mem::take(&mut self.fresh) {
-            self.checker.no_new_data();
-            self.age = self.age.saturating_add(1);
-        }
-        self.untrusted || self.age >= self.timeout_ticks
-    }
-}
-
-/// What has been seen on the bus, for statistics. Wrapping counters.
+/// What has been seen on the bus, for statistics. The counters wrap.
+///
+/// ```
+/// use oleo_controller::{Configuration, Node};
+/// let mut node = Node::new(Configuration::defender110());
+/// node.receive(0x7DF, &[0; 8]); // a frame of somebody else
+/// node.receive(0x110, &[0; 8]); // a sensor message with a wrong check value
+/// let counters = node.counters();
+/// assert_eq!((counters.foreign, counters.received, counters.wrong_crc), (1, 1, 1));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BusCounters {
     /// Frames of the controller's messages.
     pub received: u32,
-    /// Frames with other identifiers, ignored.
+    /// Frames with other identifiers, which are ignored.
     pub foreign: u32,
-    /// Frames with wrong length or CRC.
+    /// Frames with a wrong length or CRC.
     pub wrong_crc: u32,
-    /// Frames repeated or out of sequence.
+    /// Frames that were repeated or out of sequence.
     pub wrong_sequence: u32,
-    /// Gaps seen in counters.
+    /// Gaps seen in the frames' counters.
     pub gaps: u32,
 }
 
-/// Configuration, state, and both directions of the bus.
+/// A controller with its configuration and state, behind both directions of the bus.
+///
+/// ```
+/// use oleo_controller::can::PlantEnd;
+/// use oleo_controller::{Configuration, Corners, Gauge, Inputs, Mode, Node, StrutPressures};
+/// let mut node = Node::new(Configuration::defender110());
+/// let mut plant = PlantEnd::new(); // stands for the sensors and the output stage
+/// let at_rest = Inputs::from_values(Corners::splat(0.0), Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
+/// let mut mode = Mode::StartUp;
+/// for tick in 0..40 {
+///     for frame in plant.encode(tick, &at_rest) {
+///         node.receive(frame.id, &frame.data);
+///     }
+///     let (outputs, frames) = node.tick();
+///     for frame in frames {
+///         plant.receive(frame.id, &frame.data);
+///     }
+///     mode = outputs.mode;
+/// }
+/// assert_eq!(mode, Mode::Normal);
+/// ```
 #[derive(Clone, Debug)]
 pub struct Node {
     configuration: Configuration,
     state: State,
-    receivers: [Receiver; 6],
+    receivers: PerSensorMessage<Receiver>,
     inputs: Inputs,
     echo_tick: u16,
     command: Protector,
@@ -108,12 +87,15 @@ pub struct Node {
 }
 
 impl Node {
-    /// A node that has heard nothing: valves closed, mode start-up.
+    /// A node that has received nothing: all valves are closed, and the mode is [`Mode::StartUp`](crate::Mode::StartUp).
     pub fn new(configuration: Configuration) -> Self {
         Self {
             state: State::new(),
             configuration,
-            receivers: SENSOR_MESSAGES.map(|contract| Receiver::new(&contract)),
+            receivers: PerSensorMessage {
+                pressure: PRESSURE.map(|contract| Receiver::new(&contract)),
+                displacement: DISPLACEMENT.map(|contract| Receiver::new(&contract)),
+            },
             inputs: Inputs::default(),
             echo_tick: 0,
             command: Protector::new(&COMMAND),
@@ -123,23 +105,20 @@ impl Node {
         }
     }
 
-    /// Takes a frame from the bus, any number of times between ticks. Foreign identifiers are ignored. Returns the plant tick if the frame is a
-    /// rear displacement message with the right CRC, which completes a set in lockstep.
+    /// Takes a frame from the bus: its standard identifier, 0 to 0x7FF, and its data. Call it any number of times between
+    /// ticks; frames with other identifiers are counted and ignored.
+    ///
+    /// Returns the sender's tick if the frame is a rear displacement message with the right CRC. That message is the last
+    /// of a tick, so a simulation in lockstep knows that the readings are complete.
     pub fn receive(&mut self, id: u16, data: &[u8]) -> Option<u16> {
-        let index = SENSOR_MESSAGES.iter().position(|contract| contract.id == id);
-        let Some((index, receiver)) = index.and_then(|i| Some((i, self.receivers.get_mut(i)?))) else {
+        let Some(message) = sensor_message(id) else {
             self.counters.foreign = self.counters.foreign.wrapping_add(1);
             return None;
         };
         self.counters.received = self.counters.received.wrapping_add(1);
-        // A frame of the wrong length cannot carry the right CRC: same consequence.
-        let mut whole = [0xFF; FRAME_BYTES];
-        let status = if let Ok(data) = <&[u8; FRAME_BYTES]>::try_from(data) {
-            whole = *data;
-            receiver.receive(data)
-        } else {
-            receiver.receive(&whole)
-        };
+        // A frame of the wrong length cannot carry the right CRC: it has the same consequence.
+        let data = <&[u8; FRAME_BYTES]>::try_from(data).unwrap_or(&[0xFF; FRAME_BYTES]);
+        let status = self.receivers.get_mut(message).receive(data);
         match status {
             CheckStatus::WrongCrc => {
                 self.counters.wrong_crc = self.counters.wrong_crc.wrapping_add(1);
@@ -151,53 +130,38 @@ impl Node {
             CheckStatus::OkSomeLost => self.counters.gaps = self.counters.gaps.wrapping_add(1),
             CheckStatus::Ok | CheckStatus::Initial | CheckStatus::Sync => {}
         }
-        if let Some(axle) = index.checked_sub(PRESSURE.len()) {
-            let message = DisplacementMessage::decode(&whole);
-            if status.is_usable() {
-                let [fl, fr, rl, rr] = &mut self.inputs.displacement;
-                let (left, right) = if axle == 0 { (fl, fr) } else { (rl, rr) };
-                *left = message.left;
-                *right = message.right;
+        match message {
+            SensorMessage::Pressure(corner) => {
+                if status.is_usable() {
+                    self.inputs.pressure[corner] = PressureMessage::decode(data).pressure;
+                }
+                None
             }
-            if axle == DISPLACEMENT.len() - 1 {
+            SensorMessage::Displacement(axle) => {
+                let message = DisplacementMessage::decode(data);
+                if status.is_usable() {
+                    self.inputs.displacement[axle.corner(Side::Left)] = message.left;
+                    self.inputs.displacement[axle.corner(Side::Right)] = message.right;
+                }
+                if axle == Axle::Front {
+                    return None;
+                }
                 // The echo only says which frame was seen; it needs no sequence.
                 self.echo_tick = message.plant_tick;
-                return Some(message.plant_tick);
+                Some(message.plant_tick)
             }
-        } else if status.is_usable()
-            && let Some(pressure) = self.inputs.pressure.get_mut(index)
-        {
-            *pressure = PressureMessage::decode(&whole).pressure;
         }
-        None
     }
 
-    /// The output stage failed to switch a solenoid: the next tick latches.
+    /// Reports that the output stage could not switch a solenoid. The next tick latches.
     pub fn report_solenoid_failure(&mut self) {
         self.inputs.solenoid_failed = true;
     }
 
-    /// One period: decides, and returns what to send. Call every [`TICK_MS`].
+    /// One period: decides, and returns the frames to send. Call it every [`TICK_MS`].
     pub fn tick(&mut self) -> (Outputs, Vec<Frame, MAX_SENT>) {
-        let mut inputs = self.inputs;
-        for (bit, receiver) in self.receivers.iter_mut().enumerate() {
-            if receiver.end_of_tick() {
-                inputs.lost_messages |= 1 << bit;
-                if let Some(pressure) = inputs.pressure.get_mut(bit) {
-                    *pressure = [Reading::INVALID; 4];
-                }
-            }
-        }
-        let lost = |axle: usize| inputs.lost_messages & (1 << (PRESSURE.len() + axle)) != 0;
-        let [fl, fr, rl, rr] = &mut inputs.displacement;
-        if lost(0) {
-            (*fl, *fr) = (Reading::INVALID, Reading::INVALID);
-        }
-        if lost(1) {
-            (*rl, *rr) = (Reading::INVALID, Reading::INVALID);
-        }
-
-        let outputs = tick(&self.configuration, &mut self.state, &inputs);
+        self.end_of_reception();
+        let outputs = tick(&self.configuration, &mut self.state, &self.inputs);
 
         let mut frames = Vec::new();
         let mut send = |id: u16, mut data: [u8; FRAME_BYTES], protector: &mut Protector| {
@@ -214,20 +178,49 @@ impl Node {
         send(COMMAND.id, command.encode(), &mut self.command);
         if self.status_countdown == 0 {
             self.status_countdown = STATUS_TICKS;
-            let status: StatusMessage = outputs.status(inputs.lost_messages);
+            let status = status(&outputs, self.inputs.lost_messages);
             send(STATUS.id, status.encode(), &mut self.status);
         }
         self.status_countdown = self.status_countdown.saturating_sub(1);
         (outputs, frames)
     }
 
+    /// Makes the readings of lost messages invalid. A message's next usable frame brings new ones.
+    fn end_of_reception(&mut self) {
+        let inputs = &mut self.inputs;
+        inputs.lost_messages = MessageSet::EMPTY;
+        for (corner, receiver) in self.receivers.pressure.iter_mut() {
+            if receiver.end_of_tick() {
+                inputs.lost_messages.insert(SensorMessage::Pressure(corner));
+                inputs.pressure[corner] = StrutPressures::splat(Reading::INVALID);
+            }
+        }
+        for (axle, receiver) in self.receivers.displacement.iter_mut() {
+            if receiver.end_of_tick() {
+                inputs.lost_messages.insert(SensorMessage::Displacement(axle));
+                for side in Side::ALL {
+                    inputs.displacement[axle.corner(side)] = Reading::INVALID;
+                }
+            }
+        }
+    }
+
     /// Bus statistics since the start.
     pub fn counters(&self) -> BusCounters {
         self.counters
     }
+}
 
-    /// The configuration.
-    pub fn configuration(&self) -> &Configuration {
-        &self.configuration
+/// Content of the status message after a tick.
+fn status(outputs: &Outputs, lost_messages: MessageSet) -> StatusMessage {
+    StatusMessage {
+        mode: outputs.mode,
+        fault: outputs.fault,
+        handling: outputs.handling,
+        rollover_guard: outputs.rollover_guard,
+        lateral_rms_m_s2: libm::sqrtf(outputs.estimate.lateral_mean_square),
+        vertical_rms_m_s2: libm::sqrtf(outputs.estimate.vertical_mean_square),
+        invalid_readings: outputs.invalid_readings,
+        lost_messages,
     }
 }

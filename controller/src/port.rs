@@ -1,8 +1,9 @@
-//! The node on a real CAN peripheral: `embedded_can::nb::Can`, polled, never blocking.
+//! The node on a real CAN peripheral, over `embedded_can::nb::Can`: polled, and never blocking.
 //!
-//! A controller must not wait for its bus: what cannot be sent now waits in a queue of a few frames, of which the oldest is dropped when it is full, since
-//! an old command is worth less than a new one. Reception takes at most as many frames a call as the queue of a whole
-//! tick could hold, so that a babbling neighbour cannot keep the controller from deciding.
+//! A controller must not wait for its bus. What cannot be sent now waits in a queue of a few frames. When the queue is full, the
+//! oldest frame is dropped, because an old command is worth less than a new one. One call takes at most as many frames from the
+//! peripheral as the bus can deliver in a tick, so that another node that sends all the time cannot keep the controller from
+//! deciding.
 
 use crate::can::{FRAME_BYTES, Frame};
 use crate::node::Node;
@@ -10,22 +11,76 @@ use crate::tick::Outputs;
 use embedded_can::{Frame as _, Id, StandardId, nb::Can};
 use heapless::Deque;
 
-/// Frames read in one call of [`Port::poll`]: more than a 1 Mbit/s bus delivers in a tick (5000 bit times, 47 for the shortest frame).
-pub const MOST_RECEIVED: usize = 128;
+/// Most frames read in one call of [`Port::poll`]: more than a bus of 1 Mbit/s delivers in a tick (5000 bit times, of which the
+/// shortest frame takes 47).
+const MOST_RECEIVED: usize = 128;
 
-/// Frames that wait for the transmitter.
-pub const SEND_QUEUE: usize = 4;
+/// Most frames that wait for the transmitter.
+const SEND_QUEUE: usize = 4;
 
-/// What went wrong at the peripheral. Wrapping counters.
+/// What went wrong at the peripheral. The counters wrap. See [`Port`] for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PortCounters {
-    /// Receive or transmit errors that the peripheral reported.
+    /// Number of receive and transmit errors that the peripheral reported.
     pub errors: u32,
-    /// Frames dropped because the transmitter did not take them in time.
+    /// Number of frames that were dropped because the transmitter did not take them in time.
     pub dropped: u32,
 }
 
 /// A node and its CAN peripheral.
+///
+/// ```
+/// use embedded_can::{ErrorKind, Id, nb::Can};
+/// use oleo_controller::{Configuration, Mode, Node, Port};
+///
+/// #[derive(Clone)]
+/// struct Frame(Id, [u8; 8]);
+/// impl embedded_can::Frame for Frame {
+///     fn new(id: impl Into<Id>, data: &[u8]) -> Option<Self> {
+///         Some(Self(id.into(), data.try_into().ok()?))
+///     }
+///     fn new_remote(_: impl Into<Id>, _: usize) -> Option<Self> {
+///         None
+///     }
+///     fn is_extended(&self) -> bool {
+///         matches!(self.0, Id::Extended(_))
+///     }
+///     fn is_remote_frame(&self) -> bool {
+///         false
+///     }
+///     fn id(&self) -> Id {
+///         self.0
+///     }
+///     fn dlc(&self) -> usize {
+///         8
+///     }
+///     fn data(&self) -> &[u8] {
+///         &self.1
+///     }
+/// }
+///
+/// /// A peripheral on a bus without any other node.
+/// struct QuietBus {
+///     sent: usize,
+/// }
+/// impl Can for QuietBus {
+///     type Frame = Frame;
+///     type Error = ErrorKind;
+///     fn transmit(&mut self, _: &Frame) -> nb::Result<Option<Frame>, ErrorKind> {
+///         self.sent += 1;
+///         Ok(None)
+///     }
+///     fn receive(&mut self) -> nb::Result<Frame, ErrorKind> {
+///         Err(nb::Error::WouldBlock)
+///     }
+/// }
+///
+/// let mut port = Port::new(QuietBus { sent: 0 }, Node::new(Configuration::defender110()));
+/// let outputs = port.tick();
+/// assert_eq!(outputs.mode, Mode::StartUp); // no sensor has been heard
+/// assert_eq!(port.can_mut().sent, 2); // the command and the status
+/// assert_eq!((port.counters().errors, port.counters().dropped), (0, 0));
+/// ```
 #[derive(Debug)]
 pub struct Port<C: Can> {
     can: C,
@@ -35,7 +90,7 @@ pub struct Port<C: Can> {
 }
 
 impl<C: Can> Port<C> {
-    /// Nothing sent, nothing received.
+    /// A node on a peripheral that is already on the bus.
     pub fn new(can: C, node: Node) -> Self {
         Self {
             can,
@@ -45,7 +100,8 @@ impl<C: Can> Port<C> {
         }
     }
 
-    /// Moves waiting frames in and out. Call it as often as there is time; returns at once. Extended, remote and foreign frames are ignored.
+    /// Moves waiting frames in and out, and returns at once. Call it as often as there is time. Extended frames, remote frames and
+    /// frames with other identifiers are ignored.
     pub fn poll(&mut self) {
         for _ in 0..MOST_RECEIVED {
             match self.can.receive() {
@@ -56,7 +112,8 @@ impl<C: Can> Port<C> {
                 }
                 Err(nb::Error::WouldBlock) => break,
                 Err(nb::Error::Other(_)) => {
-                    // The frame is gone; the counters of its message will tell. Trying again at once could go on for ever.
+                    // The frame is lost, which the counter of its message will show. Trying again at once could go on for
+                    // ever.
                     self.counters.errors = self.counters.errors.wrapping_add(1);
                     break;
                 }
@@ -66,7 +123,7 @@ impl<C: Can> Port<C> {
     }
 
     /// One period: reads what has come, decides, and hands the frames to the transmitter. Call it every
-    /// [`crate::timing::TICK_MS`].
+    /// [`TICK_MS`](oleo_interface::tick::TICK_MS).
     pub fn tick(&mut self) -> Outputs {
         self.poll();
         let (outputs, frames) = self.node.tick();
@@ -82,7 +139,7 @@ impl<C: Can> Port<C> {
         outputs
     }
 
-    /// The output stage failed to switch a solenoid: the next tick latches.
+    /// Reports that the output stage could not switch a solenoid. The next tick latches.
     pub fn report_solenoid_failure(&mut self) {
         self.node.report_solenoid_failure();
     }
@@ -109,7 +166,8 @@ impl<C: Can> Port<C> {
                 continue;
             };
             match self.can.transmit(&out) {
-                // A frame that ours displaced from a mailbox has lower priority; it belongs to an older tick and is let go.
+                // A frame that this one displaced from a mailbox has a lower priority. It belongs to an older tick and is not
+                // sent again.
                 Ok(displaced) => {
                     if displaced.is_some() {
                         self.counters.dropped = self.counters.dropped.wrapping_add(1);
@@ -135,7 +193,7 @@ mod tests {
     extern crate std;
     use super::*;
     use crate::can::{COMMAND, PlantEnd};
-    use crate::{Configuration, Inputs, Mode};
+    use crate::{Configuration, Corners, Gauge, Inputs, Mode, StrutPressures};
     use std::collections::VecDeque;
     use std::vec::Vec;
 
@@ -212,7 +270,7 @@ mod tests {
     #[test]
     fn frames_reach_the_node_and_commands_the_bus() {
         let (mut port, mut plant) = (port(), PlantEnd::new());
-        let inputs = Inputs::from_values([0.0; 4], [[2.0e6; 4]; 4]);
+        let inputs = Inputs::from_values(Corners::splat(0.0), Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
         let mut mode = Mode::StartUp;
         for n in 0..60 {
             for frame in plant.encode(n, &inputs) {

@@ -1,11 +1,20 @@
-//! What the controller may know: twenty sensor readings, each with its validity.
+//! What the controller is told: twenty sensor readings, each with its validity.
 //!
-//! A number whose sensor or frame is not trusted must not be usable by accident, so the value is only reachable together
-//! with the question whether it is valid.
+//! A number whose sensor or frame is not trusted must not be used by accident. So a value can only be had together with the answer
+//! whether it is valid.
 
-use crate::valves::CORNERS;
+use oleo_interface::{Corners, Gauge, StrutPressures};
+
+use crate::sensor_message::MessageSet;
 
 /// One sensor reading. A value that is not finite is never valid.
+///
+/// ```
+/// use oleo_controller::Reading;
+/// assert_eq!(Reading::new(0.012).value(), Some(0.012));
+/// assert_eq!(Reading::new(f32::NAN), Reading::INVALID);
+/// assert_eq!(Reading::INVALID.value(), None);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reading {
     value: f32,
@@ -13,7 +22,7 @@ pub struct Reading {
 }
 
 impl Reading {
-    /// A reading that says nothing.
+    /// A reading without a value.
     pub const INVALID: Self = Self {
         value: 0.0,
         valid: false,
@@ -28,7 +37,7 @@ impl Reading {
         }
     }
 
-    /// The value where it is valid.
+    /// The value, if it is valid.
     pub fn value(self) -> Option<f32> {
         self.valid.then_some(self.value)
     }
@@ -39,31 +48,36 @@ impl Reading {
     }
 }
 
-/// Bits of [`Inputs::lost_messages`], in the order of the sensor messages.
-pub type MessageSet = u8;
-
-/// All that the controller is told in a tick.
+/// All that the controller is told in a tick. By default nothing is valid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Inputs {
-    /// Strut displacement from the static position, metres, compression positive; 0 front left to 3 rear right.
-    pub displacement: [Reading; CORNERS],
-    /// Gauge pressures p1 to p4 of each strut, pascal (see `docs/controller.md` for the places).
-    pub pressure: [[Reading; 4]; CORNERS],
-    /// Sensor messages whose contract is broken at present (timeout or untrusted): bit 0 to 3 the pressures of the four corners,
-    /// bit 4 front and bit 5 rear displacements. 0 where no bus is in between. It names the cause; the readings
-    /// concerned are invalid anyway.
+    /// Strut displacement from the static position, m, compression positive, -0.25 to 0.25.
+    pub displacement: Corners<Reading>,
+    /// Gauge pressures p1 to p4 of each strut, Pa, -4.9e6 to 35e6.
+    pub pressure: Corners<StrutPressures<Reading>>,
+    /// Sensor messages that are late or not trusted at present; none where no bus is in between. The set names the
+    /// cause; the readings of such a message are invalid anyway.
     pub lost_messages: MessageSet,
     /// The output stage could not switch a solenoid in the last tick.
     pub solenoid_failed: bool,
 }
 
 impl Inputs {
-    /// All readings valid, nothing lost: for callers without a bus. Units as the fields.
-    pub fn from_values(displacement_m: [f32; CORNERS], pressure_pa: [[f32; 4]; CORNERS]) -> Self {
+    /// Inputs without a bus: every finite value is a valid reading, no message is lost.
+    ///
+    /// ```
+    /// use oleo_controller::{Corner, Corners, Gauge, Inputs, StrutPressures};
+    /// let displacement_m = Corners::from_array([0.01, 0.01, f32::NAN, 0.0]);
+    /// let inputs = Inputs::from_values(displacement_m, Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
+    /// assert_eq!(inputs.displacement[Corner::FrontLeft].value(), Some(0.01));
+    /// assert!(!inputs.displacement[Corner::RearLeft].is_valid());
+    /// assert_eq!(inputs.pressure[Corner::RearLeft].p4.value(), Some(2.0e6));
+    /// ```
+    pub fn from_values(displacement_m: Corners<f32>, pressure: Corners<StrutPressures<Gauge<f32>>>) -> Self {
         Self {
             displacement: displacement_m.map(Reading::new),
-            pressure: pressure_pa.map(|p| p.map(Reading::new)),
-            lost_messages: 0,
+            pressure: pressure.map(|strut| strut.map(|point| Reading::new(point.pa()))),
+            lost_messages: MessageSet::EMPTY,
             solenoid_failed: false,
         }
     }

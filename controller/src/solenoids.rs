@@ -1,55 +1,89 @@
-//! Twelve solenoids behind twelve output pins, high = energised = open.
+//! Twelve solenoids behind twelve output pins: a high pin energises the solenoid and opens the valve.
 //!
-//! Whatever ends the controller must leave the valves closed, so the output stage de-energises when it is made, when a pin reports an error,
-//! and when it is dropped. A failed pin never stops the others from being switched.
+//! Whatever ends the controller must leave the valves closed. So the output stage de-energises all of them when it is made, when a
+//! pin reports an error, and when it is dropped. A failed pin never keeps the others from being switched.
+
+use embedded_hal::digital::OutputPin;
+use oleo_interface::{Corners, StrutValves};
 
 use crate::valves::ValveCommand;
-use embedded_hal::digital::OutputPin;
 
-/// Number of solenoids: four corners with three valves.
-pub const SOLENOIDS: usize = 12;
-
-/// A pin could not be switched.
+/// Some output pins could not be switched. The message names their valves. See [`Solenoids`] for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SolenoidError {
-    /// Bits of the pins that failed, as in the valve word.
-    pub failed: u16,
+    /// Whether each valve's pin failed.
+    pub failed: Corners<StrutValves<bool>>,
 }
 
 impl core::fmt::Display for SolenoidError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        write!(
-            f,
-            "solenoids: output pins with bits {:#05x} could not be switched: check the output stage",
-            self.failed
-        )
+        f.write_str("solenoids: the output pins of")?;
+        let mut before = "";
+        for (corner, strut) in self.failed.iter() {
+            for (valve, failed) in strut.iter() {
+                if *failed {
+                    write!(f, "{before} {} valve {}", corner.name(), valve.number())?;
+                    before = ",";
+                }
+            }
+        }
+        f.write_str(" could not be switched: check the output stage")
     }
 }
 
 impl core::error::Error for SolenoidError {}
 
-/// The output stage. Pins in the order of the valve word: front left 1, 2, 3, front right 1, ...
+/// The output stage: one pin for each valve.
+///
+/// ```
+/// use embedded_hal::digital::{ErrorKind, ErrorType, OutputPin};
+/// use oleo_controller::{Corners, Solenoids, StrutValves, ValveCommand};
+///
+/// struct BrokenPin;
+/// impl ErrorType for BrokenPin {
+///     type Error = ErrorKind;
+/// }
+/// impl OutputPin for BrokenPin {
+///     fn set_low(&mut self) -> Result<(), ErrorKind> {
+///         Ok(())
+///     }
+///     fn set_high(&mut self) -> Result<(), ErrorKind> {
+///         Err(ErrorKind::Other)
+///     }
+/// }
+///
+/// let pins = Corners::from_fn(|_| StrutValves::from_fn(|_| BrokenPin));
+/// let mut solenoids = Solenoids::new(pins).expect("these pins can be low");
+/// let error = solenoids.drive(ValveCommand::from_word(0b100)).unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "solenoids: the output pins of front-left valve 3 could not be switched: check the output stage"
+/// );
+/// // Now it only de-energises.
+/// assert!(solenoids.drive(ValveCommand::SOFT).is_ok());
+/// ```
 #[derive(Debug)]
 pub struct Solenoids<P: OutputPin> {
-    pins: [P; SOLENOIDS],
+    pins: Corners<StrutValves<P>>,
     latched: bool,
 }
 
 impl<P: OutputPin> Solenoids<P> {
-    /// Takes the pins and de-energises them all.
+    /// Takes the pins and de-energises all of them.
     ///
     /// # Errors
-    /// If a pin cannot be switched; all others are low and the stage is dropped.
-    pub fn new(pins: [P; SOLENOIDS]) -> Result<Self, SolenoidError> {
+    /// If a pin cannot be switched. All others are low then, and the stage is dropped.
+    pub fn new(pins: Corners<StrutValves<P>>) -> Result<Self, SolenoidError> {
         let mut stage = Self { pins, latched: false };
         stage.write(ValveCommand::SAFE)?;
         Ok(stage)
     }
 
-    /// Drives all pins. After an error every further call only de-energises: a stage that failed once is not trusted again.
+    /// Drives all pins. After an error every further call only de-energises, because a stage that failed once is not trusted
+    /// again.
     ///
     /// # Errors
-    /// The pins that could not be switched.
+    /// Names the pins that could not be switched. All others are low then.
     pub fn drive(&mut self, command: ValveCommand) -> Result<(), SolenoidError> {
         let result = self.write(if self.latched { ValveCommand::SAFE } else { command });
         if result.is_err() {
@@ -59,28 +93,24 @@ impl<P: OutputPin> Solenoids<P> {
         result
     }
 
-    /// All pins low, as far as they obey.
+    /// Sets all pins low. A pin that cannot be switched is passed over.
     pub fn de_energise(&mut self) {
-        for pin in &mut self.pins {
-            // Nothing is left to do for a pin that will not go low.
-            let _ = pin.set_low();
+        for strut in self.pins.values_mut() {
+            for pin in strut.each_mut().into_array() {
+                // Nothing more can be done for a pin that does not go low.
+                let _ = pin.set_low();
+            }
         }
     }
 
     fn write(&mut self, command: ValveCommand) -> Result<(), SolenoidError> {
-        let mut failed = 0;
-        for (bit, pin) in self.pins.iter_mut().enumerate() {
-            let mask = 1 << bit;
-            let done = if command.word() & mask != 0 {
-                pin.set_high()
-            } else {
-                pin.set_low()
-            };
-            if done.is_err() {
-                failed |= mask;
-            }
-        }
-        if failed == 0 {
+        let pins = self.pins.each_mut().zip(command.corners());
+        let failed = pins.map(|(pins, open)| {
+            pins.each_mut()
+                .zip(open)
+                .map(|(pin, open)| if open { pin.set_high() } else { pin.set_low() }.is_err())
+        });
+        if failed == Corners::default() {
             Ok(())
         } else {
             Err(SolenoidError { failed })
@@ -100,6 +130,7 @@ mod tests {
     use super::*;
     use core::cell::Cell;
     use embedded_hal::digital::{ErrorKind, ErrorType};
+    use std::string::ToString;
     use std::vec::Vec;
 
     #[derive(Debug)]
@@ -139,15 +170,17 @@ mod tests {
             .sum()
     }
 
-    fn wired(cells: &[(Cell<bool>, Cell<bool>)]) -> [Pin<'_>; SOLENOIDS] {
-        core::array::from_fn(|i| Pin {
-            level: &cells[i].0,
-            broken: &cells[i].1,
+    fn wired(cells: &[(Cell<bool>, Cell<bool>)]) -> Corners<StrutValves<Pin<'_>>> {
+        Corners::from_fn(|corner| {
+            StrutValves::from_fn(|valve| {
+                let (level, broken) = &cells[ValveCommand::bit(corner, valve)];
+                Pin { level, broken }
+            })
         })
     }
 
     fn cells(level: bool) -> Vec<(Cell<bool>, Cell<bool>)> {
-        (0..SOLENOIDS).map(|_| (Cell::new(level), Cell::new(false))).collect()
+        (0..12).map(|_| (Cell::new(level), Cell::new(false))).collect()
     }
 
     #[test]
@@ -170,7 +203,10 @@ mod tests {
         stage.drive(ValveCommand::from_word(0x0F0)).unwrap();
         cells[2].1.set(true);
         let error = stage.drive(ValveCommand::SOFT).unwrap_err();
-        assert_eq!(error.failed, 0b100);
+        assert_eq!(
+            error.to_string(),
+            "solenoids: the output pins of front-left valve 3 could not be switched: check the output stage"
+        );
         assert_eq!(levels(&cells), 0);
         cells[2].1.set(false);
         stage.drive(ValveCommand::SOFT).unwrap();

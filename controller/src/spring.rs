@@ -1,8 +1,9 @@
 //! Valve 3 at any displacement: when to close and open it, and what its closing traps.
 //!
-//! The report's first model could change springs at the reference position only. The reason is oil: closing valve 3 keeps in
-//! accumulator 2 whatever is in it then, and opening it joins two volumes of different pressure. Both follow from the
-//! measured pressures (absolute; `k` charge pressure, `V1`, `V2` gas volumes at static position, `A` piston area, isothermal as in the report):
+//! The report's first model could change springs at the reference position only. The reason is the oil: closing valve 3 keeps
+//! in accumulator 2 whatever oil is in it then, and opening it joins two volumes of different pressure. Both effects follow
+//! from the measured pressures (absolute; `k` charge pressure, `V1`, `V2` gas volumes at static position, `A` piston area,
+//! isothermal as in the report):
 //!
 //! ```text
 //!   closing   gas left behind        V4 = V2 k / p4
@@ -11,44 +12,111 @@
 //!             force step             dF = A (p - p1) = A (p4 - p1) V4 / (V1' + V4)
 //! ```
 //!
-//! Rules, for each strut. The pressures are taken where they will be when the valve acts, 60 ms ahead.
+//! The rules for each strut use the pressures extrapolated by 60 ms, to the time at which the valve acts.
 //!
-//! - Close when `|x_t|` is below its bound (8 mm); handling waits up to 150 ms for that, a roll-over guard not at all, comfort 1 s.
-//! - Open when `|dF|` is below its bound (5 % of static load) at both struts of the axle, so that left and right change together; after 1 s
-//!   open anyway, but throttled: valve 2 stays closed, so that the volumes equalise through damper 2, until p3 and p4 are within 0.2 MPa.
-//! - Not again within 0.5 s, except to close in an emergency.
+//! - A valve closes when `|x_t|` is below its bound (8 mm). It waits for that up to 150 ms in handling mode and 1 s for
+//!   comfort, and not at all under the roll-over guard.
+//! - A valve opens when `|dF|` is below its bound (5 % of the static load) at both struts of the axle, so that left and right
+//!   change together. After 1 s it opens anyway, but throttled: valve 2 stays closed, so that the volumes equalise through
+//!   damper 2, until p3 and p4 are within 0.2 MPa of each other.
+//! - A valve does not move again within 0.5 s, except to close in an emergency.
 //!
-//! What an emergency traps is not bounded; it is reported ([`Springs::trapped_shift_m`]) and goes at the next opening.
+//! The shift that a closing in an emergency traps has no bound. [`Springs::trapped_shift_m`] reports it, and the next opening
+//! releases it.
 
-use crate::configuration::Configuration;
-use crate::filter::{DerivativeState, at_least};
+use oleo_interface::{Absolute, Corners, Gauge, StrutPressures};
+
+use crate::filter::{Derivative, DerivativeState, at_least};
 use crate::plausibility::Trusted;
+use crate::range::{ConfigurationError, within};
 use crate::strategy::Urgency;
 use crate::timing::ticks;
-use crate::valves::CORNERS;
+use crate::vehicle::VehicleDescription;
 
-/// Where pressures are extrapolated to: the middle of the valves' 40 to 90 ms.
+/// Time over which pressures are extrapolated, s: the middle of the valves' response times of 40 to 90 ms.
 const AHEAD_S: f32 = 0.06;
 const HANDLING_PATIENCE_TICKS: u16 = ticks(150);
 const COMFORT_PATIENCE_TICKS: u16 = ticks(1_000);
 const DWELL_TICKS: u16 = ticks(500);
-/// After this p4 follows an opened valve.
+/// Time after which p4 follows p1 through an opened valve.
 const SETTLE_TICKS: u16 = ticks(200);
-/// A throttled opening ends here even where the pressures stay apart (a sensor's offset must not hold the damper for ever).
+/// Time after which a throttled opening ends even where the pressures stay apart: a sensor's offset must not keep the damper
+/// hard for ever.
 const LONGEST_THROTTLE_TICKS: u16 = ticks(1_000);
+/// Pressures closer than this count as equal, Pa.
 const EQUAL_PA: f32 = 0.2e6;
-/// Absolute pressure below which an accumulator counts as empty.
+/// Absolute pressure below which an accumulator counts as empty, Pa.
 const LEAST_PA: f32 = 2.0e4;
 
-use crate::plausibility::ATMOSPHERE_PA;
+/// What a person may choose about the spring valves.
+///
+/// ```
+/// use oleo_controller::{Builder, spring};
+/// let mut builder = Builder::default();
+/// builder.tuning.spring = spring::Tuning { trapped_shift_m: 0.012, ..spring::Tuning::default() };
+/// assert!(builder.build().is_ok());
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// Largest shift of the ride height that closing valve 3 may trap, m, 1e-4 to 0.1.
+    pub trapped_shift_m: f32,
+    /// Largest force step on opening valve 3, as a fraction of the static load, 1e-3 to 1.
+    pub opening_step_share: f32,
+}
 
+impl Default for Tuning {
+    fn default() -> Self {
+        Self {
+            trapped_shift_m: 0.008,   // assumed
+            opening_step_share: 0.05, // assumed
+        }
+    }
+}
+
+impl Tuning {
+    /// Whether every value is within its range.
+    pub(crate) fn check(&self) -> Result<(), ConfigurationError> {
+        within("tuning.spring.trapped_shift_m", self.trapped_shift_m, 1e-4, 0.1)?;
+        within("tuning.spring.opening_step_share", self.opening_step_share, 1e-3, 1.0)
+    }
+}
+
+/// Dimensions, bounds and the filter of the pressures' rates. See [`Springs`] for an example.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    piston_area_m2: f32,
+    per_piston_area: f32,
+    gas_volume_1_m3: f32,
+    gas_volume_2_m3: f32,
+    pressure_rate: Derivative,
+    trapped_shift_m: f32,
+    opening_step_share: f32,
+}
+
+impl Parameters {
+    /// From a description and a tuning that have been checked.
+    pub(crate) fn new(vehicle: &VehicleDescription, tuning: &Tuning) -> Self {
+        Self {
+            piston_area_m2: vehicle.piston_area_m2,
+            per_piston_area: 1.0 / vehicle.piston_area_m2,
+            gas_volume_1_m3: vehicle.gas_volume_1_m3,
+            gas_volume_2_m3: vehicle.gas_volume_2_m3,
+            // Slower than the strut speed: 5 kPa steps.
+            pressure_rate: Derivative::from_corner_hz(8.0),
+            trapped_shift_m: tuning.trapped_shift_m,
+            opening_step_share: tuning.opening_step_share,
+        }
+    }
+}
+
+/// State of one spring valve.
 #[derive(Clone, Copy, Debug, Default)]
-struct Corner {
+struct SpringValve {
     open: bool,
     throttled: bool,
-    /// Ticks since the last change, saturating.
+    /// Number of ticks since the last change; it saturates.
     since: u16,
-    /// Ticks for which a change has been wanted.
+    /// Number of ticks for which a change has been wanted; it saturates.
     waiting: u16,
     p1_rate: DerivativeState,
     p4_rate: DerivativeState,
@@ -57,80 +125,95 @@ struct Corner {
 }
 
 /// State of the four spring valves.
+///
+/// ```
+/// use oleo_controller::plausibility::Trusted;
+/// use oleo_controller::spring::Springs;
+/// use oleo_controller::strategy::Urgency;
+/// use oleo_controller::{Absolute, Configuration, Corners, Gauge, StrutPressures};
+/// let parameters = Configuration::defender110().spring;
+/// // Struts at rest under 2 MPa, charged for exactly that.
+/// let trusted = Trusted {
+///     pressure: Corners::splat(StrutPressures::splat(Gauge(2.0e6))),
+///     charge: Corners::splat(Absolute(2_101_325.0)),
+///     ..Trusted::default()
+/// };
+/// let (load_n, wanted) = (Corners::splat(3927.0), Corners::splat(true));
+/// let mut springs = Springs::default();
+/// // The pressures are equal, so all valves open as soon as they have rested for 0.5 s.
+/// let mut tick = || springs.step(&parameters, &trusted, &load_n, wanted, Urgency::Comfort);
+/// assert_eq!((0..99).map(|_| tick()).last(), Some(Corners::splat(false)));
+/// assert_eq!(tick(), Corners::splat(true));
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Springs {
-    corners: [Corner; CORNERS],
+    valves: Corners<SpringValve>,
 }
 
 impl Springs {
-    /// One tick: whether valve 3 is to be open at each corner. Not to be called while the mode machine keeps all closed:
-    /// that is [`Springs::forced_closed`].
+    /// One tick: returns whether valve 3 is to be open at each corner; `wanted` says where the strategy wants it open. While
+    /// the mode machine keeps all valves closed, call [`Springs::forced_closed`] instead.
     pub fn step(
         &mut self,
-        c: &Configuration,
+        c: &Parameters,
         trusted: &Trusted,
-        static_load_n: &[f32; CORNERS],
-        soft: bool,
+        static_load_n: &Corners<f32>,
+        wanted: Corners<bool>,
         urgency: Urgency,
-    ) -> [bool; CORNERS] {
-        for ((corner, pressure), &charge) in self
-            .corners
-            .iter_mut()
-            .zip(&trusted.pressure_pa)
-            .zip(&trusted.charge_pa)
-        {
-            corner.observe(c, pressure, charge, soft);
-        }
-        let [fl, fr, rl, rr] = &mut self.corners;
-        let [wfl, wfr, wrl, wrr] = *static_load_n;
-        for (left, right, left_load_n, right_load_n) in [(fl, fr, wfl, wfr), (rl, rr, wrl, wrr)] {
-            if soft {
-                let smooth = left.opens_smoothly(c, left_load_n) && right.opens_smoothly(c, right_load_n);
-                left.open_if_due(smooth);
-                right.open_if_due(smooth);
-            } else {
-                left.close_if_due(c, urgency);
-                right.close_if_due(c, urgency);
+    ) -> Corners<bool> {
+        self.observe(c, trusted, wanted);
+        let axles = self.valves.each_mut().zip(wanted).zip(*static_load_n).by_axle();
+        for (((left, left_wanted), left_load_n), ((right, right_wanted), right_load_n)) in axles.into_array() {
+            // The valves of an axle that are to open do so together.
+            let smooth = (!left_wanted || left.opens_smoothly(c, left_load_n))
+                && (!right_wanted || right.opens_smoothly(c, right_load_n));
+            for (valve, wanted) in [(left, left_wanted), (right, right_wanted)] {
+                if wanted {
+                    valve.open_if_due(smooth);
+                } else {
+                    valve.close_if_due(c, urgency);
+                }
             }
         }
-        self.corners.each_ref().map(|corner| corner.open)
+        self.valves.map(|valve| valve.open)
     }
 
-    /// All valves are closed by the mode machine: nothing is decided, and the next opening is careful.
-    pub fn forced_closed(&mut self, c: &Configuration, trusted: &Trusted) {
-        for ((corner, pressure), &charge) in self
-            .corners
-            .iter_mut()
-            .zip(&trusted.pressure_pa)
-            .zip(&trusted.charge_pa)
-        {
-            corner.observe(c, pressure, charge, false);
-            if corner.open {
-                corner.change(false);
+    /// One tick in which the mode machine keeps all valves closed. Their next opening obeys the rules above.
+    pub fn forced_closed(&mut self, c: &Parameters, trusted: &Trusted) {
+        self.observe(c, trusted, Corners::splat(false));
+        for valve in self.valves.values_mut() {
+            if valve.open {
+                valve.change(false);
             }
         }
     }
 
-    /// Corners whose opening is throttled through damper 2: valve 2 is to stay closed.
-    pub fn throttled(&self) -> [bool; CORNERS] {
-        self.corners.each_ref().map(|corner| corner.throttled)
+    fn observe(&mut self, c: &Parameters, trusted: &Trusted, wanted: Corners<bool>) {
+        for (corner, valve) in self.valves.iter_mut() {
+            valve.observe(c, &trusted.pressure[corner], trusted.charge[corner], wanted[corner]);
+        }
     }
 
-    /// Corners whose valve 3 has been open for long enough that p4 follows p1.
-    pub fn settled_open(&self) -> [bool; CORNERS] {
-        self.corners
+    /// Corners at which valve 3 opens throttled through damper 2, so that valve 2 is to stay closed.
+    pub fn throttled(&self) -> Corners<bool> {
+        self.valves.each_ref().map(|valve| valve.throttled)
+    }
+
+    /// Corners at which valve 3 has been open for so long that p4 follows p1.
+    pub fn settled_open(&self) -> Corners<bool> {
+        self.valves
             .each_ref()
-            .map(|corner| corner.open && corner.since >= SETTLE_TICKS && !corner.throttled)
+            .map(|valve| valve.open && valve.since >= SETTLE_TICKS && !valve.throttled)
     }
 
-    /// Shift of the ride height that the oil behind each closed valve 3 causes, m, lower positive; what closing would
-    /// trap where it is open.
-    pub fn trapped_shift_m(&self) -> [f32; CORNERS] {
-        self.corners.each_ref().map(|corner| corner.trapped_shift_m)
+    /// Shift of the ride height by the oil behind each closed valve 3, m, positive where the corner is lower. Where the valve
+    /// is open it is the shift that closing it would trap.
+    pub fn trapped_shift_m(&self) -> Corners<f32> {
+        self.valves.each_ref().map(|valve| valve.trapped_shift_m)
     }
 }
 
-impl Corner {
+impl SpringValve {
     fn change(&mut self, open: bool) {
         self.open = open;
         self.since = 0;
@@ -138,37 +221,35 @@ impl Corner {
         self.throttled = false;
     }
 
-    fn observe(&mut self, c: &Configuration, &[p1, _, p3, p4]: &[f32; 4], charge_pa: f32, soft: bool) {
+    fn observe(&mut self, c: &Parameters, pressure: &StrutPressures<Gauge<f32>>, charge: Absolute<f32>, wanted: bool) {
         self.since = self.since.saturating_add(1);
-        self.waiting = if soft == self.open {
+        self.waiting = if wanted == self.open {
             0
         } else {
             self.waiting.saturating_add(1)
         };
-        let [v1, v2] = c.gas_volume_m3;
-        let p1_ahead = at_least(
-            p1 + ATMOSPHERE_PA + AHEAD_S * c.pressure_rate.step(&mut self.p1_rate, p1),
-            LEAST_PA,
-        );
-        let p4_ahead = at_least(
-            p4 + ATMOSPHERE_PA + AHEAD_S * c.pressure_rate.step(&mut self.p4_rate, p4),
-            LEAST_PA,
-        );
-        let gas4 = v2 * charge_pa / p4_ahead;
+        let (v1, v2) = (c.gas_volume_1_m3, c.gas_volume_2_m3);
+        let ahead = |p: Gauge<f32>, rate: &mut DerivativeState| {
+            let later = p.absolute() + AHEAD_S * c.pressure_rate.step(rate, p.pa());
+            Absolute(at_least(later.pa(), LEAST_PA))
+        };
+        let p1 = ahead(pressure.p1, &mut self.p1_rate);
+        let p4 = ahead(pressure.p4, &mut self.p4_rate);
+        let gas4 = v2 * charge.pa() / p4.pa();
         self.trapped_shift_m = (v2 - gas4) * c.per_piston_area;
         if !self.open {
-            let gas1 = v1 * charge_pa / p1_ahead;
-            self.opening_step_n =
-                c.piston_area_m2 * (p4_ahead - p1_ahead) * gas4 / at_least(gas1 + gas4, f32::MIN_POSITIVE);
+            let gas1 = v1 * charge.pa() / p1.pa();
+            self.opening_step_n = c.piston_area_m2 * (p4 - p1) * gas4 / at_least(gas1 + gas4, f32::MIN_POSITIVE);
         }
         if self.throttled
-            && ((p3 - p4).abs() < EQUAL_PA && self.since >= SETTLE_TICKS || self.since >= LONGEST_THROTTLE_TICKS)
+            && ((pressure.p3 - pressure.p4).abs() < EQUAL_PA && self.since >= SETTLE_TICKS
+                || self.since >= LONGEST_THROTTLE_TICKS)
         {
             self.throttled = false;
         }
     }
 
-    fn opens_smoothly(&self, c: &Configuration, static_load_n: f32) -> bool {
+    fn opens_smoothly(&self, c: &Parameters, static_load_n: f32) -> bool {
         self.open || self.opening_step_n.abs() <= c.opening_step_share * static_load_n
     }
 
@@ -184,7 +265,7 @@ impl Corner {
         }
     }
 
-    fn close_if_due(&mut self, c: &Configuration, urgency: Urgency) {
+    fn close_if_due(&mut self, c: &Parameters, urgency: Urgency) {
         let patience = match urgency {
             Urgency::Emergency => 0,
             Urgency::Handling => HANDLING_PATIENCE_TICKS,

@@ -1,20 +1,28 @@
-//! One period of the controller: inputs to valve command.
+//! One period of the controller, from inputs to valve command.
 //!
-//! The order is the data flow: trust the readings, estimate the motion, decide, and let the mode machine strike out what it
-//! does not permit. Nothing else may keep state between ticks.
+//! The order of the calls is the flow of data: find out which readings may be used, estimate the motion from them, decide what
+//! is wanted, and let the mode machine take out what it does not permit. Nothing else keeps state between ticks.
 
-use crate::can::StatusMessage;
+use oleo_interface::{Corners, StrutValves, Valve};
+
 use crate::configuration::Configuration;
 use crate::dwell::Dwell;
 use crate::estimate::{self, Estimate};
 use crate::failsafe::{self, FaultCode, Health, Mode};
 use crate::plausibility;
-use crate::reading::{Inputs, MessageSet};
+use crate::reading::Inputs;
 use crate::spring::Springs;
 use crate::strategy::{self, Urgency};
-use crate::valves::{CORNERS, VALVES, ValveCommand};
+use crate::valves::ValveCommand;
 
-/// All memory of the controller.
+/// All memory of the controller. One belongs to one vehicle; a new one is a restart.
+///
+/// ```
+/// use oleo_controller::{Configuration, Inputs, Mode, State, tick};
+/// let mut state = State::new();
+/// let outputs = tick(&Configuration::defender110(), &mut state, &Inputs::default());
+/// assert_eq!(outputs.mode, Mode::StartUp); // no reading is valid yet
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct State {
     plausibility: plausibility::State,
@@ -32,56 +40,67 @@ impl State {
     }
 }
 
-/// What a tick decided, and what it saw.
+/// What a tick decided, and what it was decided from.
+///
+/// ```
+/// use oleo_controller::{FaultCode, Mode, Outputs, ValveCommand};
+/// let before_the_first_tick = Outputs::default();
+/// assert_eq!(before_the_first_tick.command, ValveCommand::SAFE);
+/// assert_eq!((before_the_first_tick.mode, before_the_first_tick.fault), (Mode::StartUp, FaultCode::None));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outputs {
     /// Valve positions to drive.
     pub command: ValveCommand,
     /// Mode of the controller.
     pub mode: Mode,
-    /// First cause of a mode other than normal.
+    /// First cause of a mode other than [`Mode::Normal`].
     pub fault: FaultCode,
-    /// The strategy is in handling mode (stiff).
+    /// Whether the strategy is in handling mode: stiff springs and high damping.
     pub handling: bool,
-    /// The roll-over guard is active.
+    /// Whether the roll-over guard is active.
     pub rollover_guard: bool,
-    /// Readings that may not be used at present.
+    /// Number of readings that may not be used at present, 0 to 20.
     pub invalid_readings: u8,
-    /// Shift of the ride height by the oil behind valve 3, m, lower positive (see [`crate::spring`]).
-    pub trapped_shift_m: [f32; CORNERS],
-    /// Estimated motion.
+    /// Shift of the ride height by the oil that is trapped behind valve 3, m, positive where the corner is lower (see
+    /// [`crate::spring`]).
+    pub trapped_shift_m: Corners<f32>,
+    /// Estimated motion of body and struts.
     pub estimate: Estimate,
 }
 
-impl Outputs {
-    /// The status message's content.
-    pub fn status(&self, lost_messages: MessageSet) -> StatusMessage {
-        StatusMessage {
-            mode: self.mode,
-            fault: self.fault,
-            handling: self.handling,
-            rollover_guard: self.rollover_guard,
-            lateral_rms_m_s2: libm::sqrtf(self.estimate.lateral_mean_square),
-            vertical_rms_m_s2: libm::sqrtf(self.estimate.vertical_mean_square),
-            invalid_readings: self.invalid_readings,
-            lost_messages,
-        }
-    }
-}
-
-/// One tick. Call it every [`crate::timing::TICK_MS`]; the caller owns time.
+/// One period: decides the twelve valves from one set of readings. Call it every
+/// [`TICK_MS`](oleo_interface::tick::TICK_MS); the caller owns time.
+///
+/// The function is pure: the same configuration, state and inputs give the same outputs, bit for bit. It never fails; what is
+/// wrong with the inputs is in [`Outputs::mode`] and [`Outputs::fault`].
+///
+/// ```
+/// use oleo_controller::{Configuration, Corners, Gauge, Inputs, Mode, State, StrutPressures, ValveCommand, tick};
+/// let configuration = Configuration::defender110();
+/// let mut state = State::new();
+/// // A vehicle at rest: every strut at its static position and under 2 MPa.
+/// let inputs = Inputs::from_values(Corners::splat(0.0), Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
+/// // Readings are believed after 12 ticks, and the mode is normal after 20 healthy ones.
+/// let modes: [Mode; 31] = core::array::from_fn(|_| tick(&configuration, &mut state, &inputs).mode);
+/// assert_eq!((modes[29], modes[30]), (Mode::StartUp, Mode::Normal));
+/// // At rest the ride is soft: all valves open once their springs have rested for half a second.
+/// let outputs = core::iter::repeat_with(|| tick(&configuration, &mut state, &inputs)).nth(100);
+/// assert_eq!(outputs.map(|outputs| outputs.command), Some(ValveCommand::SOFT));
+/// ```
 pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     let context = plausibility::Context {
         spring_settled_open: state.springs.settled_open(),
         learning: !state.failsafe.was_normal(),
     };
-    let trusted = state.plausibility.step(c, inputs, &context);
+    let trusted = state.plausibility.step(&c.plausibility, inputs, &context);
     let mut health = trusted.health;
 
-    // Before the first complete set of sensors there is nothing to estimate from, and the filters must not start at zero load.
+    // Before the first complete set of readings there is nothing to estimate from, and the filters must not start at zero
+    // load.
     let mut estimate = Estimate::default();
     if state.failsafe.was_normal() || health == Health::default() {
-        estimate = state.estimate.step(c, &trusted);
+        estimate = state.estimate.step(&c.estimate, &trusted);
         if !estimate.is_finite() {
             health.cause = FaultCode::Internal;
             estimate = Estimate::default();
@@ -89,29 +108,34 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     }
 
     let mode = state.failsafe.step(&health);
-    let wish = state.strategy.step(c, &estimate, &trusted);
-    let soft = if mode == Mode::Normal {
-        state
-            .springs
-            .step(c, &trusted, &estimate.static_load_n, wish.soft_spring, wish.urgency)
+    let demand = state.strategy.step(&c.strategy, &estimate, &trusted);
+    let springs = if mode == Mode::Normal {
+        let wanted = demand.valves.corners().map(|strut| strut[Valve::Spring]);
+        let load_n = &estimate.static_load_n;
+        state.springs.step(&c.spring, &trusted, load_n, wanted, demand.urgency)
     } else {
-        state.springs.forced_closed(c, &trusted);
-        [false; CORNERS]
+        state.springs.forced_closed(&c.spring, &trusted);
+        Corners::splat(false)
     };
-    let low = state.dwell.step(wish.low_damping, wish.urgency == Urgency::Emergency);
+    let bypass = state.dwell.step(demand.valves, demand.urgency == Urgency::Emergency);
 
-    let mut corners = [[false; VALVES]; CORNERS];
-    for (((valves, soft), low), throttled) in corners.iter_mut().zip(soft).zip(low).zip(state.springs.throttled()) {
-        // Valve 2 has no effect behind a closed valve 3: de-energised, it does not wear.
-        *valves = [low, low && soft && !throttled, soft];
-    }
-    let command = failsafe::permitted(mode, &health.affected, ValveCommand::from_corners(corners));
+    // Valve 2 has no effect behind a closed valve 3, and a valve that is not energised does not wear.
+    let valve_2 = springs
+        .zip(state.springs.throttled())
+        .map(|(open, throttled)| open && !throttled);
+    let struts = bypass
+        .corners()
+        .zip(springs.zip(valve_2))
+        .map(|(bypass, (spring, valve_2))| {
+            StrutValves::new(bypass[Valve::Bypass1], bypass[Valve::Bypass2] && valve_2, spring)
+        });
+    let command = failsafe::permitted(mode, health.affected, ValveCommand::from_corners(struts));
     Outputs {
         command,
         mode,
         fault: state.failsafe.first_cause(),
-        handling: wish.handling,
-        rollover_guard: wish.rollover_guard,
+        handling: demand.handling,
+        rollover_guard: demand.rollover_guard,
         invalid_readings: trusted.invalid_readings,
         trapped_shift_m: state.springs.trapped_shift_m(),
         estimate,

@@ -4,10 +4,12 @@
 
 use can_dbc::{AttributeValue, ByteOrder, Dbc, Message, MessageId, NumericValue, Signal, ValueType};
 use oleo_controller::can::{
-    COMMAND, CommandMessage, DISPLACEMENT, DisplacementMessage, MESSAGES, PRESSURE, PressureMessage, Protector, STATUS,
-    StatusMessage, bus_load, signals,
+    self, COMMAND, CommandMessage, DISPLACEMENT, DisplacementMessage, MESSAGES, PRESSURE, PressureMessage, Protector,
+    STATUS, StatusMessage, bus_load,
 };
-use oleo_controller::{FaultCode, Mode, Reading, ValveCommand};
+use oleo_controller::{
+    Axle, Corner, FaultCode, MessageSet, Mode, PressurePoint, Reading, StrutPressures, Valve, ValveCommand,
+};
 use proptest::prelude::*;
 
 fn database() -> Dbc {
@@ -117,23 +119,20 @@ fn signals_do_not_overlap_and_are_explained() {
 #[test]
 fn scaling_is_the_code_s() {
     let dbc = database();
-    for contract in &PRESSURE {
+    for contract in PRESSURE.values() {
         for p in &message(&dbc, contract.id).signals[2..] {
             assert_eq!(
                 (p.factor, p.offset),
-                (
-                    f64::from(signals::PRESSURE_STEP_PA),
-                    f64::from(signals::PRESSURE_OFFSET_PA)
-                )
+                (f64::from(can::PRESSURE_STEP_PA), f64::from(can::PRESSURE_OFFSET_PA))
             );
             assert_eq!(p.unit, "Pa");
-            let most = f64::from(signals::PRESSURE_RAW_MAX) * p.factor + p.offset;
+            let most = f64::from(can::PRESSURE_RAW_MAX) * p.factor + p.offset;
             assert_eq!(p.max, NumericValue::Uint(most as u64));
         }
     }
-    for contract in &DISPLACEMENT {
+    for contract in DISPLACEMENT.into_array() {
         let x = signal(message(&dbc, contract.id), "DisplacementLeft");
-        assert_eq!((x.factor as f32, x.offset), (signals::DISPLACEMENT_STEP_M, 0.0));
+        assert_eq!((x.factor as f32, x.offset), (can::DISPLACEMENT_STEP_M, 0.0));
         assert_eq!(x.unit, "m");
     }
 }
@@ -145,19 +144,22 @@ fn value_tables_are_the_enumerations() {
         let id = MessageId::Standard(contract.id);
         let modes = dbc.value_descriptions_for_signal(id, "Mode").unwrap();
         for d in modes {
-            assert_eq!(format!("{:?}", Mode::from_raw(d.id as u8).unwrap()), d.description);
+            assert_eq!(format!("{:?}", Mode::from_repr(d.id as u8).unwrap()), d.description);
         }
         assert_eq!(
-            Mode::from_raw(modes.len() as u8),
+            Mode::from_repr(modes.len() as u8),
             None,
             "a mode is missing in the database"
         );
         let faults = dbc.value_descriptions_for_signal(id, "Fault").unwrap();
         for d in faults {
-            assert_eq!(format!("{:?}", FaultCode::from_raw(d.id as u8).unwrap()), d.description);
+            assert_eq!(
+                format!("{:?}", FaultCode::from_repr(d.id as u8).unwrap()),
+                d.description
+            );
         }
         assert_eq!(
-            FaultCode::from_raw(faults.len() as u8),
+            FaultCode::from_repr(faults.len() as u8),
             None,
             "a fault is missing in the database"
         );
@@ -185,27 +187,29 @@ fn bus_load_from_the_database() {
 
 proptest! {
     #[test]
-    fn pressures(raw in prop::array::uniform4(0u16..8192), corner in 0usize..4) {
+    fn pressures(raw in prop::array::uniform4(0u16..8192), corner in prop::sample::select(&Corner::ALL[..])) {
         let dbc = database();
         let message = message(&dbc, PRESSURE[corner].id);
         let mut frame = [0; 8];
-        for (raw, name) in raw.iter().zip(["P1", "P2", "P3", "P4"]) {
-            insert(&mut frame, signal(message, name), i64::from(*raw));
+        let raw = StrutPressures::from_array(raw);
+        let name = |point: PressurePoint| point.key().to_uppercase();
+        for (point, raw) in raw.iter() {
+            insert(&mut frame, signal(message, &name(point)), i64::from(*raw));
         }
         let decoded = PressureMessage::decode(&frame);
-        for ((raw, name), reading) in raw.iter().zip(["P1", "P2", "P3", "P4"]).zip(decoded.pressure) {
-            prop_assert_eq!(reading.is_valid(), *raw <= 8189);
+        for (point, reading) in decoded.pressure.iter() {
+            prop_assert_eq!(reading.is_valid(), raw[point] <= 8189);
             if let Some(value) = reading.value() {
-                prop_assert_eq!(f64::from(value), physical(&frame, signal(message, name)));
+                prop_assert_eq!(f64::from(value), physical(&frame, signal(message, &name(point))));
             }
         }
-        if raw.iter().all(|&r| r != 8191) {
+        if raw.iter().all(|(_, &raw)| raw != 8191) {
             prop_assert_eq!(decoded.encode(), frame);
         }
     }
 
     #[test]
-    fn displacements(tick: u16, left: i16, right: i16, status in 0u8..4, axle in 0usize..2) {
+    fn displacements(tick: u16, left: i16, right: i16, status in 0u8..4, axle in prop::sample::select(&Axle::ALL[..])) {
         let dbc = database();
         let message = message(&dbc, DISPLACEMENT[axle].id);
         let mut frame = [0; 8];
@@ -230,14 +234,14 @@ proptest! {
         let sent = CommandMessage {
             command: ValveCommand::from_word(word),
             echo_tick,
-            mode: Mode::from_raw(mode).unwrap(),
-            fault: FaultCode::from_raw(fault).unwrap(),
+            mode: Mode::from_repr(mode).unwrap(),
+            fault: FaultCode::from_repr(fault).unwrap(),
         };
         let frame = sent.encode();
-        for (corner, place) in ["FrontLeft", "FrontRight", "RearLeft", "RearRight"].iter().enumerate() {
-            for valve in 0..3 {
-                let bit = extract(&frame, signal(message, &format!("Valve{}_{place}", valve + 1)));
-                prop_assert_eq!(bit == 1, sent.command.valve(corner, valve));
+        for corner in Corner::ALL {
+            for valve in Valve::ALL {
+                let bit = extract(&frame, signal(message, &format!("Valve{}_{corner:?}", valve.number())));
+                prop_assert_eq!(bit == 1, sent.command.is_open(corner, valve));
             }
         }
         prop_assert_eq!(extract(&frame, signal(message, "ValveWordComplement")), i64::from(!word & 0xFFF));
@@ -253,14 +257,14 @@ proptest! {
         let dbc = database();
         let message = message(&dbc, STATUS.id);
         let sent = StatusMessage {
-            mode: Mode::from_raw(mode).unwrap(),
-            fault: FaultCode::from_raw(fault).unwrap(),
+            mode: Mode::from_repr(mode).unwrap(),
+            fault: FaultCode::from_repr(fault).unwrap(),
             handling,
             rollover_guard,
             lateral_rms_m_s2: lateral as f32 * 0.02,
             vertical_rms_m_s2: vertical as f32 * 0.02,
             invalid_readings,
-            lost_messages,
+            lost_messages: MessageSet::from_bits(lost_messages),
         };
         let frame = sent.encode();
         for (name, expected) in [
@@ -277,7 +281,8 @@ proptest! {
     /// What is out of a signal's range is sent as an error, never clipped.
     #[test]
     fn out_of_range_is_an_error(value in prop::num::f32::ANY) {
-        let [p, ..] = PressureMessage::decode(&PressureMessage { pressure: [Reading::new(value); 4] }.encode()).pressure;
+        let sent = PressureMessage { pressure: StrutPressures::splat(Reading::new(value)) };
+        let p = PressureMessage::decode(&sent.encode()).pressure.p1;
         prop_assert_eq!(p.is_valid(), value.is_finite() && (-5_002_500.0..=35_947_500.0).contains(&value));
         if let Some(p) = p.value() {
             prop_assert!((p - value).abs() <= 2_501.0);

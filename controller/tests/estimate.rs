@@ -1,10 +1,11 @@
 //! The estimator against rigid-body mechanics worked out beforehand: a body of known mass and inertia is given a motion, the forces that
 //! cause it are computed by Newton and Euler in f64, and the estimate must find the motion again.
 
-use oleo_controller::configuration::Builder;
 use oleo_controller::estimate::{GRAVITY_M_S2, State};
 use oleo_controller::plausibility::Trusted;
-use oleo_controller::{Configuration, Estimate};
+use oleo_controller::{
+    Axles, Configuration, Corner, Corners, Estimate, Gauge, Side, StrutPressures, VehicleDescription,
+};
 
 const MASS_KG: f64 = 1600.0;
 const G: f64 = GRAVITY_M_S2 as f64;
@@ -17,9 +18,9 @@ struct Motion {
 
 /// Pressures of the four struts that give the body these accelerations from rest; displacements zero.
 fn trusted(motion: &Motion) -> Trusted {
-    let b = Builder::default();
-    let [a, c] = b.axle_distance_m.map(f64::from);
-    let half = 0.5 * f64::from(b.strut_spacing_m[0]);
+    let b = VehicleDescription::default();
+    let Axles { front: a, rear: c } = b.axle_distance_m.map(f64::from);
+    let half = 0.5 * f64::from(b.strut_spacing_m.front);
     let roll_inertia = MASS_KG * f64::from(b.roll_gyration_m * b.roll_gyration_m);
     let pitch_inertia = MASS_KG * f64::from(b.pitch_gyration_m * b.pitch_gyration_m);
     let (front_weight, rear_weight) = (MASS_KG * G * c / (a + c) / 2.0, MASS_KG * G * a / (a + c) / 2.0);
@@ -27,15 +28,15 @@ fn trusted(motion: &Motion) -> Trusted {
     let heave = motion.vertical / G;
     let side = roll_inertia * motion.roll / (4.0 * half);
     let ends = pitch_inertia * motion.pitch / (2.0 * (a + c));
-    let force = [
+    let force = Corners::from_array([
         front_weight * (1.0 + heave) + side - ends,
         front_weight * (1.0 + heave) - side - ends,
         rear_weight * (1.0 + heave) + side + ends,
         rear_weight * (1.0 + heave) - side + ends,
-    ];
-    let pressure_pa = force.map(|f| [(f / f64::from(b.piston_area_m2)) as f32; 4]);
+    ]);
+    let pressure = force.map(|f| StrutPressures::splat(Gauge((f / f64::from(b.piston_area_m2)) as f32)));
     Trusted {
-        pressure_pa,
+        pressure,
         ..Trusted::default()
     }
 }
@@ -51,7 +52,7 @@ fn still() -> Motion {
 fn at_rest() -> (Configuration, State) {
     let (c, mut state) = (Configuration::defender110(), State::default());
     for _ in 0..10 {
-        let estimate = state.step(&c, &trusted(&still()));
+        let estimate = state.step(&c.estimate, &trusted(&still()));
         assert!(estimate.vertical_acceleration_m_s2.abs() < 1e-4);
     }
     (c, state)
@@ -68,14 +69,14 @@ fn near(what: &str, found: f32, expected: f64, tolerance: f64) {
 fn accelerations_are_found_again() {
     for (vertical, roll, pitch) in [(2.0, 0.0, 0.0), (0.0, 1.5, 0.0), (0.0, 0.0, 1.2), (-1.0, 0.7, -0.9)] {
         let (c, mut state) = at_rest();
-        let e = state.step(&c, &trusted(&Motion { vertical, roll, pitch }));
+        let e = state.step(&c.estimate, &trusted(&Motion { vertical, roll, pitch }));
         near("vertical", e.vertical_acceleration_m_s2, vertical, 2e-3);
         near("roll", e.roll_acceleration_rad_s2, roll, 2e-3);
         near("pitch", e.pitch_acceleration_rad_s2, pitch, 2e-3);
         // Over the front left strut: half a metre to the left, 1.389 m ahead.
         near(
             "corner",
-            e.corner_acceleration_m_s2[0],
+            e.corner_acceleration_m_s2[Corner::FrontLeft],
             vertical + 0.5 * roll - 1.389 * pitch,
             5e-3,
         );
@@ -86,19 +87,19 @@ fn accelerations_are_found_again() {
 fn attitude_and_speed_from_displacements() {
     let (c, mut state) = at_rest();
     let mut e = Estimate::default();
-    let rate = [0.1f32, 0.3, -0.2, 0.1]; // m/s
+    let rate = Corners::from_array([0.1f32, 0.3, -0.2, 0.1]); // m/s
     for n in 0..200 {
         let x = rate.map(|v| v * n as f32 * 0.005 * 0.1);
         e = state.step(
-            &c,
+            &c.estimate,
             &Trusted {
                 displacement_m: x,
                 ..trusted(&still())
             },
         );
     }
-    for (speed, rate) in e.strut_speed_m_s.into_iter().zip(rate) {
-        near("speed", speed, f64::from(0.1 * rate), 1e-4);
+    for (_, (speed, rate)) in e.strut_speed_m_s.zip(rate).iter() {
+        near("speed", *speed, f64::from(0.1 * rate), 1e-4);
     }
     near("roll rate", e.roll_rate_rad_s, 0.1 * (0.2 + 0.3) / 2.0, 1e-4);
     let t = 199.0 * 0.005 * 0.1;
@@ -110,20 +111,22 @@ fn attitude_and_speed_from_displacements() {
 #[test]
 fn steady_cornering() {
     // Left turn of 3 m/s2, body rolled by phi: struts and bars hold m (a_y h + g h phi) about the roll axis.
-    let b = Builder::default();
+    let b = VehicleDescription::default();
     let (a_y, phi, h) = (3.0, 0.03, f64::from(b.roll_arm_m));
-    let bars = phi * f64::from(b.anti_roll_stiffness_n_m_rad[0] + b.anti_roll_stiffness_n_m_rad[1]);
+    let bars = phi * f64::from(b.anti_roll_stiffness_n_m_rad.front + b.anti_roll_stiffness_n_m_rad.rear);
     let struts = MASS_KG * h * (a_y + G * phi) - bars;
     let (c, mut state) = at_rest();
     let mut turn = trusted(&still());
-    for (corner, side) in [-1.0, 1.0, -1.0, 1.0].into_iter().enumerate() {
+    for corner in Corner::ALL {
         // Four struts at half a metre: right side loaded.
-        turn.pressure_pa[corner][0] += (side * struts / 4.0 / 0.5 / f64::from(b.piston_area_m2)) as f32;
+        let side = if corner.side() == Side::Left { -1.0 } else { 1.0 };
+        let more = (side * struts / 4.0 / 0.5 / f64::from(b.piston_area_m2)) as f32;
+        turn.pressure[corner].p1 = turn.pressure[corner].p1 + more;
         turn.displacement_m[corner] = (side * 0.5 * phi) as f32;
     }
     let mut lateral = 0.0f32;
     for _ in 0..200 {
-        lateral = state.step(&c, &turn).lateral_acceleration_m_s2;
+        lateral = state.step(&c.estimate, &turn).lateral_acceleration_m_s2;
     }
     near("lateral", lateral, a_y, 0.2); // after 1 s: bias learning and static load have taken a little
 }
@@ -133,13 +136,15 @@ fn payload_needs_no_parameter() {
     let (c, mut state) = (Configuration::defender110(), State::default());
     let load = |share: f32| {
         let mut t = trusted(&still());
-        t.pressure_pa.iter_mut().for_each(|p| p[0] *= share);
+        for pressure in t.pressure.values_mut() {
+            pressure.p1 = Gauge(pressure.p1.pa() * share);
+        }
         t
     };
-    state.step(&c, &load(1.7));
+    state.step(&c.estimate, &load(1.7));
     near(
         "laden",
-        state.step(&c, &load(1.7 * 1.1)).vertical_acceleration_m_s2,
+        state.step(&c.estimate, &load(1.7 * 1.1)).vertical_acceleration_m_s2,
         0.1 * G,
         1e-3,
     );

@@ -6,8 +6,11 @@
 mod common;
 
 use common::{Loop, rough_road};
-use oleo_controller::can::{Frame, SENSOR_MESSAGES};
-use oleo_controller::{Configuration, FaultCode, Inputs, Mode, Outputs, Reading, Strategy};
+use oleo_controller::can::Frame;
+use oleo_controller::{
+    Axle, Configuration, Corner, Corners, FaultCode, Gauge, Inputs, MessageSet, Mode, Outputs, PressurePoint, Reading,
+    SensorMessage, Strategy, StrutPressures, Valve, ValveCommand,
+};
 use proptest::prelude::*;
 
 /// All valves open in normal mode, so that every reaction shows.
@@ -44,22 +47,51 @@ fn until_reaction(
     panic!("no reaction within {most} ticks");
 }
 
-/// Commands in limp mode: springs closed; the healthy axle keeps its dampers.
-const FRONT_LIMP: u16 = 0b011_011_000_000;
-const REAR_LIMP: u16 = 0b000_000_011_011;
-
-fn limp_pattern(corner_or_axle_front: bool) -> u16 {
-    // Valve 2 rests behind a closed valve 3.
-    (if corner_or_axle_front { FRONT_LIMP } else { REAR_LIMP }) & 0b001_001_001_001
+/// The command when one axle's sensors are incomplete: springs closed, and only the other axle keeps its dampers.
+/// Valve 2 rests behind a closed valve 3.
+fn limp_pattern(affected: Axle) -> ValveCommand {
+    ValveCommand::from_fn(|corner, valve| corner.axle() != affected && valve == Valve::Bypass1)
 }
 
-fn message_is_front(index: usize) -> bool {
-    matches!(index, 0 | 1 | 4)
+fn axle_of(message: SensorMessage) -> Axle {
+    match message {
+        SensorMessage::Pressure(corner) => corner.axle(),
+        SensorMessage::Displacement(axle) => axle,
+    }
+}
+
+/// One of the twenty readings.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    Displacement(Corner),
+    Pressure(Corner, PressurePoint),
+}
+
+impl Place {
+    fn all() -> impl Iterator<Item = Self> {
+        let pressures = Corner::ALL
+            .into_iter()
+            .flat_map(|corner| PressurePoint::ALL.map(|point| Self::Pressure(corner, point)));
+        Corner::ALL.into_iter().map(Self::Displacement).chain(pressures)
+    }
+
+    fn axle(self) -> Axle {
+        let (Self::Displacement(corner) | Self::Pressure(corner, _)) = self;
+        corner.axle()
+    }
+
+    fn of(self, inputs: &mut Inputs) -> &mut Reading {
+        match self {
+            Self::Displacement(corner) => &mut inputs.displacement[corner],
+            Self::Pressure(corner, point) => &mut inputs.pressure[corner][point],
+        }
+    }
 }
 
 #[test]
 fn every_message_silent() {
-    for (index, contract) in SENSOR_MESSAGES.iter().enumerate() {
+    for message in SensorMessage::ALL {
+        let contract = message.contract();
         let mut it = soft_loop();
         let (n, outputs) = until_reaction(&mut it, 20, |_| {}, |frames| frames.retain(|f| f.id != contract.id));
         assert_eq!(
@@ -68,18 +100,14 @@ fn every_message_silent() {
             "{}",
             contract.name
         );
-        assert_eq!(
-            outputs.command.word(),
-            limp_pattern(message_is_front(index)),
-            "{}",
-            contract.name
-        );
+        assert_eq!(outputs.command, limp_pattern(axle_of(message)), "{}", contract.name);
     }
 }
 
 #[test]
 fn every_message_corrupted() {
-    for (index, contract) in SENSOR_MESSAGES.iter().enumerate() {
+    for message in SensorMessage::ALL {
+        let contract = message.contract();
         let mut it = soft_loop();
         let corrupt = |frames: &mut Vec<Frame>| {
             for frame in frames.iter_mut().filter(|f| f.id == contract.id) {
@@ -93,18 +121,14 @@ fn every_message_corrupted() {
             "{}",
             contract.name
         );
-        assert_eq!(
-            outputs.command.word(),
-            limp_pattern(message_is_front(index)),
-            "{}",
-            contract.name
-        );
+        assert_eq!(outputs.command, limp_pattern(axle_of(message)), "{}", contract.name);
     }
 }
 
 #[test]
 fn every_message_frozen_in_a_gateway() {
-    for (index, contract) in SENSOR_MESSAGES.iter().enumerate() {
+    for message in SensorMessage::ALL {
+        let contract = message.contract();
         let mut it = soft_loop();
         let mut stored = None;
         let (n, outputs) = until_reaction(
@@ -124,19 +148,14 @@ fn every_message_frozen_in_a_gateway() {
             "{}",
             contract.name
         );
-        assert_eq!(
-            outputs.command.word(),
-            limp_pattern(message_is_front(index)),
-            "{}",
-            contract.name
-        );
+        assert_eq!(outputs.command, limp_pattern(axle_of(message)), "{}", contract.name);
     }
 }
 
 #[test]
 fn a_foreign_sender_on_our_identifiers() {
     // Two forged frames for each right one: the right ones are there, but the message is not trusted.
-    for contract in &SENSOR_MESSAGES {
+    for contract in SensorMessage::ALL.map(SensorMessage::contract) {
         let mut it = soft_loop();
         let (n, outputs) = until_reaction(
             &mut it,
@@ -225,28 +244,22 @@ fn long_silence_and_repeated_silence_latch() {
 /// What goes wrong with one reading.
 fn every_reading(fault: impl Fn(&mut Reading, f32), most: u32, expected: FaultCode) -> u32 {
     let mut slowest = 0;
-    for index in 0..20 {
+    for place in Place::all() {
         let mut it = soft_loop();
         let (n, outputs) = until_reaction(
             &mut it,
             most,
             |inputs| {
-                let (reading, scale) = if index < 4 {
-                    (&mut inputs.displacement[index], 1.0)
-                } else {
-                    (&mut inputs.pressure[(index - 4) / 4][(index - 4) % 4], 1.2e8)
+                let scale = match place {
+                    Place::Displacement(_) => 1.0,
+                    Place::Pressure(..) => 1.2e8,
                 };
-                fault(reading, scale);
+                fault(place.of(inputs), scale);
             },
             |_| {},
         );
-        let corner = if index < 4 { index } else { (index - 4) / 4 };
-        assert_eq!(
-            (outputs.mode, outputs.fault),
-            (Mode::Degraded, expected),
-            "reading {index}"
-        );
-        assert_eq!(outputs.command.word(), limp_pattern(corner < 2), "reading {index}");
+        assert_eq!((outputs.mode, outputs.fault), (Mode::Degraded, expected), "{place:?}");
+        assert_eq!(outputs.command, limp_pattern(place.axle()), "{place:?}");
         slowest = slowest.max(n);
     }
     slowest
@@ -289,18 +302,14 @@ fn every_reading_jumping() {
 #[test]
 fn every_reading_stuck() {
     let mut slowest = 0;
-    for index in (0..20).filter(|i| i % 4 != 3 || *i < 4) {
+    for place in Place::all().filter(|place| !matches!(place, Place::Pressure(_, PressurePoint::P4))) {
         let mut it = soft_loop();
         let held = std::cell::Cell::new(None);
         let (n, outputs) = until_reaction(
             &mut it,
             220,
             |inputs| {
-                let reading = if index < 4 {
-                    &mut inputs.displacement[index]
-                } else {
-                    &mut inputs.pressure[(index - 4) / 4][(index - 4) % 4]
-                };
+                let reading = place.of(inputs);
                 held.set(held.get().or(Some(*reading)));
                 *reading = held.get().unwrap();
             },
@@ -309,7 +318,7 @@ fn every_reading_stuck() {
         assert_eq!(
             (outputs.mode, outputs.fault),
             (Mode::Degraded, FaultCode::SensorStuck),
-            "reading {index}"
+            "{place:?}"
         );
         slowest = slowest.max(n);
     }
@@ -318,22 +327,26 @@ fn every_reading_stuck() {
 
 #[test]
 fn pressure_offset_is_outvoted_and_displacement_offset_breaks_the_oil_balance() {
-    for index in 0..4 {
+    for point in PressurePoint::ALL {
         let mut it = soft_loop();
         let shift = |inputs: &mut Inputs| {
-            let reading = &mut inputs.pressure[2][index];
+            let reading = &mut inputs.pressure[Corner::RearLeft][point];
             *reading = Reading::new(reading.value().unwrap() + 1.7e6);
         };
         let (n, outputs) = until_reaction(&mut it, 600, shift, |_| {});
         assert_eq!(outputs.mode, Mode::Degraded);
-        assert!(n <= 400, "p{}: {n}", index + 1);
-        assert!(outputs.fault == FaultCode::SensorVote || (index % 2 == 1 && outputs.fault == FaultCode::OilBalance));
+        assert!(n <= 400, "{}: {n}", point.key());
+        let balanced = matches!(point, PressurePoint::P2 | PressurePoint::P4);
+        assert!(outputs.fault == FaultCode::SensorVote || (balanced && outputs.fault == FaultCode::OilBalance));
     }
     let mut it = soft_loop();
     let (n, outputs) = until_reaction(
         &mut it,
         600,
-        |inputs| inputs.displacement[1] = Reading::new(inputs.displacement[1].value().unwrap() + 0.07),
+        |inputs| {
+            let reading = &mut inputs.displacement[Corner::FrontRight];
+            *reading = Reading::new(reading.value().unwrap() + 0.07);
+        },
         |_| {},
     );
     assert_eq!((outputs.mode, outputs.fault), (Mode::Degraded, FaultCode::OilBalance));
@@ -342,11 +355,12 @@ fn pressure_offset_is_outvoted_and_displacement_offset_breaks_the_oil_balance() 
 
 #[test]
 fn both_axles_affected_is_safe_and_one_axle_is_not() {
+    use Corner::{FrontLeft, FrontRight, RearLeft, RearRight};
     for (a, b, mode) in [
-        (0, 1, Mode::Degraded),
-        (2, 3, Mode::Degraded),
-        (0, 2, Mode::Safe),
-        (1, 3, Mode::Safe),
+        (FrontLeft, FrontRight, Mode::Degraded),
+        (RearLeft, RearRight, Mode::Degraded),
+        (FrontLeft, RearLeft, Mode::Safe),
+        (FrontRight, RearRight, Mode::Safe),
     ] {
         let mut it = soft_loop();
         let (n, outputs) = until_reaction(
@@ -354,7 +368,7 @@ fn both_axles_affected_is_safe_and_one_axle_is_not() {
             10,
             |inputs| {
                 inputs.displacement[a] = Reading::INVALID;
-                inputs.pressure[b][0] = Reading::INVALID;
+                inputs.pressure[b].p1 = Reading::INVALID;
             },
             |_| {},
         );
@@ -365,7 +379,12 @@ fn both_axles_affected_is_safe_and_one_axle_is_not() {
 #[test]
 fn limp_mode_ends_after_a_second_of_health() {
     let mut it = soft_loop();
-    until_reaction(&mut it, 10, |inputs| inputs.displacement[0] = Reading::INVALID, |_| {});
+    until_reaction(
+        &mut it,
+        10,
+        |inputs| inputs.displacement[Corner::FrontLeft] = Reading::INVALID,
+        |_| {},
+    );
     let mut n = 0;
     while it.run(1).mode != Mode::Normal {
         n += 1;
@@ -468,8 +487,9 @@ proptest! {
         let (configuration, mut state) = (Configuration::defender110(), oleo_controller::State::new());
         let mut latched = false;
         for (x, p, lost_messages, solenoid_failed) in ticks {
-            let mut inputs = Inputs::from_values(x, p);
-            inputs.lost_messages = lost_messages;
+            let pressure = Corners::from_array(p.map(|p| StrutPressures::from_array(p.map(Gauge))));
+            let mut inputs = Inputs::from_values(Corners::from_array(x), pressure);
+            inputs.lost_messages = MessageSet::from_bits(lost_messages);
             inputs.solenoid_failed = solenoid_failed;
             let outputs = oleo_controller::tick(&configuration, &mut state, &inputs);
             prop_assert!(outputs.estimate.is_finite());
@@ -477,7 +497,7 @@ proptest! {
                 prop_assert_eq!(outputs.command.word(), 0);
             }
             if outputs.mode == Mode::Degraded {
-                prop_assert!((0..4).all(|corner| !outputs.command.valve(corner, 2)));
+                prop_assert!(Corner::ALL.iter().all(|&corner| !outputs.command.is_open(corner, Valve::Spring)));
             }
             latched |= solenoid_failed;
             prop_assert_eq!(outputs.mode == Mode::Latched, latched || outputs.mode == Mode::Latched);

@@ -6,12 +6,15 @@
 mod common;
 
 use common::{AREA_M2, QuietStrut, STATIC_PA, rough_road};
-use oleo_controller::{Configuration, DamperPolicy, Inputs, State, Strategy, ValveCommand, tick};
+use oleo_controller::{
+    Builder, Corner, Corners, DamperPolicy, Gauge, Inputs, Side, State, Strategy, StrutPressures, Valve, ValveCommand,
+    tick,
+};
 
 const TICKS: u32 = 4000;
 
 /// Displacement with a lane change between 8 s and 12 s: body roll of a quarter hertz, with its load transfer.
-fn drive(tick_number: u32, struts: &mut [QuietStrut; 4], command: ValveCommand) -> Inputs {
+fn drive(tick_number: u32, struts: &mut Corners<QuietStrut>, command: ValveCommand) -> Inputs {
     let t = tick_number as f32 * 0.005;
     let lane_change = (1600..2400).contains(&tick_number);
     // Displacements are imposed here, and a strut that is still stiff would answer a rough road with forces no body would stand.
@@ -22,28 +25,33 @@ fn drive(tick_number: u32, struts: &mut [QuietStrut; 4], command: ValveCommand) 
     } else {
         0.0
     };
-    let mut displacement = [0.0; 4];
-    let mut pressure = [[0.0; 4]; 4];
-    for (corner, side) in [-1.0, 1.0, -1.0, 1.0].into_iter().enumerate() {
+    let mut displacement = Corners::splat(0.0);
+    let mut pressure = Corners::<StrutPressures<Gauge<f32>>>::default();
+    for corner in Corner::ALL {
+        let side = if corner.side() == Side::Left { -1.0 } else { 1.0 };
+        let open = command.is_open(corner, Valve::Spring);
         displacement[corner] = level * rough[corner] + 0.006 * side * lateral;
         // A body on stiff springs settles where the trapped oil lets it.
-        if tick_number >= 2400 && !command.valve(corner, 2) {
+        if tick_number >= 2400 && !open {
             displacement[corner] += struts[corner].rest_m();
         }
-        pressure[corner] = struts[corner].pressures(displacement[corner], command.valve(corner, 2));
+        pressure[corner] = struts[corner].pressures(displacement[corner], open);
         // The damper's share of p1, and the strut's share of the load transfer at the given roll.
-        let damping = 0.3e6 * libm::cosf(8.2 * t + corner as f32);
-        pressure[corner][0] =
-            (pressure[corner][0] + damping * 0.2).max(0.1 * STATIC_PA) + 1500.0 * side * lateral / AREA_M2;
+        let damping = 0.3e6 * libm::cosf(8.2 * t + corner.index() as f32);
+        let p1 = &mut pressure[corner].p1;
+        *p1 = Gauge((p1.pa() + damping * 0.2).max(0.1 * STATIC_PA) + 1500.0 * side * lateral / AREA_M2);
     }
     Inputs::from_values(displacement, pressure)
 }
 
 fn words(strategy: Strategy, policy: DamperPolicy) -> Vec<u16> {
-    let configuration = Configuration::defender110()
-        .with_strategy(strategy)
-        .with_damper_policy(policy);
-    let (mut state, mut struts) = (State::new(), [QuietStrut::default(); 4]);
+    let mut builder = Builder {
+        strategy,
+        ..Builder::default()
+    };
+    builder.tuning.strategy.ride_handling.dampers.policy = policy;
+    let configuration = builder.build().unwrap();
+    let (mut state, mut struts) = (State::new(), Corners::splat(QuietStrut::default()));
     let mut command = ValveCommand::SAFE;
     (0..TICKS)
         .map(|n| {

@@ -2,15 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, SpecimenName, specimen_name};
-use oleo_plant_sim::strut::StrutModel;
 use rayon::prelude::*;
 
 use crate::error::DiagnoseError;
 use crate::recording::{ColumnSpec, GapPolicy, MIN_SAMPLES, Recording, read};
-use crate::specimen::Specimen;
-use crate::specimen::balance::balance_remarks;
-use crate::specimen::{cylinder, gas_spring, strut};
+use crate::specimen::{ModelFile, Specimen};
 
 /// A campaign, ready to be diagnosed.
 pub struct Campaign {
@@ -26,10 +22,6 @@ pub struct Campaign {
 
 /// Name of the belief.
 const MODEL_FILE: &str = "model.toml";
-/// Kinds of specimen, as `specimen.kind` of a model file names them.
-const STRUT: &str = "two-stage hydropneumatic strut";
-const GAS_SPRING: &str = "gas spring";
-const CYLINDER: &str = "cylinder";
 
 /// What of a campaign is kept from the fit, to be predicted.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -65,7 +57,7 @@ impl Campaign {
     /// One line: which file, where in it, what to do.
     pub fn open(folder: &Path) -> Result<Self, DiagnoseError> {
         let (model, recordings, notes) = read_folder(folder)?;
-        Self::of(folder, &model, recordings, notes)
+        Self::of(folder, model, recordings, notes)
     }
 
     /// As [`Self::open`], but with only what may be fitted; the second campaign holds every recording whole, with the
@@ -73,7 +65,7 @@ impl Campaign {
     ///
     /// # Errors
     /// As [`Self::open`]; a name that no recording has; nothing or too little left to fit; nothing kept back.
-    pub fn open_in_part(folder: &Path, kept_back: &KeptBack) -> Result<(Self, Whole), DiagnoseError> {
+    pub fn open_in_part(folder: &Path, kept_back: &KeptBack) -> Result<(Self, CompleteRecordings), DiagnoseError> {
         let (model, whole, notes) = read_folder(folder)?;
         let names = || whole.iter().map(|r| r.name.as_str()).collect::<Vec<_>>().join(", ");
         if let Some(name) = kept_back
@@ -106,21 +98,21 @@ impl Campaign {
                 format!("no recording is left to fit; hold out fewer of: {}", names()),
             ));
         }
-        let campaign = Self::of(folder, &model, fitted, notes)?;
-        Ok((campaign, Whole { recordings: whole }))
+        let campaign = Self::of(folder, model, fitted, notes)?;
+        Ok((campaign, CompleteRecordings { recordings: whole }))
     }
 
     fn of(
         folder: &Path,
-        model: &ModelText,
+        file: ModelFile,
         recordings: Vec<Recording>,
         mut notes: Vec<String>,
     ) -> Result<Self, DiagnoseError> {
-        let (specimen, remarks) = model.specimen(recordings)?;
-        notes.extend(remarks);
+        let specimen = file.model.with_recordings(recordings)?;
+        notes.extend(specimen.remarks());
         Ok(Self {
             folder: folder.to_path_buf(),
-            name: model.head.name.clone(),
+            name: file.name,
             specimen,
             notes,
         })
@@ -128,75 +120,22 @@ impl Campaign {
 }
 
 /// Every recording of a campaign in full, beside the part that was fitted.
-pub struct Whole {
+pub struct CompleteRecordings {
     recordings: Vec<Recording>,
 }
 
-impl Whole {
+impl CompleteRecordings {
     /// The specimen with all recordings, believed to be as a model file says.
     ///
     /// # Errors
     /// As [`Campaign::open`].
     pub fn specimen(&self, model_toml: &str) -> Result<Box<dyn Specimen>, DiagnoseError> {
-        let model = ModelText::new(model_toml.to_owned(), "improved model".to_owned())?;
-        Ok(model.specimen(self.recordings.clone())?.0)
+        let file = ModelFile::read(model_toml, "improved model")?;
+        file.model.with_recordings(self.recordings.clone())
     }
 }
 
-/// A model file, read as far as its kind.
-struct ModelText {
-    text: String,
-    source: String,
-    head: SpecimenName,
-}
-
-impl ModelText {
-    fn new(text: String, source: String) -> Result<Self, DiagnoseError> {
-        let head = specimen_name(&text, &source).map_err(DiagnoseError::Model)?;
-        Ok(Self { text, source, head })
-    }
-
-    /// The columns that recordings of this specimen must have.
-    fn columns(&self) -> Result<(Vec<ColumnSpec>, GapPolicy), DiagnoseError> {
-        match self.head.kind.as_str() {
-            STRUT => Ok((strut::columns(), GapPolicy::Cut)),
-            GAS_SPRING => Ok((gas_spring::columns(), GapPolicy::Cut)),
-            CYLINDER => Ok((cylinder::columns(&self.cylinder()?), GapPolicy::Keep)),
-            other => Err(DiagnoseError::Model(format!(
-                "{}, key specimen.kind: '{other}' is not known; '{STRUT}', '{GAS_SPRING}' and '{CYLINDER}' are",
-                self.source
-            ))),
-        }
-    }
-
-    fn cylinder(&self) -> Result<CylinderModel, DiagnoseError> {
-        CylinderModel::from_toml(&self.text, &self.source).map_err(DiagnoseError::Model)
-    }
-
-    /// Model and recordings put together, and what can be said of the recordings without any model fitted.
-    fn specimen(&self, recordings: Vec<Recording>) -> Result<(Box<dyn Specimen>, Vec<String>), DiagnoseError> {
-        match self.head.kind.as_str() {
-            GAS_SPRING => {
-                let model = GasSpringModel::from_toml(&self.text, &self.source).map_err(DiagnoseError::Model)?;
-                let remarks = gas_spring::corner_remarks(&model, &recordings);
-                Ok((Box::new(gas_spring::GasSpring::new(model, recordings)), remarks))
-            }
-            CYLINDER => {
-                let model = self.cylinder()?;
-                let remarks = balance_remarks(&model, &recordings);
-                Ok((Box::new(cylinder::Cylinder::new(model, recordings)), remarks))
-            }
-            _ => {
-                let model =
-                    StrutModel::from_toml(&self.text, &self.source).map_err(|e| DiagnoseError::Model(e.to_string()))?;
-                let strut = strut::TwoStageStrut::new(model, recordings).map_err(DiagnoseError::Model)?;
-                Ok((Box::new(strut), Vec::new()))
-            }
-        }
-    }
-}
-
-fn read_folder(folder: &Path) -> Result<(ModelText, Vec<Recording>, Vec<String>), DiagnoseError> {
+fn read_folder(folder: &Path) -> Result<(ModelFile, Vec<Recording>, Vec<String>), DiagnoseError> {
     let model_path = folder.join(MODEL_FILE);
     if !folder.is_dir() {
         return Err(DiagnoseError::file(
@@ -206,8 +145,8 @@ fn read_folder(folder: &Path) -> Result<(ModelText, Vec<Recording>, Vec<String>)
     }
     let text = std::fs::read_to_string(&model_path)
         .map_err(|e| DiagnoseError::file(&model_path, format!("{e}; a campaign needs the model that is believed")))?;
-    let model = ModelText::new(text, model_path.display().to_string())?;
-    let (columns, gaps) = model.columns()?;
+    let file = ModelFile::read(&text, &model_path.display().to_string())?;
+    let (columns, gaps) = (file.model.columns(), file.model.gap_policy());
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
         .map_err(|e| DiagnoseError::file(folder, e.to_string()))?
         .filter_map(|entry| entry.ok().map(|e| e.path()))
@@ -221,7 +160,7 @@ fn read_folder(folder: &Path) -> Result<(ModelText, Vec<Recording>, Vec<String>)
         ));
     }
     let (recordings, notes) = read_all(&files, &columns, gaps)?;
-    Ok((model, recordings, notes))
+    Ok((file, recordings, notes))
 }
 
 /// A file that is too short is left out with a note as long as others remain; anything else wrong is an error.

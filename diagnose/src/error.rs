@@ -31,7 +31,10 @@ pub enum DiagnoseError {
         /// What is wrong and what to do.
         what: String,
     },
-    /// The model file is wrong; the text already names file and place.
+    /// The model file is wrong.
+    #[error(transparent)]
+    ModelFile(#[from] oleo_plant_sim::model_file::ModelFileError),
+    /// The model cannot be used with these recordings; the text says why.
     #[error("{0}")]
     Model(String),
     /// The model cannot be simulated on a recording.

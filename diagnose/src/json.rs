@@ -15,10 +15,10 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
     let locations: Vec<Value> = (diagnosis.locations.iter())
         .map(|l| {
             json!({
-                "place": l.place, "share_of_excess": rounded(l.share_of_excess),
+                "place": l.place.to_string(), "share_of_excess": rounded(l.share_of_excess),
                 "where": {
                     "recording": specimen.recording_name(l.recording), "t_s": l.t_s, "condition": l.condition.text,
-                    "channel": specimen.channels()[l.channel].name, "region": l.condition.region.as_ref().map(region),
+                    "channel": specimen.channels()[l.channel].column.as_str(), "region": l.condition.region.as_ref().map(region),
                 },
             })
         })
@@ -26,35 +26,41 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
     let effects: Vec<Value> = (diagnosis.effects.iter())
         .map(|e| {
             json!({
-                "id": e.id, "place": e.place, "confidence": rounded(e.confidence),
+                "id": e.id, "place": e.place.as_reported(), "confidence": rounded(e.confidence),
                 "parameters": parameters(&e.parameters), "law": e.law,
-                "held_out_noise_ratio": { "without": rounded(e.held_out.0), "with": rounded(e.held_out.1) },
+                "held_out_noise_ratio": { "without": rounded(e.ratio_without), "with": rounded(e.ratio_with) },
             })
         })
         .collect();
     let mut channels = Map::new();
     for (c, w) in diagnosis.channels.iter().zip(&diagnosis.whiteness) {
         channels.insert(
-            c.name.clone(),
+            c.column.to_string(),
             json!({
                 "noise_ratio_before": rounded(c.before), "noise_ratio_after": rounded(c.after),
                 "held_out_before": rounded(c.held_out_before), "held_out_after": rounded(c.held_out_after),
                 "residual_lag_one_correlation": rounded(c.lag_one), "ljung_box": rounded(w.ljung_box),
-                "input_correlation": w.input.as_ref().map(|(input, r)| json!({ "input": input, "value": rounded(*r), "bound99": rounded(w.bound) })),
+                "input_correlation": w.input.as_ref().map(|(input, r)| json!({ "input": input.as_str(), "value": rounded(*r), "bound99": rounded(w.bound) })),
             }),
         );
     }
     let calibration: Vec<Value> = (diagnosis.calibration.iter())
-        .map(|(e, z)| json!({ "key": e.key, "value": e.value, "ci95": interval(e), "tolerance_used": rounded(0.5 * z.abs()) }))
+        .map(|c| {
+            let e = &c.estimate;
+            json!({ "key": e.key, "value": e.value, "ci95": interval(e), "tolerance_used": rounded(c.tolerance_used) })
+        })
         .collect();
     let relations: Vec<Value> = (diagnosis.relations.iter())
         .map(|r| json!({ "relation": r.name, "noise_ratio": r.noise_ratio.map(rounded), "samples": r.samples }))
         .collect();
-    let reaches: Vec<Value> = (diagnosis.reaches.iter())
+    let changed: Vec<Value> = (diagnosis.changed_relations.iter())
         .map(|r| {
             json!({ "relation": r.relation, "share_of_excess": rounded(r.share_of_excess),
                     "by": specimen.candidates()[r.candidate].name() })
         })
+        .collect();
+    let correlations: Vec<Value> = (diagnosis.correlations.iter())
+        .map(|c| json!([c.keys[0], c.keys[1], rounded(c.coefficient)]))
         .collect();
     json!({
         "schema": 1,
@@ -68,9 +74,9 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
         "runtime_s": runtime_s,
         "not_tested": not_tested(specimen),
         "relations": relations,
-        "relations_changed_alone": reaches,
+        "relations_changed_alone": changed,
         "calibration": calibration,
-        "correlated": diagnosis.correlated.iter().map(|(a, b, r)| json!([a, b, rounded(*r)])).collect::<Vec<_>>(),
+        "correlated": correlations,
         "notes": campaign.notes,
     })
 }
@@ -80,19 +86,17 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
 pub fn rejected(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> Vec<Value> {
     let selection = &diagnosis.selection;
     let all = specimen.candidates();
-    let mut trials: Vec<_> = selection
-        .trials
-        .iter()
-        .filter(|t| !selection.best.point.effects.contains(&t.candidate))
+    let mut scores: Vec<_> = (selection.scores.iter())
+        .filter(|s| !selection.best.point.effects.contains(&s.candidate))
         .collect();
-    trials.sort_by(|a, b| a.alone.total_cmp(&b.alone));
-    (trials.iter())
+    scores.sort_by(|a, b| a.alone.total_cmp(&b.alone));
+    (scores.iter())
         .map(|t| {
             let c = &all[t.candidate];
             let alone = if t.alone.is_finite() {
                 format!(
                     "alone it brings the held-out noise ratio from {:.3} to {:.3}",
-                    selection.noise_ratio.0, t.alone
+                    selection.calibrated_ratio, t.alone
                 )
             } else {
                 "alone it could not be fitted to these recordings".to_owned()
@@ -100,16 +104,11 @@ pub fn rejected(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> Vec<Value> {
             let why = match t.added {
                 Some(added) => format!(
                     "{alone}; added to the chosen model from {:.3} to {added:.3}",
-                    selection.noise_ratio.1
+                    selection.improved_ratio
                 ),
                 None => format!("{alone}; it excludes or is excluded by an effect of the chosen model"),
             };
-            let place = if c.label.is_empty() {
-                c.place.clone()
-            } else {
-                format!("{} ({})", c.place, c.label)
-            };
-            json!({ "id": c.id, "place": place, "why": why })
+            json!({ "id": c.id, "place": c.place_and_label(), "why": why })
         })
         .collect()
 }
@@ -121,13 +120,13 @@ pub fn not_tested(specimen: &dyn Specimen) -> Vec<Value> {
         .filter_map(|c| {
             c.untestable
                 .as_ref()
-                .map(|why| json!({ "id": c.id, "place": c.place, "why": why }))
+                .map(|why| json!({ "id": c.id, "place": c.place.to_string(), "why": why }))
         })
         .collect()
 }
 
 fn region(r: &Region) -> Value {
-    json!({ "state": r.state, "from": r.from, "to": r.to, "share_of_misfit": rounded(r.share_of_misfit),
+    json!({ "state": r.state.as_str(), "from": r.from, "to": r.to, "share_of_misfit": rounded(r.share_of_misfit),
             "share_of_samples": rounded(r.share_of_samples) })
 }
 

@@ -14,27 +14,28 @@
 //!              locate (which relation, when, under which condition) --> report (json, page, model.toml)
 //! ```
 
+#[cfg(test)]
+mod analytic;
 pub mod campaign;
 pub mod confidence;
+pub mod criteria;
 pub mod diagnosis;
 pub mod error;
+pub mod estimation;
 mod experiment;
-pub mod fit;
-pub mod interval;
 pub mod json;
 pub mod locate;
 pub mod page;
 pub mod parameter;
-pub mod problem;
+pub mod prediction;
 pub mod recording;
-pub mod screen;
-pub mod select;
+pub mod search;
 pub mod selftest;
 pub mod specimen;
-pub mod unseen;
+pub mod vocabulary;
 pub mod whiteness;
 
 pub use campaign::{Campaign, KeptBack};
 pub use diagnosis::Diagnosis;
 pub use error::DiagnoseError;
-pub use unseen::Unseen;
+pub use prediction::Predictions;

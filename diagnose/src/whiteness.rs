@@ -6,6 +6,7 @@
 //! that goes with the inputs stands beside them: that is what another term could gain at most.
 
 use crate::specimen::{Series, Specimen};
+use crate::vocabulary::State;
 
 /// Lags tested.
 pub const LAGS: usize = 20;
@@ -22,7 +23,7 @@ pub struct Whiteness {
     /// Ljung-Box statistic over them; white residuals stay below [`CHI_SQUARE_99`] 99 times of 100.
     pub ljung_box: f64,
     /// The input most correlated with the residual at any lag, and that correlation.
-    pub input: Option<(String, f64)>,
+    pub input: Option<(State, f64)>,
     /// Size that an independent input's correlation stays below 99 times of 100.
     pub bound: f64,
 }
@@ -36,8 +37,8 @@ pub fn whiteness(specimen: &dyn Specimen, residuals: &[Series]) -> Vec<Whiteness
         .collect()
 }
 
-/// Name with unit, and the series less its mean.
-type Input = (&'static str, Vec<f64>);
+/// The state, and its series less its mean.
+type Input = (State, Vec<f64>);
 
 /// One channel: its centred residuals and the centred inputs, recording by recording.
 fn tested(series: &[Vec<f64>], inputs: &[Vec<Input>]) -> Whiteness {
@@ -49,10 +50,10 @@ fn tested(series: &[Vec<f64>], inputs: &[Vec<Input>]) -> Whiteness {
     let sum: f64 = (autocorrelation.iter().zip(1..))
         .map(|(r, lag)| r * r / (n - f64::from(lag)))
         .sum();
-    let mut names: Vec<&'static str> = Vec::new();
+    let mut names: Vec<State> = Vec::new();
     for (name, _) in inputs.iter().flatten() {
         if !names.contains(name) {
-            names.push(name);
+            names.push(*name);
         }
     }
     let strongest = (names.iter())
@@ -67,7 +68,7 @@ fn tested(series: &[Vec<f64>], inputs: &[Vec<Input>]) -> Whiteness {
                 sum / scale
             };
             let largest = (0..=LAGS).map(at).max_by(|a, b| a.abs().total_cmp(&b.abs()));
-            ((*name).to_owned(), largest.unwrap_or(0.0))
+            (*name, largest.unwrap_or(0.0))
         })
         .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
     Whiteness {
@@ -81,8 +82,8 @@ fn tested(series: &[Vec<f64>], inputs: &[Vec<Input>]) -> Whiteness {
 /// What the specimen was made to do: displacement and speed.
 fn inputs(specimen: &dyn Specimen, recording: usize) -> Vec<Input> {
     (specimen.states(recording).into_iter())
-        .filter(|(name, _)| matches!(*name, "displacement, m" | "speed, m/s"))
-        .map(|(name, values)| (name, centred(&values)))
+        .filter(|s| matches!(s.state, State::Displacement | State::Speed))
+        .map(|s| (s.state, centred(&s.values)))
         .collect()
 }
 
@@ -100,6 +101,7 @@ fn lagged(a: &[f64], b: &[f64], lag: usize) -> f64 {
 mod tests {
     use super::*;
     use rand::{RngExt, SeedableRng};
+    use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
     const SAMPLES: usize = 20_000;
 
@@ -116,11 +118,20 @@ mod tests {
         centred(&(0..SAMPLES).map(|k| libm::sin(0.01 * k as f64)).collect::<Vec<f64>>())
     }
 
+    /// The points are written down because statrs takes the platform's mathematics library, whose bits differ.
+    #[test]
+    fn points_of_the_distributions_are_those_of_the_books() {
+        let chi_square = ChiSquared::new(LAGS as f64).expect("a distribution").inverse_cdf(0.99);
+        assert!((chi_square - CHI_SQUARE_99).abs() < 0.005, "{chi_square}");
+        let normal = Normal::standard().inverse_cdf(1.0 - 0.005 / (LAGS + 1) as f64);
+        assert!((normal - NORMAL_99).abs() < 0.005, "{normal}");
+    }
+
     #[test]
     fn noise_is_white_and_independent() {
         let w = tested(
             &[noise(1), noise(2)],
-            &[vec![("speed, m/s", speed())], vec![("speed, m/s", speed())]],
+            &[vec![(State::Speed, speed())], vec![(State::Speed, speed())]],
         );
         assert!(w.ljung_box < CHI_SQUARE_99, "{}", w.ljung_box);
         assert!(w.input.is_some_and(|(_, r)| r.abs() < w.bound));
@@ -140,12 +151,12 @@ mod tests {
     #[test]
     fn what_an_input_leaves_is_found_at_its_size() {
         let residual: Vec<f64> = noise(4).iter().zip(speed()).map(|(n, v)| n + 0.1 * v).collect();
-        let w = tested(&[residual], &[vec![("speed, m/s", speed())]]);
+        let w = tested(&[residual], &[vec![(State::Speed, speed())]]);
         let (name, r) = w.input.expect("an input");
         // 0.1 sine in uniform noise of variance 1/3.
         let expected = (0.005 / (0.005 + 1.0 / 3.0_f64)).sqrt();
         assert!(
-            name == "speed, m/s" && (r / expected - 1.0).abs() < 0.15 && r > w.bound,
+            name == State::Speed && (r / expected - 1.0).abs() < 0.15 && r > w.bound,
             "{r} {expected}"
         );
     }

@@ -1,8 +1,8 @@
 //! The bxCAN peripheral (RM0090, section 32) as `embedded_can::nb::Can`, without a panic and without waiting.
 //!
-//! Own code, because the frames of the `bxcan` crate panic on a received length code above 8, which any node on the
-//! bus may send, and its mailbox choice holds branches the linker cannot prove dead. This driver does what the
-//! controller needs: data frames with standard identifiers, sent in the order given, received through FIFO 0.
+//! This is own code for two reasons. The frames of the crate `bxcan` panic on a received length code above 8, which any node on
+//! the bus may send, and its choice of a mailbox has branches that the linker cannot prove to be unreachable. This driver does
+//! what the controller needs: it sends data frames with standard identifiers in the given order, and receives through FIFO 0.
 
 use embedded_can::{ErrorKind, Id, StandardId};
 use stm32f4::stm32f405::{CAN1, GPIOB, RCC, can1};
@@ -24,7 +24,7 @@ pub struct Frame {
 /// What the peripheral can report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Error {
-    /// Frames came faster than they were taken from the three-deep FIFO: at least one is lost.
+    /// Frames came faster than they were taken from the three-deep FIFO, so that at least one is lost.
     Overrun,
 }
 
@@ -34,8 +34,8 @@ pub struct Can {
 }
 
 impl Can {
-    /// Takes pins and peripheral and joins the bus at `bit_rate`, bit/s. Returns at once: the peripheral becomes active
-    /// by itself after eleven recessive bits, and again after bus-off.
+    /// Takes pins and peripheral and joins the bus at `bit_rate`, bit/s. It returns at once; the peripheral becomes active by
+    /// itself after eleven recessive bits, and again after bus-off.
     pub fn start(registers: CAN1, _pins: GPIOB, rcc: &RCC, apb1_hz: u32, bit_rate: u32) -> Self {
         connect_pins(rcc);
         rcc.apb1enr().modify(|_, w| w.can1en().enabled());
@@ -88,10 +88,10 @@ impl embedded_can::nb::Can for Can {
         Ok(None)
     }
 
-    /// The oldest received data frame; remote and extended frames are let go. `WouldBlock` when there is none.
+    /// The oldest received data frame; remote and extended frames are dropped. `WouldBlock` if there is none.
     fn receive(&mut self) -> nb::Result<Frame, Error> {
         let fifo = self.registers.rf0r();
-        // Bounded by the depth of the FIFO, so that no traffic, however dense, keeps the caller here.
+        // Bounded by the depth of the FIFO, so that no traffic keeps the caller here.
         for _ in 0..3 {
             let status = fifo.read();
             if status.fovr().bit_is_set() {
@@ -129,7 +129,8 @@ fn read_mailbox(mailbox: &can1::RX) -> Option<Frame> {
     })
 }
 
-/// Filter bank 0, 32 bit, mask 0: everything into FIFO 0. The controller knows its identifiers; strangers cost it little.
+/// Filter bank 0 with 32 bits and mask 0 lets everything into FIFO 0. The controller knows its identifiers, and other frames cost it
+/// little.
 fn accept_all(registers: &CAN1) {
     registers.fmr().modify(|_, w| w.finit().set_bit());
     registers.fm1r().modify(|_, w| w.fbm0().clear_bit());

@@ -1,4 +1,4 @@
-//! The clock tree: CAN needs the crystal's accuracy, the tick a processor fast enough to be done early.
+//! The clock tree: CAN needs the accuracy of the crystal, and the tick needs a fast processor.
 //!
 //! 8 MHz crystal -> PLL -> 168 MHz core, 42 MHz APB1 (CAN), 84 MHz APB2 (RM0090, section 7; flash wait states table 10).
 
@@ -17,8 +17,8 @@ const FLASH_WAIT_STATES: u8 = 5;
 
 const _: () = assert!(CORE_HZ == 168_000_000 && CRYSTAL_HZ / PLL_M == 2_000_000);
 
-/// Switches the core to the crystal's PLL. The watchdog must run already: a dead crystal then ends in resets, with
-/// the solenoids off, instead of in silence.
+/// Switches the core to the PLL of the crystal. The watchdog must run already: if the crystal is broken, the board then resets
+/// again and again with the solenoids off, instead of hanging.
 pub fn run_from_crystal(rcc: &RCC, flash: &FLASH, pwr: &PWR) {
     rcc.apb1enr().modify(|_, w| w.pwren().enabled());
     pwr.cr().modify(|_, w| w.vos().set_bit());

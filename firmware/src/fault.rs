@@ -1,6 +1,6 @@
-//! What the core does when something is wrong that no code foresaw: solenoids off, then a clean start.
+//! What the core does when something goes wrong that no code provides for: it turns the solenoids off and restarts.
 //!
-//! After the reset the controller is in its start-up mode, valves closed, until the bus has proved itself again.
+//! After the reset the controller is in its start-up mode with closed valves, until all sensors have been healthy again.
 
 use crate::solenoid;
 use cortex_m::peripheral::SCB;
@@ -13,7 +13,7 @@ unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
     off_and_reset()
 }
 
-/// Any exception or interrupt nobody enabled.
+/// Any exception or interrupt that nobody has enabled.
 #[allow(unsafe_code)]
 #[exception]
 unsafe fn DefaultHandler(_number: i16) {

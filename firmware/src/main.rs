@@ -1,4 +1,4 @@
-//! The suspension controller on an STM32F405: reset to the first safe state, then a tick every 5 ms for ever.
+//! The suspension controller on an STM32F405: from reset to a safe state, and then a tick every 5 ms for ever.
 //!
 //! ```text
 //!   reset -> solenoids off -> watchdog -> clock -> CAN -> +-> take what the bus brings -+
@@ -6,9 +6,9 @@
 //!                                                         +-- feed <- drive, send <- tick +
 //! ```
 //!
-//! Nothing waits and nothing interrupts: the tick takes well under 100 us, the three-deep receive FIFO of the peripheral
-//! lasts for 0.6 ms at 500 kbit/s. A loop that stops for any reason stops feeding the watchdog, which resets the board;
-//! at reset, and on any fault, the solenoids are off (stiff spring, high damping).
+//! Nothing waits, and there are no interrupts: the tick takes well under 100 us, and the three-deep receive FIFO of the
+//! peripheral lasts for 0.6 ms at 500 kbit/s. A loop that stops for any reason no longer feeds the watchdog, which then
+//! resets the board. At reset, and on any fault, the solenoids are off, which is a stiff spring and high damping.
 #![no_std]
 #![no_main]
 
@@ -20,8 +20,8 @@ mod watchdog;
 
 use cortex_m::peripheral::{SCB, SYST, syst::SystClkSource};
 use cortex_m_rt::entry;
-use oleo_controller::port::Port;
-use oleo_controller::{Configuration, Node, Solenoids, timing::TICK_MS};
+use oleo_controller::{Configuration, Node, Port, Solenoids};
+use oleo_interface::tick::TICK_MS;
 use stm32f4::stm32f405::Peripherals;
 
 /// The vehicle's suspension bus, bit/s.
@@ -32,7 +32,7 @@ const TICK_RELOAD: u32 = clock::CORE_HZ / 1000 * TICK_MS - 1;
 const _: () = assert!(TICK_RELOAD < 1 << 24, "SysTick has 24 bits");
 const _: () = assert!(
     clock::APB1_HZ.is_multiple_of(BIT_RATE * can::QUANTA),
-    "the bit rate must divide the peripheral's clock: no node tolerates a bus that is off by a per cent"
+    "the bit rate must divide the peripheral's clock: other nodes do not tolerate a bit rate that is off by one per cent"
 );
 
 #[entry]

@@ -14,20 +14,20 @@ pub struct Watchdog {
 }
 
 impl Watchdog {
-    /// Starts it; from here on ticks must complete.
+    /// Starts it. From here on every tick must complete in time.
     pub fn start(registers: IWDG) -> Self {
         registers.kr().write(|w| w.key().variant(KEY::Start));
         registers.kr().write(|w| w.key().variant(KEY::Unlock));
         registers.pr().write(|w| w.pr().divide_by4());
         registers.rlr().write(|w| w.rl().set(RELOAD));
-        // The two cross into the slow clock's domain; until then the longest default period holds.
+        // Both values take effect with the slow clock; until then the longest period holds, which is the default.
         while registers.sr().read().bits() != 0 {}
         let mut watchdog = Watchdog { registers };
         watchdog.feed();
         watchdog
     }
 
-    /// Says that a tick has completed. Called in one place only.
+    /// Says that a tick has completed. It is called in one place only.
     pub fn feed(&mut self) {
         self.registers.kr().write(|w| w.key().variant(KEY::Feed));
     }

@@ -4,11 +4,12 @@
 //! Driven by libFuzzer (`fuzz_targets/`, coverage-guided, as long as one likes) and by `tests/hostile_bytes.rs` of the
 //! root package (mutated valid files, seconds, every test run).
 
-use oleo_controller::can::{PlantEnd, SENSOR_MESSAGES};
-use oleo_controller::{Configuration, Node};
+use oleo_controller::can::PlantEnd;
+use oleo_controller::{Configuration, Node, SensorMessage};
 use oleo_diagnose::recording::{ColumnKind, ColumnSpec, GapPolicy, parse};
 use oleo_hil::bus::{SlcanDecoder, slcan_encode};
 use oleo_hil::candump::{parse_line, write_line};
+use oleo_interface::StrutValves;
 use oleo_plant_sim::road::{Road, crg, profile_from_csv};
 use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, smooth_motion, specimen_name};
 use oleo_plant_sim::strut::{Strut, StrutModel};
@@ -23,7 +24,7 @@ pub fn can_frames(bytes: &[u8]) {
     let mut plant = PlantEnd::new();
     for chunk in bytes.chunks_exact(10) {
         let id = match usize::from(chunk[0]) {
-            known @ 0..48 => SENSOR_MESSAGES[known % SENSOR_MESSAGES.len()].id,
+            known @ 0..48 => SensorMessage::ALL[known % SensorMessage::ALL.len()].contract().id,
             48..64 => oleo_controller::can::COMMAND.id,
             other => other as u16 * 8,
         };
@@ -96,9 +97,9 @@ pub fn strut_model(bytes: &[u8]) {
             let written = model.to_toml();
             let again = StrutModel::from_toml(&written, "again.toml").expect("what was written can be read");
             assert_eq!(again.to_toml(), written);
-            match Strut::at_rest(&model, [false; 3]) {
+            match Strut::at_rest(&model, StrutValves::default()) {
                 Ok(mut strut) => {
-                    strut.advance(0.001, 0.001, [true; 3]);
+                    strut.advance(0.001, 0.001, StrutValves::new(true, true, true));
                 }
                 Err(error) => one_line(&error),
             }
@@ -137,9 +138,8 @@ pub fn recording(bytes: &[u8]) {
 /// accepted is written and read again as the same, and predicts a recording or says in a line why not.
 pub fn specimen_model(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
-    let line = |message: String| assert!(!message.is_empty() && !message.contains('\n'), "{message}");
-    if let Err(message) = specimen_name(text, "any.toml") {
-        line(message);
+    if let Err(error) = specimen_name(text, "any.toml") {
+        one_line(&error);
     }
     let time_s: Vec<f64> = (0..100).map(|k| f64::from(k) * 0.01).collect();
     let x: Vec<f64> = time_s.iter().map(|t| 0.1 * t).collect();
@@ -149,10 +149,10 @@ pub fn specimen_model(bytes: &[u8]) {
             assert_eq!(GasSpringModel::from_toml(&written, "again.toml"), Ok(model.clone()));
             match model.pressure_pa(&time_s, &x, 1e6) {
                 Ok(pressure) => assert_eq!(model.shown(&time_s, pressure).len(), time_s.len()),
-                Err(message) => line(message),
+                Err(message) => assert!(!message.is_empty() && !message.contains('\n'), "{message}"),
             }
         }
-        Err(message) => line(message),
+        Err(error) => one_line(&error),
     }
     match CylinderModel::from_toml(text, "any.toml") {
         Ok(model) => {
@@ -162,7 +162,7 @@ pub fn specimen_model(bytes: &[u8]) {
             let force = model.force_n(&time_s, &smooth_motion(&time_s, &x, 0.05), &pressures);
             assert_eq!(model.shown(&time_s, force).len(), time_s.len());
         }
-        Err(message) => line(message),
+        Err(error) => one_line(&error),
     }
 }
 

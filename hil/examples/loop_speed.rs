@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         for _ in 0..5 {
             let outcome = run::both(&scenario, run::Plant::build(&scenario)?, threads, &mut |_| true)?;
             best = best.min(outcome.wall_s);
-            hash = command_hash(outcome.remains.recording.words());
+            hash = command_hash(outcome.plant.recording.words());
         }
         println!(
             "{} on {}: {threads} thread(s): {:.1} ms, {:.0} ticks/s, {:.0} x real time, commands {hash}",

@@ -1,7 +1,7 @@
 //! What a traced run would have looked like on a wire: bits, arbitration, latency, utilisation.
 //!
-//! The buses of this crate deliver at once. A CAN wire sends one frame at a time, lowest identifier first, with a stuff bit
-//! after every five equal bits. From the trace this works out, for a bit rate, when each frame would have ended.
+//! The buses of this crate deliver at once. A CAN wire sends one frame at a time, lowest identifier first, with a stuff bit after
+//! every five equal bits. This computes from the trace when each frame would have ended at a given bit rate.
 //!
 //! The bit sequence is that of ISO 11898-1 (SOF, identifier, RTR, IDE, r0, DLC, data, CRC-15: stuffed; then CRC delimiter, ACK,
 //! ACK delimiter, EOF and interframe space: 13 bits more). The bound on latency is the sufficient response-time test of
@@ -81,38 +81,38 @@ impl BitStream {
 /// Latency of one message at one bit rate, from ready to sent, microseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MessageTiming {
-    /// Which message.
+    /// The message.
     pub contract: Contract,
-    /// Frames seen.
+    /// Number of frames that were sent.
     pub frames: u64,
-    /// Mean latency.
+    /// Mean latency, microseconds.
     pub mean_us: f64,
-    /// Longest latency seen.
+    /// Longest latency that occurred, microseconds.
     pub max_us: f64,
-    /// Longest latency possible (see the module), with all messages of the database and worst-case stuffing.
+    /// Longest possible latency with all messages of the database and worst-case stuffing, microseconds (see the module).
     pub bound_us: f64,
 }
 
-/// A traced run on a wire of a given rate.
+/// A traced run on a wire of a given bit rate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WireModel {
-    /// bit/s.
+    /// Bit rate, bit/s.
     pub bit_rate: u32,
-    /// Share of time the wire is busy, 0 to 1, with the stuff bits that occurred.
+    /// Fraction of time for which the wire is busy, 0 to 1, with the stuff bits that occurred.
     pub utilisation: f64,
-    /// Share in the busiest tick.
+    /// The same fraction in the busiest tick.
     pub peak_utilisation: f64,
-    /// By message of the database.
+    /// Latency of each message of the database.
     pub messages: Vec<MessageTiming>,
-    /// End of each trace entry's frame, microseconds since the start of the run; same order as the trace.
+    /// Time at which each frame of the trace ends, microseconds since the start of the run, in the order of the trace.
     pub end_us: Vec<u64>,
 }
 
 impl WireModel {
-    /// Plays a trace onto a wire. The plant's frames of a tick are ready when it begins; the controller's when the last
-    /// of those has arrived. `trace` must be in order of ticks.
+    /// Sends a trace over a wire. The plant's frames are ready when their tick begins, the controller's when the last of the
+    /// plant's has arrived. `trace` must be in the order of ticks.
     ///
-    /// `bits` are the frames' lengths ([`trace_bits`]), the same at every rate.
+    /// `bits` are the lengths of the frames ([`trace_bits`]), which are the same at every rate.
     pub fn of(trace: &[TraceEntry], bits: &[u32], bit_rate: u32, tick_us: u32, ticks: u32) -> Self {
         let bit_us = 1e6 / f64::from(bit_rate);
         let mut end_us = vec![0; trace.len()];
@@ -171,7 +171,7 @@ impl WireModel {
     }
 }
 
-/// Order of arbitration: the dominant bit wins, a standard frame beats an extended one of the same first 11 bits.
+/// Order of arbitration: the dominant bit wins, and a standard frame wins against an extended one with the same first 11 bits.
 fn arbitration_key(frame: &Frame) -> (u32, bool, u32) {
     let id = frame.raw_id();
     if frame.is_extended() {

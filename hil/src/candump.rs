@@ -17,16 +17,16 @@ use crate::frame::{extended, standard};
 pub struct LogLine {
     /// Time since the start, microseconds.
     pub time_us: u64,
-    /// Interface.
+    /// Name of the interface.
     pub interface: String,
-    /// What.
+    /// The frame.
     pub frame: Frame,
 }
 
 /// Writes one line.
 ///
 /// # Errors
-/// Those of the writer.
+/// The writer fails.
 pub fn write_line(out: &mut impl Write, time_us: u64, interface: &str, frame: &Frame) -> io::Result<()> {
     let (seconds, micros) = (time_us / 1_000_000, time_us % 1_000_000);
     write!(out, "({seconds:010}.{micros:06}) {interface} ")?;
@@ -47,7 +47,7 @@ pub fn write_line(out: &mut impl Write, time_us: u64, interface: &str, frame: &F
     writeln!(out)
 }
 
-/// Reads one line; `None` where it is not one of a classic frame.
+/// Reads one line; `None` if it is not that of a classic frame.
 pub fn parse_line(line: &str) -> Option<LogLine> {
     let mut words = line.split_ascii_whitespace();
     let time = words.next()?.strip_prefix('(')?.strip_suffix(')')?;
@@ -60,7 +60,7 @@ pub fn parse_line(line: &str) -> Option<LogLine> {
     }
     let seconds: u64 = seconds.parse().ok()?;
     let time_us = seconds.checked_mul(1_000_000)?.checked_add(fraction.parse().ok()?)?;
-    // A direction mark may follow.
+    // A mark of the direction may follow.
     matches!(words.next(), None | Some("T" | "R")).then_some(LogLine {
         time_us,
         interface,

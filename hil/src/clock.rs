@@ -1,8 +1,8 @@
-//! Real time: absolute deadlines, and an honest account of how they were met.
+//! Real time: absolute deadlines, and how they were met.
 //!
-//! Deadline `n` is the start plus `n` periods, whatever happened before, so that lateness does not add up. Every wake-up's
-//! lateness is kept; a tick that begins after the next one was due is an overrun. Nothing is hidden or
-//! averaged away: the summary has the median, the 99th percentile and the worst.
+//! Deadline `n` is the start plus `n` periods, whatever happened before, so that lateness does not add up. The lateness of every
+//! wake-up is kept. A tick that begins after the next one was due is an overrun. The summary gives the median, the 99th
+//! percentile and the worst lateness.
 
 use std::time::{Duration, Instant};
 
@@ -16,7 +16,7 @@ pub struct RealTime {
 }
 
 impl RealTime {
-    /// Deadline 0 is `start`; room for `ticks` without allocation.
+    /// A clock whose deadline 0 is `start`, with memory for `ticks` ticks.
     pub fn new(start: Instant, period: Duration, ticks: usize) -> Self {
         Self {
             start,
@@ -26,12 +26,12 @@ impl RealTime {
         }
     }
 
-    /// When tick `n` is due.
+    /// The time at which tick `n` is due.
     pub fn deadline(&self, tick: u32) -> Instant {
         self.start + self.period * tick
     }
 
-    /// Sleeps until tick `n` is due and notes how late the wake-up was.
+    /// Sleeps until tick `n` is due, and notes how late the wake-up was.
     pub fn wait(&mut self, tick: u32) {
         let deadline = self.deadline(tick);
         let left = deadline.saturating_duration_since(Instant::now());
@@ -46,30 +46,30 @@ impl RealTime {
         self.late_us.push(u32::try_from(late.as_micros()).unwrap_or(u32::MAX));
     }
 
-    /// The account so far.
+    /// The lateness so far.
     pub fn lateness(&self) -> Lateness {
         Lateness::of(&self.late_us, self.overruns)
     }
 }
 
-/// How late wake-ups were, microseconds.
+/// How late wake-ups were.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Lateness {
-    /// Ticks.
+    /// Number of ticks.
     pub ticks: u64,
-    /// Ticks that began after the next was due.
+    /// Number of ticks that began after the next one was due.
     pub overruns: u64,
-    /// Median.
+    /// Median lateness, microseconds.
     pub p50_us: u32,
-    /// 99th percentile.
+    /// 99th percentile of the lateness, microseconds.
     pub p99_us: u32,
-    /// Worst.
+    /// Worst lateness, microseconds.
     pub max_us: u32,
-    /// Wake-ups by lateness: below 10, 20, 50, 100, ... us, the last one without limit.
+    /// Number of wake-ups by lateness: the upper limit of each class in microseconds (the last one has none), and its count.
     pub histogram: Vec<(u32, u64)>,
 }
 
-/// Upper limits of the histogram's classes, us.
+/// Upper limits of the histogram's classes, microseconds.
 const CLASSES_US: [u32; 13] = [
     10,
     20,
@@ -90,7 +90,7 @@ impl Lateness {
     fn of(late_us: &[u32], overruns: u64) -> Self {
         let mut sorted = late_us.to_vec();
         sorted.sort_unstable();
-        // Nearest rank.
+        // By nearest rank.
         let percentile = |percent: usize| {
             let rank = (sorted.len() * percent).div_ceil(100).max(1);
             sorted.get(rank - 1).copied().unwrap_or(0)

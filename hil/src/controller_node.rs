@@ -1,7 +1,7 @@
 //! The controller as a node on the bus: [`oleo_controller::Node`] with a bus and a clock around it.
 //!
-//! It is the same code that the firmware runs. What is added here is only what a simulation needs: waiting for the
-//! plant's tick, and remembering what was commanded.
+//! It is the same code that the firmware runs. This file adds only what a simulation needs: it waits for the plant's tick, and
+//! remembers what was commanded.
 
 use std::time::Duration;
 
@@ -11,18 +11,18 @@ use crate::Frame;
 use crate::bus::{Bus, BusCounters, BusError, Trace};
 use crate::sync::{Role, Sync};
 
-/// What a wait for the plant ended with.
+/// How the wait for the plant ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Heard {
-    /// The plant has sent all of a tick.
+    /// The plant has sent all frames of a tick.
     Tick,
     /// The run is over.
     End,
-    /// Nothing for as long as was allowed.
+    /// Nothing came for as long as was allowed.
     Nothing,
 }
 
-/// Controller behind one end of a bus.
+/// The controller behind one end of a bus.
 pub struct ControllerNode<B> {
     bus: Trace<B>,
     node: Node,
@@ -34,7 +34,7 @@ pub struct ControllerNode<B> {
 }
 
 impl<B: Bus> ControllerNode<B> {
-    /// A controller that has heard nothing. `ticks`: room for that many without allocation.
+    /// A controller that has received nothing, with memory for `ticks` ticks.
     pub fn new(bus: B, configuration: Configuration, ticks: usize) -> Self {
         Self {
             bus: Trace::counting(bus),
@@ -47,7 +47,7 @@ impl<B: Bus> ControllerNode<B> {
         }
     }
 
-    /// Takes frames until the plant has done its tick, the run ends, or none came for `wait`.
+    /// Takes frames until the plant has sent a tick, until the run ends, or until none came for `wait`.
     pub fn listen(&mut self, wait: Duration) -> Result<Heard, BusError> {
         while let Some(frame) = self.bus.receive(wait)? {
             match Sync::decode(&frame, Role::Plant) {
@@ -78,12 +78,12 @@ impl<B: Bus> ControllerNode<B> {
         }
     }
 
-    /// Whether any frame came since this was last asked.
+    /// Whether any frame of a message came since the last call.
     pub fn heard_anything(&mut self) -> bool {
         std::mem::take(&mut self.heard_anything)
     }
 
-    /// One tick: decides and sends.
+    /// One tick: decides, and sends the command.
     pub fn decide(&mut self) -> Result<(), BusError> {
         let (outputs, frames) = self.node.tick();
         let mode = (outputs.mode, outputs.fault);
@@ -108,7 +108,7 @@ impl<B: Bus> ControllerNode<B> {
             .send(&Sync::TickDone { tick: self.tick, sent }.encode(Role::Controller))
     }
 
-    /// Answers the end of the run.
+    /// Answers the end of the run with what was lost.
     pub fn send_tally(&mut self) -> Result<(), BusError> {
         let e2e_errors = u16::try_from(self.e2e_errors()).unwrap_or(u16::MAX);
         let sent = self.bus.messages_sent() as u16;
@@ -122,55 +122,55 @@ impl<B: Bus> ControllerNode<B> {
         )
     }
 
-    /// Moves on without the plant, as a controller in a vehicle would: used when the plant is gone.
+    /// Begins the next tick without the plant, for when the plant is gone.
     pub fn next_tick(&mut self) {
         self.tick = self.tick.wrapping_add(1);
     }
 
-    /// Counts ticks by its own clock, in real time.
+    /// Sets the number of the tick, which in real time follows the clock.
     pub fn set_tick(&mut self, tick: u32) {
         self.tick = tick;
     }
 
-    /// The plant's tick that was last answered.
+    /// Number of the last tick.
     pub fn tick(&self) -> u32 {
         self.tick
     }
 
-    /// Mode and cause now.
+    /// The present mode and its first cause.
     pub fn mode(&self) -> (Mode, FaultCode) {
         self.account
             .last()
             .map_or((Mode::StartUp, FaultCode::None), |(_, mode, fault)| (*mode, *fault))
     }
 
-    /// Words commanded, one a tick.
+    /// Valve words that were commanded, one for each tick.
     pub fn words(&self) -> &[u16] {
         &self.words
     }
 
-    /// Modes entered, with the tick.
+    /// Each change of the mode: its tick, the mode and its first cause.
     pub fn account(&self) -> &[(u32, Mode, FaultCode)] {
         &self.account
     }
 
-    /// Frames that failed their end-to-end check.
+    /// Number of frames that failed their end-to-end check.
     pub fn e2e_errors(&self) -> u64 {
         let seen = self.node.counters();
         u64::from(seen.wrong_crc) + u64::from(seen.wrong_sequence)
     }
 
-    /// Frames of the plant that did not arrive.
+    /// Number of the plant's frames that did not arrive.
     pub fn frames_lost(&self) -> u64 {
         u64::from(self.lost)
     }
 
-    /// What the bus counted.
+    /// Counters of the controller's end of the bus.
     pub fn counters(&self) -> BusCounters {
         self.bus.counters()
     }
 
-    /// The bus, for the handshake.
+    /// The node's bus.
     pub fn bus(&mut self) -> &mut dyn Bus {
         &mut self.bus
     }

@@ -1,11 +1,11 @@
 //! One classic CAN frame, as every bus here carries it.
 //!
-//! The vehicle's own messages all have 11-bit identifiers and eight bytes, but a real bus also carries other people's
-//! frames, so this is a whole CAN 2.0 frame. 16 bytes, `Copy`, no heap: a loop sends a million of them a second.
+//! The vehicle's own messages all have 11-bit identifiers and eight bytes. A real bus also carries frames of other devices, so this is a
+//! complete CAN 2.0 frame. It takes 16 bytes and no heap, because a loop sends a million of them a second.
 
 use embedded_can::{ExtendedId, Id, StandardId};
 
-/// Data or remote frame with 0 to 8 bytes.
+/// A data or remote frame with 0 to 8 bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame {
     id: Id,
@@ -47,12 +47,12 @@ impl Frame {
         })
     }
 
-    /// Identifier.
+    /// The identifier.
     pub fn id(&self) -> Id {
         self.id
     }
 
-    /// The 11-bit identifier, where the frame has one.
+    /// The 11-bit identifier, if the frame has one.
     pub fn standard_id(&self) -> Option<u16> {
         match self.id {
             Id::Standard(id) => Some(id.as_raw()),
@@ -60,7 +60,7 @@ impl Frame {
         }
     }
 
-    /// Identifier as a number, 11 or 29 bits.
+    /// The identifier as a number of 11 or 29 bits.
     pub fn raw_id(&self) -> u32 {
         match self.id {
             Id::Standard(id) => u32::from(id.as_raw()),
@@ -78,12 +78,12 @@ impl Frame {
         self.remote
     }
 
-    /// Data length code, 0 to 8.
+    /// The data length code, 0 to 8.
     pub fn dlc(&self) -> usize {
         usize::from(self.length)
     }
 
-    /// The data; empty for a remote frame.
+    /// The data, which are empty for a remote frame.
     pub fn data(&self) -> &[u8] {
         if self.remote {
             &[]
@@ -92,7 +92,7 @@ impl Frame {
         }
     }
 
-    /// The same frame with one bit inverted, counted from bit 0 of byte 0; unchanged beyond the data.
+    /// The same frame with one bit of its data inverted, counted from bit 0 of byte 0. Beyond the data nothing changes.
     pub fn with_flipped_bit(mut self, bit: usize) -> Self {
         if bit / 8 < self.data().len()
             && let Some(byte) = self.data.get_mut(bit / 8)
@@ -103,12 +103,12 @@ impl Frame {
     }
 }
 
-/// A standard identifier from a number known to fit, such as those of the message table.
+/// A standard identifier from a number that fits in 11 bits, such as those of the message table.
 pub fn standard(id: u16) -> StandardId {
     StandardId::new(id & 0x7FF).unwrap_or(StandardId::MAX)
 }
 
-/// An extended identifier from a number known to fit.
+/// An extended identifier from a number that fits in 29 bits.
 pub fn extended(id: u32) -> ExtendedId {
     ExtendedId::new(id & 0x1FFF_FFFF).unwrap_or(ExtendedId::MAX)
 }

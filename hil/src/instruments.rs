@@ -1,4 +1,4 @@
-//! The plant's electronics: sensors that may lie, and an output stage that may not obey.
+//! The plant's electronics: its sensors and its output stage, with their faults.
 //!
 //! ```text
 //!   vehicle -> Instruments (sensor faults) -> frames
@@ -6,23 +6,24 @@
 //! ```
 
 use oleo_controller::can::{COMMAND, CheckStatus, CommandMessage};
-use oleo_controller::reading::{Inputs, Reading};
-use oleo_controller::valves::{CORNERS, ValveCommand};
+use oleo_controller::{Inputs, ValveCommand};
+use oleo_interface::{Corners, Gauge, StrutPressures};
 use oleo_plant_sim::strut::StrutOutput;
 
-use crate::scenario::fault::{Fault, FaultKind, SensorFault, SensorPlace, ValvePlace};
+use crate::scenario::fault::{Fault, FaultKind, Sensor, SensorFault, SensorPlace, ValvePlace};
 
-/// Ticks without a usable command after which the output stage de-energises all valves: the command's own contract.
+/// Number of ticks without a usable command after which the output stage de-energises all valves. It is the time-out of the
+/// command's contract.
 pub const WATCHDOG_TICKS: u32 = COMMAND.timeout_ticks as u32;
 
-/// Four displacement and sixteen pressure sensors.
+/// The four displacement sensors and sixteen pressure sensors.
 #[derive(Clone, Debug)]
 pub struct Instruments {
     faults: Vec<(Fault, SensorPlace, SensorFault, Option<f32>)>,
 }
 
 impl Instruments {
-    /// Sensors with the sensor faults among `faults`.
+    /// Sensors that have the sensor faults among `faults`.
     pub fn new(faults: &[Fault]) -> Self {
         let of_sensors = |fault: &Fault| match fault.kind {
             FaultKind::Sensor { place, fault: kind } => Some((*fault, place, kind, None)),
@@ -33,16 +34,14 @@ impl Instruments {
         }
     }
 
-    /// What the sensors say in a tick. Displacement in m, compression positive.
-    pub fn read(&mut self, tick: u32, displacement_m: [f64; CORNERS], struts: [StrutOutput; CORNERS]) -> Inputs {
-        let mut values = [[0f32; 5]; CORNERS];
-        for ((all, displacement), strut) in values.iter_mut().zip(displacement_m).zip(struts) {
-            let [p1, p2, p3, p4] = strut.pressure_pa.map(|p| p as f32);
-            *all = [displacement as f32, p1, p2, p3, p4];
-        }
+    /// What the sensors say in a tick, from the true displacements (m, compression positive) and pressures.
+    pub fn read(&mut self, tick: u32, displacement_m: Corners<f64>, struts: Corners<StrutOutput>) -> Inputs {
+        let mut displacement_m = displacement_m.map(|x| x as f32);
+        let mut pressure_pa = struts.map(|strut| StrutPressures::from_array(strut.pressure_pa.map(|p| p as f32)));
         for (fault, place, kind, held) in &mut self.faults {
-            let Some(value) = values.get_mut(place.corner).and_then(|all| all.get_mut(place.sensor)) else {
-                continue;
+            let value = match place.sensor {
+                Sensor::Displacement => &mut displacement_m[place.corner],
+                Sensor::Pressure(point) => &mut pressure_pa[place.corner][point],
             };
             if !fault.is_active(tick) {
                 *held = None;
@@ -55,17 +54,11 @@ impl Instruments {
                 SensorFault::Offset(more) => *value + more,
             };
         }
-        let mut inputs = Inputs::default();
-        for ((displacement, pressure), all) in inputs.displacement.iter_mut().zip(&mut inputs.pressure).zip(values) {
-            let [x, p1, p2, p3, p4] = all.map(Reading::new);
-            *displacement = x;
-            *pressure = [p1, p2, p3, p4];
-        }
-        inputs
+        Inputs::from_values(displacement_m, pressure_pa.map(|strut| strut.map(Gauge)))
     }
 }
 
-/// Twelve solenoid drivers behind a watchdog.
+/// The twelve solenoid drivers, behind a watchdog.
 #[derive(Clone, Debug)]
 pub struct OutputStage {
     command: ValveCommand,
@@ -76,7 +69,7 @@ pub struct OutputStage {
 }
 
 impl OutputStage {
-    /// De-energised, with the solenoid faults among `faults`.
+    /// A de-energised output stage that has the solenoid faults among `faults`.
     pub fn new(faults: &[Fault]) -> Self {
         let of_solenoids = |fault: &Fault| match fault.kind {
             FaultKind::SolenoidStuck { place, open } => Some((*fault, place, open)),
@@ -92,7 +85,7 @@ impl OutputStage {
         }
     }
 
-    /// A received command with the outcome of its check.
+    /// Takes a received command with the outcome of its check.
     pub fn receive(&mut self, status: CheckStatus, message: Option<CommandMessage>) {
         self.errors += u64::from(status.is_error());
         if let Some(message) = message
@@ -103,7 +96,7 @@ impl OutputStage {
         }
     }
 
-    /// Ends the reception of a tick. Whether a usable command came.
+    /// Ends the reception of a tick; returns whether a usable command came.
     pub fn end_of_tick(&mut self) -> bool {
         if std::mem::take(&mut self.fresh) {
             self.age = 0;
@@ -116,12 +109,12 @@ impl OutputStage {
         false
     }
 
-    /// What the drivers are told.
+    /// The command that the drivers obey.
     pub fn command(&self) -> ValveCommand {
         self.command
     }
 
-    /// Where the valves' signals are, stuck ones included.
+    /// Positions of the valves' signals, stuck valves included.
     pub fn energised(&self, tick: u32) -> ValveCommand {
         let active = self.stuck.iter().filter(|(fault, ..)| fault.is_active(tick));
         active.fold(self.command, |word, (_, place, open)| {
@@ -129,12 +122,12 @@ impl OutputStage {
         })
     }
 
-    /// Ticks since the last usable command.
+    /// Number of ticks since the last usable command.
     pub fn ticks_without_command(&self) -> u32 {
         self.age
     }
 
-    /// Commands that failed their end-to-end check.
+    /// Number of commands that failed their end-to-end check.
     pub fn errors(&self) -> u64 {
         self.errors
     }
@@ -143,6 +136,7 @@ impl OutputStage {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oleo_interface::{Corner, PressurePoint, Valve};
 
     fn fault(kind: FaultKind) -> Fault {
         Fault {
@@ -152,39 +146,47 @@ mod tests {
         }
     }
 
-    fn sensor(kind: SensorFault, sensor: usize) -> Instruments {
+    const PLACE: Corner = Corner::FrontRight;
+
+    fn sensor(kind: SensorFault, sensor: Sensor) -> Instruments {
         Instruments::new(&[fault(FaultKind::Sensor {
-            place: SensorPlace { corner: 1, sensor },
+            place: SensorPlace { corner: PLACE, sensor },
             fault: kind,
         })])
     }
 
     fn read(instruments: &mut Instruments, tick: u32) -> Inputs {
-        let mut struts = [StrutOutput::default(); 4];
-        struts[1].pressure_pa = [4e6 + f64::from(tick) * 1e5; 4];
-        instruments.read(tick, [f64::from(tick) * 0.01; 4], struts)
+        let mut struts = Corners::splat(StrutOutput::default());
+        struts[PLACE].pressure_pa = [4e6 + f64::from(tick) * 1e5; 4];
+        instruments.read(tick, Corners::splat(f64::from(tick) * 0.01), struts)
     }
 
     #[test]
     fn each_sensor_fault_within_its_interval_and_place() {
-        let mut stuck = sensor(SensorFault::Stuck, 0);
+        let mut stuck = sensor(SensorFault::Stuck, Sensor::Displacement);
         let seen: Vec<_> = (0..6)
-            .map(|tick| read(&mut stuck, tick).displacement[1].value().unwrap())
+            .map(|tick| read(&mut stuck, tick).displacement[PLACE].value().unwrap())
             .collect();
         assert_eq!(seen, [0.0, 0.01, 0.02, 0.02, 0.04, 0.05]);
 
-        let mut broken = sensor(SensorFault::NotANumber, 3);
+        let mut broken = sensor(SensorFault::NotANumber, Sensor::Pressure(PressurePoint::P3));
         let inputs = read(&mut broken, 3);
-        assert!(!inputs.pressure[1][2].is_valid());
-        assert!(inputs.pressure[1][1].is_valid() && inputs.pressure[0][2].is_valid());
-        assert!(read(&mut broken, 4).pressure[1][2].is_valid());
+        assert!(!inputs.pressure[PLACE].p3.is_valid());
+        assert!(inputs.pressure[PLACE].p2.is_valid() && inputs.pressure[Corner::FrontLeft].p3.is_valid());
+        assert!(read(&mut broken, 4).pressure[PLACE].p3.is_valid());
 
         assert_eq!(
-            read(&mut sensor(SensorFault::Offset(0.5), 0), 2).displacement[1].value(),
+            read(&mut sensor(SensorFault::Offset(0.5), Sensor::Displacement), 2).displacement[PLACE].value(),
             Some(0.52)
         );
         assert_eq!(
-            read(&mut sensor(SensorFault::Value(9e9), 1), 2).pressure[1][0].value(),
+            read(
+                &mut sensor(SensorFault::Value(9e9), Sensor::Pressure(PressurePoint::P1)),
+                2
+            )
+            .pressure[PLACE]
+                .p1
+                .value(),
             Some(9e9)
         );
     }
@@ -211,7 +213,10 @@ mod tests {
 
     #[test]
     fn a_stuck_valve_does_not_follow() {
-        let place = ValvePlace { corner: 0, valve: 2 };
+        let place = ValvePlace {
+            corner: Corner::FrontLeft,
+            valve: Valve::Spring,
+        };
         let stage = OutputStage::new(&[fault(FaultKind::SolenoidStuck { place, open: true })]);
         assert_eq!(stage.energised(1).word(), 0);
         assert_eq!(stage.energised(2).word(), 0b100);

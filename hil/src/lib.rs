@@ -12,9 +12,11 @@
 //!      record, trace --> metrics --> checks --> output (summary, logs, CSV, JUnit, page)
 //! ```
 //!
-//! * [`bus`]: what carries frames, and decorators around it; [`sync`]: how two nodes keep in step; [`clock`]: real time.
-//! * [`scenario`]: what is driven, what goes wrong, what must hold; [`run`]: a scenario to a recording.
-//! * [`metrics`], [`output`]: a recording to figures and files; [`bit_timing`]: what a wire would have made of it.
+//! * [`bus`] carries frames and holds the decorators around a bus; [`sync`] and [`handshake`] keep two nodes in step; [`clock`] is
+//!   real time.
+//! * [`scenario`] says what is driven, what goes wrong and what must hold; [`run`] turns a scenario into a recording.
+//! * [`metrics`] and [`output`] turn a recording into figures and files; [`bit_timing`] computes when a wire would have carried each
+//!   frame.
 #![forbid(unsafe_code)]
 
 pub mod bit_timing;
@@ -23,6 +25,7 @@ pub mod candump;
 pub mod clock;
 pub mod controller_node;
 pub mod frame;
+pub mod handshake;
 pub mod instruments;
 pub mod metrics;
 pub mod output;

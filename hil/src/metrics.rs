@@ -1,36 +1,37 @@
-//! A recording to figures: ride measures, extremes, and how many ticks the answer to a fault took.
+//! From a recording to figures: ride measures, extremes, and the number of ticks that the answer to a fault took.
 //!
-//! Everything here is a function of what the run left in memory, so that it costs the loop nothing and is the same whichever bus carried
-//! the frames.
+//! Everything here is computed from what the run left in memory. So it costs the loop nothing, and it is the same for every bus.
 
 use oleo_controller::can::bus_load;
 use oleo_controller::{FaultCode, Mode};
+use oleo_interface::tick::TICK_US;
+use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::measures::{RideMeasures, RideMeter};
 
 use crate::bit_timing::{WireModel, trace_bits};
-use crate::record::{Sample, controller_account, fault_name, mode_name};
+use crate::record::{Sample, controller_account};
 use crate::run::Outcome;
+use crate::scenario::Scenario;
 use crate::scenario::check::{Figure, Metric};
-use crate::scenario::{Scenario, TICK_US};
 
-/// Figures of a run, and what they were worked out from.
+/// Figures of a run, and what they were computed from.
 #[derive(Debug)]
 pub struct Metrics {
-    /// Ticks run.
+    /// Number of ticks that were run.
     pub ticks: u32,
-    /// Ticks of the scenario that were not run.
+    /// Number of ticks of the scenario that were not run.
     pub ticks_missing: u32,
-    /// Driver's and left rear passenger's seat.
+    /// Ride measures at the driver's and at the left rear passenger's seat.
     pub seats: [RideMeasures; 2],
-    /// Edges of each valve signal, in the order of the word's bits.
-    pub valve_switches: [u64; 12],
-    /// Frames sent and not received, injected drops included.
+    /// Number of changes of each valve's signal.
+    pub valve_switches: Corners<StrutValves<u64>>,
+    /// Number of frames that were sent and not received, injected drops included.
     pub frames_lost: u64,
-    /// Of these, lost by the bus itself.
+    /// How many of them the bus itself lost.
     pub bus_frames_lost: u64,
-    /// Frames that failed their end-to-end check.
+    /// Number of frames that failed their end-to-end check, at either end.
     pub e2e_errors: u64,
-    /// Mode and cause in each tick, as the controller said.
+    /// Mode and first cause in each tick, as the controller's frames say.
     pub account: Vec<Option<(Mode, FaultCode)>>,
     /// The traced frames on a wire of 500 kbit/s and of 1 Mbit/s.
     pub wires: [WireModel; 2],
@@ -49,7 +50,7 @@ struct Extremes {
     lifted_ticks: u64,
 }
 
-/// Ticks from the first fault, or from the end of the last.
+/// Numbers of ticks from the first fault, and of `recover` from the end of the last one; `None` for what did not happen.
 #[derive(Debug, Default)]
 struct Answer {
     detect: Option<u32>,
@@ -59,29 +60,29 @@ struct Answer {
 }
 
 impl Metrics {
-    /// Works everything out.
+    /// Computes all figures of a run.
     pub fn of(scenario: &Scenario, outcome: &Outcome) -> Self {
-        let remains = &outcome.remains;
-        let samples = &remains.recording.samples;
+        let plant = &outcome.plant;
+        let samples = &plant.recording.samples;
         let ticks = samples.len() as u32;
-        let account = controller_account(&remains.trace, samples.len());
-        let bits = trace_bits(&remains.trace);
+        let account = controller_account(&plant.trace, samples.len());
+        let bits = trace_bits(&plant.trace);
         let mut meters = [
-            RideMeter::new(remains.recording.step_s),
-            RideMeter::new(remains.recording.step_s),
+            RideMeter::new(plant.recording.step_s),
+            RideMeter::new(plant.recording.step_s),
         ];
-        for felt in &remains.recording.seat_acceleration_m_s2 {
+        for felt in &plant.recording.seat_acceleration_m_s2 {
             meters.iter_mut().zip(felt).for_each(|(meter, a)| meter.add(*a));
         }
         Self {
             ticks,
             ticks_missing: scenario.ticks.saturating_sub(ticks),
             seats: meters.each_ref().map(RideMeter::measures),
-            valve_switches: remains.recording.valve_switches(),
-            frames_lost: remains.bus_frames_lost + remains.injected.dropped,
-            bus_frames_lost: remains.bus_frames_lost,
-            e2e_errors: remains.e2e_errors,
-            wires: bus_load::BIT_RATES.map(|rate| WireModel::of(&remains.trace, &bits, rate, TICK_US, ticks)),
+            valve_switches: plant.recording.valve_switches(),
+            frames_lost: plant.bus_frames_lost + plant.injected.dropped,
+            bus_frames_lost: plant.bus_frames_lost,
+            e2e_errors: plant.e2e_errors,
+            wires: bus_load::BIT_RATES.map(|rate| WireModel::of(&plant.trace, &bits, rate, TICK_US, ticks)),
             extremes: Extremes::of(samples),
             answer: scenario
                 .fault_ticks()
@@ -91,7 +92,7 @@ impl Metrics {
         }
     }
 
-    /// One figure.
+    /// The figure of one metric.
     pub fn figure(&self, metric: Metric) -> Figure {
         let degrees = |rad: f64| Figure::Number(rad.to_degrees());
         let count = |n: u64| Figure::Number(n as f64);
@@ -113,7 +114,12 @@ impl Metrics {
             Metric::MaxRebound => Figure::Number(self.extremes.rebound_m),
             Metric::MaxPressure => Figure::Number(self.extremes.pressure_pa),
             Metric::WheelLift => Figure::Number(self.extremes.lifted_ticks as f64 / f64::from(self.ticks.max(1))),
-            Metric::ValveSwitches => count(self.valve_switches.iter().sum()),
+            Metric::ValveSwitches => count(
+                self.valve_switches
+                    .map(|strut| strut.into_array().iter().sum::<u64>())
+                    .values()
+                    .sum(),
+            ),
             Metric::FramesLost => count(self.frames_lost),
             Metric::BusFramesLost => count(self.bus_frames_lost),
             Metric::E2eErrors => count(self.e2e_errors),
@@ -125,10 +131,10 @@ impl Metrics {
             Metric::WorstMode => Figure::Word(self.worst_mode()),
             Metric::FinalMode => {
                 let last = self.account.iter().rev().flatten().next();
-                Figure::Word(mode_name(last.map_or(Mode::StartUp, |(mode, _)| *mode)))
+                Figure::Word(last.map_or(Mode::StartUp, |(mode, _)| *mode).name())
             }
             Metric::FirstFault => {
-                // Before the first complete set of sensors the bus is rightly called silent.
+                // Before the first complete set of readings the controller rightly calls the bus silent.
                 let begin = self
                     .account
                     .iter()
@@ -140,12 +146,12 @@ impl Metrics {
                     .flatten()
                     .map(|(_, fault)| *fault);
                 let first = faults.find(|fault| *fault != FaultCode::None);
-                Figure::Word(fault_name(first.unwrap_or_default()))
+                Figure::Word(first.unwrap_or_default().name())
             }
         }
     }
 
-    /// After start-up is over for the first time; the numbers on the bus grow with restriction.
+    /// The most restricted mode after the first start-up. The order of the modes is that of their restriction.
     fn worst_mode(&self) -> &'static str {
         let modes = self
             .account
@@ -153,10 +159,8 @@ impl Metrics {
             .flatten()
             .map(|(mode, _)| *mode)
             .skip_while(|mode| *mode == Mode::StartUp);
-        let worst = modes
-            .filter(|mode| *mode != Mode::StartUp)
-            .max_by_key(|mode| mode.raw());
-        mode_name(worst.unwrap_or(Mode::StartUp))
+        let worst = modes.filter(|mode| *mode != Mode::StartUp).max();
+        worst.unwrap_or(Mode::StartUp).name()
     }
 }
 
@@ -167,12 +171,12 @@ impl Extremes {
             most.heave_m = most.heave_m.max(body.heave_m.abs());
             most.roll_rad = most.roll_rad.max(body.roll_rad.abs());
             most.pitch_rad = most.pitch_rad.max(body.pitch_rad.abs());
-            for (displacement_m, strut) in sample.displacement_m.iter().zip(&sample.strut) {
+            for (_, (displacement_m, strut)) in sample.displacement_m.zip(sample.strut).iter() {
                 most.jounce_m = most.jounce_m.max(*displacement_m);
                 most.rebound_m = most.rebound_m.max(-displacement_m);
                 most.pressure_pa = strut.pressure_pa.iter().fold(most.pressure_pa, |p, q| p.max(*q));
             }
-            most.lifted_ticks += u64::from(sample.wheel.iter().any(|wheel| wheel.force_n <= 0.0));
+            most.lifted_ticks += u64::from(sample.wheel.values().any(|wheel| wheel.force_n <= 0.0));
             most
         })
     }
@@ -193,7 +197,7 @@ impl Answer {
                 .get(tick as usize)
                 .is_some_and(|sample| sample.energised.word() == 0)
         };
-        // The last open tick while the fault lasts; from the next on, all stay closed.
+        // The last tick of the fault in which a valve is open. From the next one on all stay closed.
         let last_open = (from..until.min(end)).rev().find(|tick| !closed(*tick));
         let closed_from = last_open.map_or(from, |tick| tick + 1);
         Self {
@@ -216,15 +220,15 @@ mod tests {
         Sample {
             station_m: 0.0,
             body: BodyMotion::default(),
-            displacement_m: [0.01, -0.02, 0.0, 0.0],
-            strut: [StrutOutput {
+            displacement_m: Corners::from_array([0.01, -0.02, 0.0, 0.0]),
+            strut: Corners::splat(StrutOutput {
                 force_n: 0.0,
                 pressure_pa: [4e6; 4],
-            }; 4],
-            wheel: [WheelMotion {
+            }),
+            wheel: Corners::splat(WheelMotion {
                 force_n: 1.0,
                 ..WheelMotion::default()
-            }; 4],
+            }),
             command: ValveCommand::from_word(word),
             energised: ValveCommand::from_word(word),
         }

@@ -1,8 +1,11 @@
 //! A run's files: `summary.json`, `timeseries.csv`, `candump.log`, `junit.xml`, `report.html`.
 //!
-//! Written through [`OutputDirectory`], so they appear together or not at all. Only wall-clock figures differ between two runs of one
-//! scenario; everything else has the same bytes.
+//! They are written through [`OutputDirectory`], so that all of them appear or none. Between two runs of one scenario only wall-clock
+//! figures differ; everything else has the same bytes.
 
+use oleo_controller::ValveCommand;
+use oleo_interface::tick::TICK_S;
+use oleo_interface::{Corner, PressurePoint};
 use oleo_report::{OutputDirectory, OutputError};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde::Serialize;
@@ -11,87 +14,86 @@ use crate::bus::BusCounters;
 use crate::candump::write_line;
 use crate::clock::Lateness;
 use crate::metrics::Metrics;
-use crate::record::{command_hash, fault_name, mode_name};
+use crate::record::command_hash;
 use crate::run::Outcome;
+use crate::scenario::Scenario;
 use crate::scenario::check::{Figure, Metric};
-use crate::scenario::fault::CORNER_NAMES;
-use crate::scenario::{Scenario, TICK_S};
 
 /// Outcome of one check.
 #[derive(Clone, Debug, Serialize)]
 pub struct CheckOutcome {
-    /// "max_roll_deg at most 3".
+    /// What is required: `max_roll_deg at most 3`.
     pub name: String,
-    /// Whether it is met.
+    /// Whether the requirement is met.
     pub passed: bool,
-    /// The figure, as text: "2.1", "safe", "never".
+    /// The figure as text: a number, a word, or `never`.
     pub figure: String,
 }
 
-/// `summary.json`. Shares (`bus_load_*`) are 0 to 1.
+/// Content of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// Of this file's layout.
+    /// Version of this file's layout.
     pub schema: u32,
-    /// Which scenario.
+    /// Name of the scenario.
     pub scenario: String,
-    /// Which road.
+    /// Name or path of the road.
     pub road: String,
-    /// Speed.
+    /// Forward speed, km/h.
     pub speed_km_h: f64,
-    /// How valves were decided.
+    /// Name of the strategy that decided the valves.
     pub strategy: &'static str,
-    /// Where frames went.
+    /// Address of the bus.
     pub bus: String,
-    /// How time passed.
+    /// How time passed: `lockstep` or `realtime`.
     pub clock: &'static str,
-    /// Of roads and fault randomness.
+    /// Seed of the road and of all random faults.
     pub seed: u64,
-    /// Ticks run.
+    /// Number of ticks that were run.
     pub ticks: u32,
-    /// Simulated time.
+    /// Simulated time, s.
     pub simulated_s: f64,
-    /// Wall-clock time of the loop alone.
+    /// Wall-clock time of the loop alone, s.
     pub wall_s: f64,
-    /// `simulated_s / wall_s`.
+    /// Simulated time over wall-clock time.
     pub real_time_factor: f64,
     /// Digest of the valve words, see [`command_hash`].
     pub command_hash: String,
-    /// Messages on the wire, both directions.
+    /// Number of messages on the wire, both directions together.
     pub frames_sent: u64,
-    /// Sent and not received, injected drops included.
+    /// Number of frames that were sent and not received, injected drops included.
     pub frames_lost: u64,
-    /// Of these, lost by the bus itself.
+    /// How many of them the bus itself lost.
     pub bus_frames_lost: u64,
-    /// Frames of third parties, ignored.
+    /// Number of frames with other identifiers, which are ignored.
     pub foreign_frames: u64,
-    /// Frames that failed their end-to-end check.
+    /// Number of frames that failed their end-to-end check, at either end.
     pub e2e_errors: u64,
-    /// Share of time a wire of 500 kbit/s would be busy.
+    /// Fraction of time for which a wire of 500 kbit/s would be busy, 0 to 1.
     pub bus_load_500k: f64,
-    /// The same at 1 Mbit/s.
+    /// The same for a wire of 1 Mbit/s.
     pub bus_load_1m: f64,
-    /// Times a full transmit queue was waited for.
+    /// Number of waits for a full transmit queue.
     pub bus_back_offs: u64,
-    /// BS 6841.
+    /// Weighted RMS acceleration at the driver's seat (BS 6841), m/s2.
     pub weighted_rms_driver_m_s2: f64,
-    /// BS 6841.
+    /// The same at the left rear passenger's seat.
     pub weighted_rms_rear_left_m_s2: f64,
-    /// BS 6841.
+    /// Vibration dose value at the driver's seat (BS 6841), m/s^1.75.
     pub vdv_driver_m_s1_75: f64,
-    /// BS 6841.
+    /// The same at the left rear passenger's seat.
     pub vdv_rear_left_m_s1_75: f64,
-    /// BS 6841.
+    /// Motion sickness dose value at the driver's seat (BS 6841), m/s^1.5.
     pub msdv_driver_m_s1_5: f64,
-    /// BS 6841.
+    /// The same at the left rear passenger's seat.
     pub msdv_rear_left_m_s1_5: f64,
-    /// Largest roll.
+    /// Largest roll of the body to either side, degrees.
     pub max_roll_deg: f64,
-    /// Edges of the twelve valve signals: corner by corner, valves 1 to 3.
+    /// Number of changes of each of the twelve valve signals: corner by corner, valves 1 to 3.
     pub valve_switches: [u64; 12],
-    /// Modes the controller entered.
+    /// Each change of the controller's mode.
     pub modes: Vec<ModeEntry>,
-    /// Every metric that is a number of ticks after a fault; `null` is "never".
+    /// See [`Metric::TicksToDetect`]; `null` is "never", here and in the next three.
     pub ticks_to_detect: Option<f64>,
     /// See [`Metric::TicksToSafe`].
     pub ticks_to_safe: Option<f64>,
@@ -99,39 +101,39 @@ pub struct Summary {
     pub ticks_to_closed: Option<f64>,
     /// See [`Metric::TicksToRecover`].
     pub ticks_to_recover: Option<f64>,
-    /// Tick in which a silent controller was given up.
+    /// Tick in which a silent controller was taken to be gone.
     pub controller_lost_at_tick: Option<u32>,
-    /// Somebody stopped the run.
+    /// Whether the run was stopped from outside.
     pub interrupted: bool,
-    /// In real time: how deadlines were met.
+    /// In real time: how each node met its deadlines.
     pub lateness: Vec<NodeLateness>,
-    /// The scenario's checks.
+    /// Outcome of each check of the scenario.
     pub checks: Vec<CheckOutcome>,
 }
 
 /// A mode and when it was entered.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModeEntry {
-    /// First tick.
+    /// First tick of the mode.
     pub tick: u32,
-    /// Which.
+    /// Name of the mode.
     pub mode: &'static str,
-    /// First cause, "none" where all is well.
+    /// Name of the first cause, `none` if all is well.
     pub fault: &'static str,
 }
 
 /// How one node met its deadlines.
 #[derive(Clone, Debug, Serialize)]
 pub struct NodeLateness {
-    /// "plant" or "controller".
+    /// Name of the node: `plant` or `controller`.
     pub node: &'static str,
-    /// Figures.
+    /// How late its ticks began.
     #[serde(flatten)]
     pub lateness: Lateness,
 }
 
 impl Summary {
-    /// Puts a run in order.
+    /// Summarises a run.
     pub fn of(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics) -> Self {
         let number = |metric| match metrics.figure(metric) {
             Figure::Number(number) => Some(number),
@@ -139,14 +141,14 @@ impl Summary {
         };
         let [driver, rear_left] = metrics.seats;
         let simulated_s = f64::from(metrics.ticks) * TICK_S;
-        let BusCounters { back_offs, .. } = outcome.remains.counters;
+        let BusCounters { back_offs, .. } = outcome.plant.counters;
         Self {
             schema: 1,
             scenario: scenario.name.clone(),
             road: scenario.road.clone(),
-            // Without the last digit's noise of the way to m/s and back.
+            // Rounded, because the conversion to m/s and back changes the last digit.
             speed_km_h: (scenario.speed_m_s * 3.6 * 1e6).round() * 1e-6,
-            strategy: scenario.strategy_name(),
+            strategy: scenario.strategy.name(),
             bus: scenario.bus.to_string(),
             clock: scenario.clock.name(),
             seed: scenario.seed,
@@ -154,11 +156,11 @@ impl Summary {
             simulated_s,
             wall_s: outcome.wall_s,
             real_time_factor: simulated_s / outcome.wall_s.max(1e-9),
-            command_hash: command_hash(outcome.remains.recording.words()),
-            frames_sent: outcome.remains.frames_sent,
+            command_hash: command_hash(outcome.plant.recording.words()),
+            frames_sent: outcome.plant.frames_sent,
             frames_lost: metrics.frames_lost,
             bus_frames_lost: metrics.bus_frames_lost,
-            foreign_frames: outcome.remains.foreign_frames,
+            foreign_frames: outcome.plant.foreign_frames,
             e2e_errors: metrics.e2e_errors,
             bus_load_500k: metrics.wires[0].utilisation,
             bus_load_1m: metrics.wires[1].utilisation,
@@ -170,7 +172,7 @@ impl Summary {
             msdv_driver_m_s1_5: driver.msdv_m_s1_5,
             msdv_rear_left_m_s1_5: rear_left.msdv_m_s1_5,
             max_roll_deg: number(Metric::MaxRoll).unwrap_or(0.0),
-            valve_switches: metrics.valve_switches,
+            valve_switches: valve_switches(metrics),
             modes: mode_entries(metrics),
             ticks_to_detect: number(Metric::TicksToDetect),
             ticks_to_safe: number(Metric::TicksToSafe),
@@ -196,6 +198,17 @@ impl Summary {
     }
 }
 
+/// The numbers of changes in the order of the valve word's bits.
+fn valve_switches(metrics: &Metrics) -> [u64; 12] {
+    let mut edges = [0; 12];
+    for (corner, strut) in metrics.valve_switches.iter() {
+        for (valve, count) in strut.iter() {
+            edges[ValveCommand::bit(corner, valve)] = *count;
+        }
+    }
+    edges
+}
+
 fn check_outcomes(scenario: &Scenario, metrics: &Metrics) -> Vec<CheckOutcome> {
     let outcome = |check: &crate::scenario::Check| {
         let figure = metrics.figure(check.metric);
@@ -212,7 +225,7 @@ fn mode_entries(metrics: &Metrics) -> Vec<ModeEntry> {
     let mut entries: Vec<ModeEntry> = Vec::new();
     for (tick, account) in metrics.account.iter().enumerate() {
         let Some((mode, fault)) = account else { continue };
-        let (mode, fault) = (mode_name(*mode), fault_name(*fault));
+        let (mode, fault) = (mode.name(), fault.name());
         if entries
             .last()
             .is_none_or(|last| (last.mode, last.fault) != (mode, fault))
@@ -227,10 +240,10 @@ fn mode_entries(metrics: &Metrics) -> Vec<ModeEntry> {
     entries
 }
 
-/// Writes all data files of a run (the page is [`crate::page`]'s).
+/// Writes all data files of a run. The page is written by [`crate::page`].
 ///
 /// # Errors
-/// Those of the file system.
+/// A file cannot be written.
 pub fn write(
     out: &mut OutputDirectory,
     scenario: &Scenario,
@@ -249,7 +262,7 @@ pub fn write(
     out.csv("timeseries.csv", &borrowed)
 }
 
-/// JUnit: one suite, one case a check.
+/// The checks as a JUnit file: one suite with a case for each check.
 fn junit(summary: &Summary) -> Vec<u8> {
     let mut suite = TestSuite::new(format!("oleo hil {}", summary.scenario));
     for check in &summary.checks {
@@ -267,18 +280,19 @@ fn junit(summary: &Summary) -> Vec<u8> {
     let mut report = Report::new("oleo hil");
     report.add_test_suite(suite);
     let mut bytes = Vec::new();
-    // Writing to memory does not fail; an empty file would be noticed by whoever reads it.
+    // Writing to memory does not fail.
     let _ = report.serialize(&mut bytes);
     bytes
 }
 
-/// The traced frames with the time at which a wire of 500 kbit/s (in lockstep) or this machine (in real time) carried them.
+/// The traced frames as a candump log. Their times are those at which a wire of 500 kbit/s would have carried them (in lockstep) or
+/// at which this machine did (in real time).
 fn candump(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics) -> Vec<u8> {
     let interface = match &scenario.bus {
         crate::bus::BusAddress::SocketCan(interface) => interface.as_str(),
         _ => "vcan0",
     };
-    let trace = &outcome.remains.trace;
+    let trace = &outcome.plant.trace;
     let real_time = scenario.clock == crate::scenario::Clock::RealTime;
     let mut timed: Vec<(u64, usize)> = match real_time {
         true => trace
@@ -297,18 +311,18 @@ fn candump(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics) -> Vec<u8>
     log
 }
 
-/// Time histories at ticks, by column.
+/// Name and values of each column of `timeseries.csv`, a value for each tick.
 fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<f64>)> {
-    let samples = &outcome.remains.recording.samples;
-    let steps = outcome.remains.recording.seat_acceleration_m_s2.len() / samples.len().max(1);
+    let samples = &outcome.plant.recording.samples;
+    let steps = outcome.plant.recording.seat_acceleration_m_s2.len() / samples.len().max(1);
     let mut columns: Vec<(String, Vec<f64>)> = Vec::with_capacity(64);
     let mut column = |name: &str, value: &dyn Fn(usize) -> f64| {
         columns.push((name.to_owned(), (0..samples.len()).map(value).collect()));
     };
     column("time_s", &|i| i as f64 * TICK_S);
     column("station_m", &|i| samples[i].station_m);
-    for (corner, name) in CORNER_NAMES.iter().enumerate() {
-        let name = name.replace('-', "_");
+    for corner in Corner::ALL {
+        let name = corner.key();
         column(&format!("road_{name}_m"), &|i| samples[i].wheel[corner].road_height_m);
     }
     column("heave_m", &|i| samples[i].body.heave_m);
@@ -322,21 +336,21 @@ fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<f64>)> {
         samples[i].body.pitch_acceleration_rad_s2
     });
     let felt = |i: usize, seat: usize| {
-        // At the beginning of a tick: the last step of the one before.
+        // At the beginning of a tick the acceleration is that of the last step before it.
         let index = (i * steps).checked_sub(1);
-        index.map_or(0.0, |at| outcome.remains.recording.seat_acceleration_m_s2[at][seat])
+        index.map_or(0.0, |at| outcome.plant.recording.seat_acceleration_m_s2[at][seat])
     };
     column("driver_acceleration_m_s2", &|i| felt(i, 0));
     column("rear_left_acceleration_m_s2", &|i| felt(i, 1));
-    for (corner, name) in CORNER_NAMES.iter().enumerate() {
-        let name = name.replace('-', "_");
+    for corner in Corner::ALL {
+        let name = corner.key();
         column(&format!("displacement_{name}_m"), &|i| {
             samples[i].displacement_m[corner]
         });
         column(&format!("force_{name}_N"), &|i| samples[i].strut[corner].force_n);
-        for place in 0..4 {
-            let title = format!("p{}_{name}_Pa", place + 1);
-            column(&title, &|i| samples[i].strut[corner].pressure_pa[place]);
+        for point in PressurePoint::ALL {
+            let title = format!("{}_{name}_Pa", point.key());
+            column(&title, &|i| samples[i].strut[corner].pressure_pa[point.index()]);
         }
         column(&format!("wheel_load_{name}_N"), &|i| samples[i].wheel[corner].force_n);
     }

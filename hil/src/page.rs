@@ -1,19 +1,23 @@
 //! `report.html` of a run: the outcome first, then road, body, struts, controller and bus, on one time axis.
 
+use oleo_controller::Mode;
+use oleo_interface::tick::TICK_S;
+use oleo_interface::{Axle, Corner, PressurePoint, Side, Valve};
 use oleo_report::{Axis, Bars, Cell, Column, Curves, Page, Style, Table, Verdict, significant};
+use strum::VariantArray;
 
 use crate::metrics::Metrics;
 use crate::output::Summary;
-use crate::record::{mode_name, status_messages};
+use crate::record::status_messages;
 use crate::run::Outcome;
-use crate::scenario::fault::{CORNER_NAMES, Fault, FaultKind};
-use crate::scenario::{Scenario, TICK_S};
+use crate::scenario::Scenario;
+use crate::scenario::fault::{Fault, FaultKind};
 use crate::sync::Role;
 
-/// All figures of a page zoom together.
+/// Figures with this link zoom their time axes together.
 const LINK: &str = "time";
 
-/// The page of a run; `command` is what makes it again.
+/// The page of a run. `command` is the command line that makes it again.
 pub fn page(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summary: &Summary, command: &str) -> Page {
     let mut page = Page::new(&format!("Hardware-in-the-loop: {}", scenario.name), command);
     page.fact("Scenario", &scenario.description);
@@ -44,7 +48,7 @@ pub fn page(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summary: 
     page
 }
 
-/// How the run came out, for the terminal and the page.
+/// Table of the run's figures, for the terminal and the page.
 pub fn outcome_table(summary: &Summary) -> Table {
     let mut table = Table::new([Column::text("Quantity"), Column::number("Value"), Column::text("Unit")]);
     let mut row = |quantity: &str, value: String, unit: &str| {
@@ -109,7 +113,7 @@ pub fn outcome_table(summary: &Summary) -> Table {
     table
 }
 
-/// The checks, for the terminal and the page.
+/// Table of the checks, for the terminal and the page.
 pub fn check_table(summary: &Summary) -> Table {
     let mut table = Table::new([Column::text("Check"), Column::number("Figure"), Column::text("Met")]);
     for check in &summary.checks {
@@ -122,7 +126,7 @@ pub fn check_table(summary: &Summary) -> Table {
     table
 }
 
-/// The common axis, and the faults on it.
+/// The common time axis, and the faults to be marked on it.
 struct Time<'a> {
     s: Vec<f64>,
     faults: &'a [Fault],
@@ -130,7 +134,7 @@ struct Time<'a> {
 
 impl<'a> Time<'a> {
     fn of(scenario: &'a Scenario, outcome: &Outcome) -> Self {
-        let s = (0..outcome.remains.recording.samples.len())
+        let s = (0..outcome.plant.recording.samples.len())
             .map(|tick| tick as f64 * TICK_S)
             .collect();
         Self {
@@ -145,7 +149,7 @@ impl<'a> Time<'a> {
         curves
     }
 
-    /// Marks the faults in the panel added last.
+    /// Marks the faults in the panel that was added last.
     fn mark(&self, curves: &mut Curves) {
         let end_s = self.s.last().copied().unwrap_or(0.0);
         for fault in self.faults {
@@ -169,21 +173,22 @@ fn fault_label(fault: &Fault) -> &'static str {
 }
 
 fn road(page: &mut Page, outcome: &Outcome, time: &Time) {
-    let samples = &outcome.remains.recording.samples;
+    let samples = &outcome.plant.recording.samples;
     let mut curves = time.curves("Road under the front wheels");
     curves.panel(Axis::new("Height", "mm"));
-    for (corner, side) in [(0, "left"), (1, "right")] {
+    for side in Side::ALL {
+        let corner = Axle::Front.corner(side);
         let height: Vec<f64> = samples
             .iter()
             .map(|sample| 1e3 * sample.wheel[corner].road_height_m)
             .collect();
-        curves.line(side, &time.s, &height);
+        curves.line(side.key(), &time.s, &height);
     }
     page.section("Road").figure(curves);
 }
 
 fn body(page: &mut Page, outcome: &Outcome, time: &Time) {
-    let recording = &outcome.remains.recording;
+    let recording = &outcome.plant.recording;
     let samples = &recording.samples;
     let mut curves = time.curves("Sprung mass");
     let mut panel = |axis: Axis, name: &str, value: &dyn Fn(usize) -> f64| {
@@ -199,7 +204,7 @@ fn body(page: &mut Page, outcome: &Outcome, time: &Time) {
         samples[i].body.pitch_rad.to_degrees()
     });
     page.section("Body motion")
-        .text("Heave up, roll left side up and pitch nose down are positive.")
+        .text("Heave is positive upwards, roll with the left side up, and pitch with the nose down.")
         .figure(curves);
 
     let step_s: Vec<f64> = (1..=recording.seat_acceleration_m_s2.len())
@@ -215,14 +220,14 @@ fn body(page: &mut Page, outcome: &Outcome, time: &Time) {
 }
 
 fn struts(page: &mut Page, outcome: &Outcome, time: &Time) {
-    let samples = &outcome.remains.recording.samples;
+    let samples = &outcome.plant.recording.samples;
     page.section("Struts").text(
-        "Compression is positive; pressures are gauge. Valves 1 and 2 bypass the dampers (open: low damping), valve 3 connects the \
-         0.4 l accumulator (open: soft spring).",
+        "Compression is positive, and pressures are gauge pressures. Valves 1 and 2 bypass the dampers: open, they give low damping. Valve 3 \
+         connects the 0.4 l accumulator: open, it gives the soft spring.",
     );
-    for (corner, name) in CORNER_NAMES.iter().enumerate() {
+    for corner in Corner::ALL {
         let column = |value: &dyn Fn(usize) -> f64| (0..samples.len()).map(value).collect::<Vec<f64>>();
-        let mut curves = time.curves(&format!("Strut {}", name.replace('-', " ")));
+        let mut curves = time.curves(&format!("Strut {}", corner.name().replace('-', " ")));
         curves.height(620);
         curves.panel(Axis::new("Displacement", "mm"));
         curves.line(
@@ -232,21 +237,22 @@ fn struts(page: &mut Page, outcome: &Outcome, time: &Time) {
         );
         time.mark(&mut curves);
         curves.panel(Axis::new("Pressure", "MPa"));
-        for place in 0..4 {
-            let pressure = column(&|i| 1e-6 * samples[i].strut[corner].pressure_pa[place]);
-            curves.line(&format!("p{}", place + 1), &time.s, &pressure);
+        for point in PressurePoint::ALL {
+            let pressure = column(&|i| 1e-6 * samples[i].strut[corner].pressure_pa[point.index()]);
+            curves.line(point.key(), &time.s, &pressure);
         }
         curves.panel(Axis::new("Force", "kN"));
         curves.line("force", &time.s, &column(&|i| 1e-3 * samples[i].strut[corner].force_n));
-        // Three signals one above the other: closed at the label, open above it.
+        // The three signals lie above each other. A signal is at its label when closed, and above it when open.
         curves.panel(
             Axis::new("Open", "")
                 .ticks([(0.0, "valve 1"), (1.5, "valve 2"), (3.0, "valve 3")])
                 .range(-0.3, 4.3),
         );
-        for valve in 0..3 {
-            let open = column(&|i| 1.5 * valve as f64 + f64::from(u8::from(samples[i].energised.valve(corner, valve))));
-            curves.series(Style::Step, &format!("valve {}", valve + 1), &time.s, &open);
+        for valve in Valve::ALL {
+            let label = 1.5 * valve.index() as f64;
+            let open = column(&|i| label + f64::from(u8::from(samples[i].energised.is_open(corner, valve))));
+            curves.series(Style::Step, &format!("valve {}", valve.number()), &time.s, &open);
         }
         page.figure(curves);
     }
@@ -259,11 +265,11 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
         .map(|account| account.map_or(f64::NAN, |(mode, _)| f64::from(mode.raw())))
         .collect();
     let mut curves = time.curves("Mode machine and strategy");
-    let names = (0..5).filter_map(|raw| Some((f64::from(raw), mode_name(oleo_controller::Mode::from_raw(raw)?))));
+    let names = Mode::VARIANTS.iter().map(|mode| (f64::from(mode.raw()), mode.name()));
     curves.panel(Axis::new("Mode", "").ticks(names).range(-0.4, 4.4));
     curves.series(Style::Step, "mode", &time.s, &mode);
     time.mark(&mut curves);
-    let status = status_messages(&outcome.remains.trace);
+    let status = status_messages(&outcome.plant.trace);
     let status_s: Vec<f64> = status.iter().map(|(tick, _)| f64::from(*tick) * TICK_S).collect();
     let of = |value: &dyn Fn(&oleo_controller::can::StatusMessage) -> f64| -> Vec<f64> {
         status.iter().map(|(_, message)| value(message)).collect()
@@ -283,7 +289,7 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
         &of(&|m| f64::from(u8::from(m.handling))),
     );
     page.section("Controller")
-        .text("As the controller's own frames say, before injected faults.")
+        .text("This is what the controller's own frames say, before any injected fault.")
         .figure(curves);
 
     let mut table = Table::new([
@@ -302,12 +308,13 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
         ]);
     }
     page.table(table);
-    let valves = ["1", "2", "3"];
-    let names = CORNER_NAMES
-        .iter()
-        .flat_map(|corner| valves.iter().map(move |valve| format!("{corner} {valve}")));
-    let names: Vec<String> = names.collect();
-    let edges: Vec<f64> = summary.valve_switches.iter().map(|edges| *edges as f64).collect();
+    let (mut names, mut edges) = (Vec::new(), Vec::new());
+    for (corner, strut) in metrics.valve_switches.iter() {
+        for (valve, count) in strut.iter() {
+            names.push(format!("{} {}", corner.name(), valve.number()));
+            edges.push(*count as f64);
+        }
+    }
     let mut bars = Bars::new(
         "Valve switches",
         names.iter().map(String::as_str),
@@ -318,8 +325,8 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
 }
 
 fn bus(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &Summary) {
-    let counters = &outcome.remains.counters;
-    let injected = &outcome.remains.injected;
+    let counters = &outcome.plant.counters;
+    let injected = &outcome.plant.injected;
     let mut table = Table::new([Column::text("Frames"), Column::number("Count")]);
     for (name, count) in [
         ("messages on the wire, both directions", summary.frames_sent),
@@ -341,8 +348,9 @@ fn bus(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &Summary)
     for wire in &metrics.wires {
         let rate = wire.bit_rate / 1000;
         page.text(&format!(
-            "A wire of {rate} kbit/s would be busy {} % of the time, {} % in the busiest tick (stuff bits counted as they occurred). \
-             Latency from ready to sent, in microseconds; the bound is the response-time analysis of Davis et al. (2007) with worst-case stuffing:",
+            "A wire of {rate} kbit/s would be busy for {} % of the time, and for {} % of the busiest tick, with the stuff bits that occurred. \
+             The table gives the latency from ready to sent in microseconds. Its bound is that of the response-time analysis of Davis \
+             et al. (2007) with worst-case stuffing.",
             significant(100.0 * wire.utilisation, 3),
             significant(100.0 * wire.peak_utilisation, 3),
         ));

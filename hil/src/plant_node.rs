@@ -1,28 +1,27 @@
-//! The plant as a node on the bus: measures, sends, listens, moves on.
+//! The plant as a node on the bus.
 //!
-//! A tick n is: read the sensors at its beginning and send them; take the commands that come back; let the vehicle roll for
-//! 5 ms under them. What lies between sending and moving on (waiting for the partner, or for a deadline) is the clock's
-//! business, in [`crate::run`].
+//! In each tick it reads its sensors and sends them, takes the commands that come back, and lets the vehicle drive for 5 ms under
+//! them. How long it waits between sending and driving is decided in [`crate::run`].
 
 use std::time::Duration;
 
 use oleo_controller::can::PlantEnd;
-use oleo_interface::{Corners, StrutValves};
+use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
 
 use crate::Frame;
 use crate::bus::{Bus, BusError, FaultInjector, Trace};
 use crate::instruments::{Instruments, OutputStage};
 use crate::record::{Recording, Sample};
-use crate::scenario::{Scenario, TICK_S};
+use crate::scenario::Scenario;
 use crate::sync::{Role, Sync};
 
-/// What ended the wait for the controller.
+/// How the wait for the controller ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Answer {
-    /// It has done its tick.
+    /// The controller has done its tick.
     Done,
-    /// Nothing for as long as was allowed.
+    /// Nothing came for as long as was allowed.
     Nothing,
 }
 
@@ -41,11 +40,11 @@ pub struct PlantNode<B> {
     tally: (u16, u16),
 }
 
-/// Frames of a tick in both directions, for the trace's memory.
+/// Number of frames in a tick, both directions together, for which the trace has memory.
 const FRAMES_PER_TICK: usize = 8;
 
 impl<B: Bus> PlantNode<B> {
-    /// A plant at its start. `wall_clock`: traced frames carry the time.
+    /// A plant at the start of the road. With `wall_clock` the traced frames carry the time.
     pub fn new(
         bus: B,
         scenario: &Scenario,
@@ -76,32 +75,31 @@ impl<B: Bus> PlantNode<B> {
         }
     }
 
-    /// Ticks completed.
+    /// Number of completed ticks.
     pub fn tick(&self) -> u32 {
         self.tick
     }
 
-    /// Begins a tick: sends what the sensors say.
+    /// Begins a tick: reads the sensors and sends them.
     pub fn send_sensors(&mut self) -> Result<(), BusError> {
         self.bus.begin_tick(self.tick);
-        let displacement_m = self.vehicle.strut_displacement_m().into_array();
-        let inputs = self
-            .instruments
-            .read(self.tick, displacement_m, self.vehicle.strut_output().into_array());
+        let displacement_m = self.vehicle.strut_displacement_m();
+        let struts = self.vehicle.strut_output();
+        let inputs = self.instruments.read(self.tick, displacement_m, struts);
         for frame in self.end.encode(self.tick as u16, &inputs) {
             self.bus.send(&frame.into())?;
         }
         Ok(())
     }
 
-    /// Tells the controller that all of this tick is on the bus.
+    /// Tells the controller that all frames of this tick are on the bus.
     pub fn send_done(&mut self) -> Result<(), BusError> {
         let sent = self.bus.inner().messages_sent() as u16;
         self.bus
             .send(&Sync::TickDone { tick: self.tick, sent }.encode(Role::Plant))
     }
 
-    /// Takes frames until the controller has done this tick, or none came for `wait`.
+    /// Takes frames until the controller has done this tick, or until none came for `wait`.
     pub fn listen(&mut self, wait: Duration) -> Result<Answer, BusError> {
         while let Some(frame) = self.bus.receive(wait)? {
             match Sync::decode(&frame, Role::Controller) {
@@ -130,7 +128,7 @@ impl<B: Bus> PlantNode<B> {
         }
     }
 
-    /// Ends the tick: 5 ms of driving under the commands that came.
+    /// Ends the tick: drives for 5 ms under the command that came.
     pub fn advance(&mut self) {
         if !self.output.end_of_tick() {
             self.end.no_command();
@@ -139,13 +137,13 @@ impl<B: Bus> PlantNode<B> {
         self.recording.samples.push(Sample {
             station_m: self.vehicle.station_m(),
             body: self.vehicle.body(),
-            displacement_m: self.vehicle.strut_displacement_m().into_array(),
-            strut: self.vehicle.strut_output().into_array(),
-            wheel: self.vehicle.wheels().into_array(),
+            displacement_m: self.vehicle.strut_displacement_m(),
+            strut: self.vehicle.strut_output(),
+            wheel: self.vehicle.wheels(),
             command: self.output.command(),
             energised,
         });
-        let signals = Corners::from_array(energised.corners().map(StrutValves::from_array));
+        let signals = energised.corners();
         for _ in 0..self.steps_per_tick {
             self.vehicle.step(signals);
             let felt = self
@@ -156,29 +154,29 @@ impl<B: Bus> PlantNode<B> {
         self.tick += 1;
     }
 
-    /// Says that the run is over; the controller's tally is the [`Answer::Done`] to it.
+    /// Says that the run is over. The controller answers with its tally, which is an [`Answer::Done`].
     pub fn send_end(&mut self) -> Result<(), BusError> {
         let sent = self.bus.inner().messages_sent() as u16;
         self.bus.send(&Sync::End { sent }.encode(Role::Plant))
     }
 
-    /// Ticks since the last usable command.
+    /// Number of ticks since the last usable command.
     pub fn ticks_without_command(&self) -> u32 {
         self.output.ticks_without_command()
     }
 
-    /// The bus, for the handshake.
+    /// The node's bus.
     pub fn bus(&mut self) -> &mut dyn Bus {
         &mut self.bus
     }
 
-    /// What is left of a run.
-    pub fn into_remains(mut self) -> PlantRemains {
+    /// Ends the node and returns what it knows.
+    pub fn into_result(mut self) -> PlantResult {
         let trace = self.bus.inner_mut();
         let received = trace.messages_received() as u16;
         let (lost_by_controller, e2e_by_controller) = self.tally;
         let bus_lost = u64::from(self.controller_sent.wrapping_sub(received)) + u64::from(lost_by_controller);
-        PlantRemains {
+        PlantResult {
             frames_sent: trace.messages_sent() + trace.messages_received(),
             bus_frames_lost: bus_lost,
             foreign_frames: trace.foreign(),
@@ -191,23 +189,23 @@ impl<B: Bus> PlantNode<B> {
     }
 }
 
-/// What a plant node knows at the end of a run.
+/// What the plant's node knows at the end of a run.
 #[derive(Debug)]
-pub struct PlantRemains {
+pub struct PlantResult {
     /// Samples of the run.
     pub recording: Recording,
-    /// Frames on the wire.
+    /// Every frame that was on the wire, in order.
     pub trace: Vec<crate::bus::TraceEntry>,
-    /// Messages of the database that were on the wire, both directions.
+    /// Number of messages of the database that were on the wire, both directions together.
     pub frames_sent: u64,
-    /// Of these, how many one end sent and the other did not get.
+    /// How many of them one end sent and the other did not receive.
     pub bus_frames_lost: u64,
-    /// Frames of third parties.
+    /// Number of frames with other identifiers.
     pub foreign_frames: u64,
-    /// Frames that failed their end-to-end check, both ends.
+    /// Number of frames that failed their end-to-end check, at either end.
     pub e2e_errors: u64,
-    /// What the fault injector did.
+    /// What the fault injector did to frames.
     pub injected: crate::bus::InjectionCounts,
-    /// What the bus counted.
+    /// Counters of the plant's end of the bus.
     pub counters: crate::bus::BusCounters,
 }

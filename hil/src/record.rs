@@ -1,49 +1,49 @@
-//! What a run leaves in memory: one sample a tick, and what can be read from the traced frames.
+//! What a run keeps in memory: one sample for each tick, and what can be read from the traced frames.
 //!
-//! All memory is taken before the run starts; in the loop a sample is a copy. Everything else (measures, logs, pictures) is worked
-//! out afterwards.
+//! All memory is reserved before the run starts, so that in the loop a sample is only a copy. Measures, logs and pictures are
+//! computed afterwards.
 
 use crc::{CRC_64_XZ, Crc};
 use oleo_controller::can::{COMMAND, CommandMessage, STATUS, StatusMessage};
-use oleo_controller::valves::{CORNERS, VALVES, ValveCommand};
-use oleo_controller::{FaultCode, Mode};
+use oleo_controller::{FaultCode, Mode, ValveCommand};
+use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::strut::StrutOutput;
 use oleo_plant_sim::vehicle::{BodyMotion, WheelMotion};
 
 use crate::bus::{Direction, TraceEntry};
 
-/// State at the beginning of a tick, and the valve words that held from there to the next.
+/// State at the beginning of a tick, and the valve commands that held from there to the next tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// Station of the front axle, m.
+    /// Distance that the front axle has travelled along the road, m.
     pub station_m: f64,
-    /// Sprung mass.
+    /// Motion of the sprung mass.
     pub body: BodyMotion,
     /// Strut displacement, m, compression positive.
-    pub displacement_m: [f64; CORNERS],
-    /// Force and pressures.
-    pub strut: [StrutOutput; CORNERS],
-    /// Wheels, with the road under them.
-    pub wheel: [WheelMotion; CORNERS],
-    /// What the output stage was told (after its check and watchdog).
+    pub displacement_m: Corners<f64>,
+    /// Force and pressures of each strut.
+    pub strut: Corners<StrutOutput>,
+    /// Motion and load of each wheel, and the road under it.
+    pub wheel: Corners<WheelMotion>,
+    /// The command that the drivers obeyed, after check and watchdog.
     pub command: ValveCommand,
-    /// Where the valves' signals were (stuck ones included).
+    /// Positions of the valves' signals, stuck valves included.
     pub energised: ValveCommand,
 }
 
-/// A run.
+/// The samples of a run.
 #[derive(Debug, Default)]
 pub struct Recording {
-    /// One a tick.
+    /// One sample for each tick.
     pub samples: Vec<Sample>,
-    /// Vertical acceleration at the driver's and the left rear seat at every integration step, m/s2.
+    /// Vertical acceleration at the driver's and at the left rear passenger's seat for every integration step, m/s2.
     pub seat_acceleration_m_s2: Vec<[f64; 2]>,
     /// Integration step, s.
     pub step_s: f64,
 }
 
 impl Recording {
-    /// Room for a run.
+    /// An empty recording with memory for a run.
     pub fn with_capacity(ticks: usize, steps_per_tick: usize, step_s: f64) -> Self {
         Self {
             samples: Vec::with_capacity(ticks),
@@ -52,21 +52,23 @@ impl Recording {
         }
     }
 
-    /// The words told to the output stage.
+    /// The valve words that the drivers obeyed, one for each tick.
     pub fn words(&self) -> impl Iterator<Item = u16> {
         self.samples.iter().map(|sample| sample.command.word())
     }
 
-    /// Edges of each valve signal, in the order of the word's bits. Before the first tick all are closed.
-    pub fn valve_switches(&self) -> [u64; CORNERS * VALVES] {
-        let mut edges = [0; CORNERS * VALVES];
-        let mut before = 0;
+    /// Number of changes of each valve's signal. Before the first tick all valves are closed.
+    pub fn valve_switches(&self) -> Corners<StrutValves<u64>> {
+        let mut edges = Corners::<StrutValves<u64>>::default();
+        let mut before = ValveCommand::SAFE;
         for sample in &self.samples {
-            let word = sample.energised.word();
-            for (bit, count) in edges.iter_mut().enumerate() {
-                *count += u64::from((word ^ before) >> bit & 1);
+            let changed = ValveCommand::from_word(sample.energised.word() ^ before.word());
+            for (corner, strut) in edges.iter_mut() {
+                for (valve, changed) in changed.strut(corner).iter() {
+                    strut[valve] += u64::from(*changed);
+                }
             }
-            before = word;
+            before = sample.energised;
         }
         edges
     }
@@ -74,7 +76,7 @@ impl Recording {
 
 /// Digest of a sequence of valve words: CRC-64/XZ of the words as little-endian 16-bit numbers, 16 hexadecimal digits.
 ///
-/// A cryptographic digest is not needed (nobody forges it); this one is in every language's standard tools.
+/// The digest need not be cryptographic, because nobody gains from forging it. Tools for this one exist in every language.
 pub fn command_hash(words: impl IntoIterator<Item = u16>) -> String {
     let crc = Crc::<u64>::new(&CRC_64_XZ);
     let mut digest = crc.digest();
@@ -84,7 +86,8 @@ pub fn command_hash(words: impl IntoIterator<Item = u16>) -> String {
     format!("{:016x}", digest.finalize())
 }
 
-/// The controller's own account in each tick, as the frames on the wire say it (before injected faults).
+/// Mode and first cause in each tick as the controller's frames on the wire say it, before injected faults; `None` for a tick
+/// without a readable command.
 pub fn controller_account(trace: &[TraceEntry], ticks: usize) -> Vec<Option<(Mode, FaultCode)>> {
     let mut account = vec![None; ticks];
     for entry in trace.iter().filter(|e| e.direction == Direction::Received) {
@@ -99,40 +102,13 @@ pub fn controller_account(trace: &[TraceEntry], ticks: usize) -> Vec<Option<(Mod
     account
 }
 
-/// The controller's status messages with the tick they came in.
+/// The controller's status messages, each with the tick in which it came.
 pub fn status_messages(trace: &[TraceEntry]) -> Vec<(u32, StatusMessage)> {
     let received = trace.iter().filter(|e| e.direction == Direction::Received);
     received
         .filter(|entry| entry.frame.standard_id() == Some(STATUS.id))
         .filter_map(|entry| Some((entry.tick, StatusMessage::decode(entry.frame.data().try_into().ok()?)?)))
         .collect()
-}
-
-/// A mode in words.
-pub fn mode_name(mode: Mode) -> &'static str {
-    match mode {
-        Mode::StartUp => "start-up",
-        Mode::Normal => "normal",
-        Mode::Degraded => "degraded",
-        Mode::Safe => "safe",
-        Mode::Latched => "latched",
-    }
-}
-
-/// A fault code in words.
-pub fn fault_name(fault: FaultCode) -> &'static str {
-    match fault {
-        FaultCode::None => "none",
-        FaultCode::SensorRange => "sensor-range",
-        FaultCode::SensorRate => "sensor-rate",
-        FaultCode::SensorStuck => "sensor-stuck",
-        FaultCode::SensorVote => "sensor-vote",
-        FaultCode::OilBalance => "oil-balance",
-        FaultCode::MessageLost => "message-lost",
-        FaultCode::BusSilent => "bus-silent",
-        FaultCode::Solenoid => "solenoid",
-        FaultCode::Internal => "internal",
-    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
-//! Frames that keep two nodes in step. They are machinery of the simulation, not messages of the vehicle.
+//! Frames that keep two nodes in step. They belong to the simulation and are no messages of the vehicle.
 //!
-//! A node in lockstep must know that the other has said all it has to say in a tick, also when a fault has eaten the
-//! last message. So each ends its tick with a `TickDone` that no fault touches and that counts what was sent, which shows
-//! frames that a slow reader lost. Wall-clock time decides nothing, except that a partner silent for seconds is gone.
+//! A node in lockstep must know when the other has sent everything in a tick, even if a fault has dropped the last message. So each
+//! ends its tick with a `TickDone`, which no injected fault touches. It carries the number of frames sent so far, which shows
+//! frames that a slow reader has lost. Wall-clock time decides nothing, except that a partner that is silent for seconds is taken
+//! to be gone.
 //!
 //! ```text
 //!   plant                                 controller
@@ -14,18 +15,18 @@
 //!                                    <-     Tally               what the controller's side of the bus lost
 //! ```
 //!
-//! Identifiers are extended and of the lowest priority, so no vehicle message can be mistaken for one.
+//! The identifiers are extended and have the lowest priority, so that no message of the vehicle can be mistaken for one.
 
-use std::time::{Duration, Instant};
+use strum::{EnumString, IntoStaticStr, VariantNames};
 
 use crate::Frame;
-use crate::bus::{Bus, BusError};
 use crate::frame::extended;
 
 /// Which node a sync frame comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, EnumString, IntoStaticStr, VariantNames)]
+#[strum(serialize_all = "lowercase")]
 pub enum Role {
-    /// Sensors, vehicle and valves.
+    /// The plant: sensors, vehicle and valves.
     Plant,
     /// The suspension controller.
     Controller,
@@ -40,59 +41,56 @@ impl Role {
         }
     }
 
-    /// As on the command line.
+    /// As on the command line: `plant` or `controller`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Plant => "plant",
-            Self::Controller => "controller",
-        }
+        self.into()
     }
 }
 
 const PLANT_ID: u32 = 0x1FFF_01E0;
 const CONTROLLER_ID: u32 = 0x1FFF_01E1;
 
-/// Version of this exchange; nodes of different versions do not start.
+/// Version of this exchange. Nodes of different versions do not start.
 const VERSION: u8 = 1;
 
 /// What the nodes must agree on before they start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Terms {
-    /// Position of the strategy in `strategy::NAMES` of the scenario.
+    /// Number of the [`Strategy`](oleo_controller::Strategy), counted from 0.
     pub strategy: u8,
-    /// 0 lockstep, 1 real time.
+    /// Number of the clock: 0 lockstep, 1 real time.
     pub clock: u8,
 }
 
-/// Content of a sync frame.
+/// Content of a frame that keeps nodes in step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sync {
-    /// "I am here", and whether the other one was heard.
+    /// The sender is there.
     Hello {
-        /// What the run needs both to agree on.
+        /// What both must agree on.
         terms: Terms,
-        /// The sender has had a `Hello` of the receiver.
+        /// Whether the sender has received a `Hello` of the receiver.
         heard: bool,
     },
     /// All frames of a tick are on the bus.
     TickDone {
-        /// Which tick.
+        /// Number of the tick.
         tick: u32,
-        /// Frames sent since the start, modulo 65536, without sync frames.
+        /// Number of messages sent since the start, modulo 65536, without frames of this exchange.
         sent: u16,
     },
     /// The plant's run is over.
     End {
-        /// As in `TickDone`.
+        /// Number of messages sent, as in `TickDone`.
         sent: u16,
     },
     /// The controller's answer to `End`.
     Tally {
-        /// As in `TickDone`.
+        /// Number of messages sent, as in `TickDone`.
         sent: u16,
-        /// Frames that did not reach the controller, saturating.
+        /// Number of frames that did not reach the controller; it saturates.
         lost: u16,
-        /// Frames that failed its end-to-end check, saturating.
+        /// Number of frames that failed the controller's end-to-end check; it saturates.
         e2e_errors: u16,
     },
 }
@@ -103,7 +101,7 @@ pub fn is_sync(frame: &Frame) -> bool {
 }
 
 impl Sync {
-    /// As a frame of `role`.
+    /// The frame by which `role` sends this.
     pub fn encode(self, role: Role) -> Frame {
         let id = match role {
             Role::Plant => PLANT_ID,
@@ -164,93 +162,6 @@ impl Sync {
     }
 }
 
-/// Why two nodes did not find together.
-#[derive(Debug, thiserror::Error)]
-pub enum HandshakeError {
-    /// Nobody answered.
-    #[error("no {} answers on {bus} within {waited_s:.0} s: start `oleo hil --node {} --bus {bus}` as well", .partner.name(), .partner.name())]
-    Alone {
-        /// Who was expected.
-        partner: Role,
-        /// Where.
-        bus: String,
-        /// For how long, s.
-        waited_s: f64,
-    },
-    /// They want different runs.
-    #[error("the {} on {bus} runs another {what}: give both nodes the same scenario, --strategy and --clock", .partner.name())]
-    Terms {
-        /// Who is there.
-        partner: Role,
-        /// Where.
-        bus: String,
-        /// What differs.
-        what: &'static str,
-    },
-    /// The bus failed.
-    #[error(transparent)]
-    Bus(#[from] BusError),
-}
-
-/// Pause between two `Hello`s.
-const HELLO_PERIOD: Duration = Duration::from_millis(50);
-
-/// Finds the partner, whichever was started first.
-///
-/// # Errors
-/// Nobody there within `patience`, or somebody who wants another run.
-pub fn handshake(
-    bus: &mut dyn Bus,
-    name: &str,
-    role: Role,
-    terms: Terms,
-    patience: Duration,
-) -> Result<(), HandshakeError> {
-    let partner = role.other();
-    let started = Instant::now();
-    let (mut heard, mut is_heard) = (false, false);
-    while !(heard && is_heard) {
-        if started.elapsed() > patience {
-            return Err(HandshakeError::Alone {
-                partner,
-                bus: name.into(),
-                waited_s: patience.as_secs_f64(),
-            });
-        }
-        bus.send(&Sync::Hello { terms, heard }.encode(role))?;
-        let pause = Instant::now() + HELLO_PERIOD;
-        while !(heard && is_heard) {
-            let left = pause.saturating_duration_since(Instant::now());
-            let Some(frame) = bus.receive(left)? else { break };
-            let Some(Sync::Hello {
-                terms: theirs,
-                heard: theirs_heard,
-            }) = Sync::decode(&frame, partner)
-            else {
-                continue;
-            };
-            let differs = |what| HandshakeError::Terms {
-                partner,
-                bus: name.into(),
-                what,
-            };
-            if theirs.strategy != terms.strategy {
-                return Err(differs("strategy"));
-            }
-            if theirs.clock != terms.clock {
-                return Err(differs("clock"));
-            }
-            is_heard |= theirs_heard;
-            if !std::mem::replace(&mut heard, true) {
-                break; // say so at once
-            }
-        }
-    }
-    // The partner may not have heard that it was heard.
-    bus.send(&Sync::Hello { terms, heard: true }.encode(role))?;
-    Ok(())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -280,43 +191,5 @@ mod tests {
             prop_assume!(!is_sync(&frame));
             prop_assert_eq!(Sync::decode(&frame, Role::Plant), None);
         }
-    }
-
-    #[test]
-    fn nodes_find_each_other_in_either_order() {
-        let terms = Terms { strategy: 2, clock: 0 };
-        for late in [Role::Plant, Role::Controller] {
-            let (mut a, mut b) = crate::bus::in_process_pair();
-            std::thread::scope(|scope| {
-                let early = scope
-                    .spawn(move || handshake(&mut a, "x", late.other(), terms, Duration::from_secs(20)).map(|()| a));
-                std::thread::sleep(Duration::from_millis(120));
-                handshake(&mut b, "x", late, terms, Duration::from_secs(20)).unwrap();
-                early.join().unwrap().unwrap();
-            });
-        }
-    }
-
-    #[test]
-    fn a_node_alone_or_with_other_terms_says_so() {
-        let terms = Terms { strategy: 2, clock: 0 };
-        let (mut a, mut b) = crate::bus::in_process_pair();
-        let alone = handshake(&mut a, "socketcan:vcan0", Role::Plant, terms, Duration::from_millis(60));
-        assert!(
-            alone
-                .unwrap_err()
-                .to_string()
-                .contains("oleo hil --node controller --bus socketcan:vcan0")
-        );
-        b.send(
-            &Sync::Hello {
-                terms: Terms { strategy: 1, clock: 0 },
-                heard: false,
-            }
-            .encode(Role::Controller),
-        )
-        .unwrap();
-        let other = handshake(&mut a, "x", Role::Plant, terms, Duration::from_secs(9)).unwrap_err();
-        assert!(other.to_string().contains("another strategy"), "{other}");
     }
 }

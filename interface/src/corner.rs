@@ -8,6 +8,12 @@ use core::ops::{Index, IndexMut};
 use strum::{EnumString, IntoStaticStr, VariantArray};
 
 /// An axle of the vehicle.
+///
+/// ```
+/// use oleo_interface::{Axle, Corner, Side};
+/// assert_eq!(Axle::Rear.corner(Side::Left), Corner::RearLeft);
+/// assert_eq!("rear".parse(), Ok(Axle::Rear));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
 #[strum(serialize_all = "snake_case")]
 pub enum Axle {
@@ -17,7 +23,7 @@ pub enum Axle {
     Rear,
 }
 
-/// A side of the vehicle, seen in the direction of travel.
+/// A side of the vehicle, seen in the direction of travel. See [`Axle`] for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
 #[strum(serialize_all = "snake_case")]
 pub enum Side {
@@ -28,6 +34,13 @@ pub enum Side {
 }
 
 /// A corner of the vehicle, where one strut stands.
+///
+/// ```
+/// use oleo_interface::{Axle, Corner, Side};
+/// let corner = Corner::FrontRight;
+/// assert_eq!((corner.axle(), corner.side()), (Axle::Front, Side::Right));
+/// assert_eq!((corner.name(), corner.key()), ("front-right", "front_right"));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
 #[strum(serialize_all = "snake_case")]
 pub enum Corner {
@@ -137,15 +150,31 @@ impl<T> Corners<T> {
         Self(values)
     }
 
+    /// The same value at every corner.
+    pub const fn splat(value: T) -> Self
+    where
+        T: Copy,
+    {
+        Self([value; 4])
+    }
+
     /// From a function of the corner.
     pub fn from_fn(value: impl FnMut(Corner) -> T) -> Self {
         Self(Corner::ALL.map(value))
     }
 
     /// From the values on the left and on the right of each axle.
-    pub fn from_axles(axles: Axles<[T; 2]>) -> Self {
+    pub fn from_left_right(axles: Axles<[T; 2]>) -> Self {
         let ([front_left, front_right], [rear_left, rear_right]) = (axles.front, axles.rear);
         Self([front_left, front_right, rear_left, rear_right])
+    }
+
+    /// The same value at both corners of an axle.
+    pub const fn from_axles(values: Axles<T>) -> Self
+    where
+        T: Copy,
+    {
+        Self([values.front, values.front, values.rear, values.rear])
     }
 
     /// The values in the order of [`Corner::ALL`].
@@ -172,9 +201,30 @@ impl<T> Corners<T> {
         Corners(self.0.each_ref())
     }
 
+    /// References to the values, to change them.
+    pub fn each_mut(&mut self) -> Corners<&mut T> {
+        Corners(self.0.each_mut())
+    }
+
     /// Apply a function to every value.
     pub fn map<U>(self, function: impl FnMut(T) -> U) -> Corners<U> {
         Corners(self.0.map(function))
+    }
+
+    /// The value of this and of another at each corner, as pairs.
+    pub fn zip<U>(self, other: Corners<U>) -> Corners<(T, U)> {
+        let [a, b, c, d] = self.0;
+        let [e, f, g, h] = other.0;
+        Corners([(a, e), (b, f), (c, g), (d, h)])
+    }
+
+    /// The left and the right value of each axle, as pairs.
+    pub fn by_axle(self) -> Axles<(T, T)> {
+        let [front_left, front_right, rear_left, rear_right] = self.0;
+        Axles {
+            front: (front_left, front_right),
+            rear: (rear_left, rear_right),
+        }
     }
 
     /// Corner and value, in the order of [`Corner::ALL`].
@@ -201,13 +251,9 @@ impl<T> Corners<T> {
 impl<T> Index<Corner> for Corners<T> {
     type Output = T;
     fn index(&self, corner: Corner) -> &T {
-        let [front_left, front_right, rear_left, rear_right] = &self.0;
-        match corner {
-            Corner::FrontLeft => front_left,
-            Corner::FrontRight => front_right,
-            Corner::RearLeft => rear_left,
-            Corner::RearRight => rear_right,
-        }
+        // Faster than a match. There is a value for every corner, so the compiler leaves out the other case.
+        let [first, ..] = &self.0;
+        self.0.get(corner.index()).unwrap_or(first)
     }
 }
 
@@ -224,6 +270,13 @@ impl<T> IndexMut<Corner> for Corners<T> {
 }
 
 /// One value for each axle.
+///
+/// ```
+/// use oleo_interface::{Axle, Axles};
+/// let distance_m = Axles::new(1.389, 1.405);
+/// assert_eq!(distance_m[Axle::Rear], 1.405);
+/// assert_eq!(distance_m.map(|m| m > 1.4), Axles { front: false, rear: true });
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Axles<T> {
     /// Value of the front axle.
@@ -236,6 +289,17 @@ impl<T> Axles<T> {
     /// From the values of the front and the rear axle.
     pub const fn new(front: T, rear: T) -> Self {
         Self { front, rear }
+    }
+
+    /// The same value at both axles.
+    pub const fn splat(value: T) -> Self
+    where
+        T: Copy,
+    {
+        Self {
+            front: value,
+            rear: value,
+        }
     }
 
     /// From a function of the axle.
@@ -262,9 +326,17 @@ impl<T> Axles<T> {
         }
     }
 
-    /// The values of the front and the rear axle.
+    /// The values, front first.
     pub fn into_array(self) -> [T; 2] {
         [self.front, self.rear]
+    }
+
+    /// The value of this and of another at each axle, as pairs.
+    pub fn zip<U>(self, other: Axles<U>) -> Axles<(T, U)> {
+        Axles {
+            front: (self.front, other.front),
+            rear: (self.rear, other.rear),
+        }
     }
 
     /// Axle and value, front first.
@@ -312,8 +384,24 @@ mod tests {
         }
         let axles = Axles::from_fn(|axle| axle);
         assert!(Axle::ALL.into_iter().all(|axle| axles[axle] == axle));
-        let again = Corners::from_axles(Axles::from_fn(|axle| positions.of_axle(axle).map(|i| *i)));
+        let again = Corners::from_left_right(Axles::from_fn(|axle| positions.of_axle(axle).map(|i| *i)));
         assert_eq!(again, positions);
+    }
+
+    #[test]
+    fn pairs_keep_corner_axle_and_side() {
+        let name = Corners::from_fn(Corner::name);
+        for (corner, (index, name)) in Corners::from_fn(Corner::index).zip(name).iter() {
+            assert_eq!((*index, *name), (corner.index(), corner.name()));
+        }
+        let axles = Corners::from_fn(|corner| corner).by_axle();
+        for (axle, (left, right)) in axles.iter() {
+            assert_eq!((*left, *right), (axle.corner(Side::Left), axle.corner(Side::Right)));
+        }
+        let twice = Corners::from_axles(Axles::from_fn(|axle| axle));
+        assert!(Corner::ALL.into_iter().all(|corner| twice[corner] == corner.axle()));
+        assert_eq!(Axles::new(1, 2).zip(Axles::splat(3)).into_array(), [(1, 3), (2, 3)]);
+        assert_eq!(Corners::splat(7).into_array(), [7; 4]);
     }
 
     #[test]

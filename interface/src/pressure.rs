@@ -16,11 +16,11 @@ use core::ops::{Add, Sub};
 /// Standard atmosphere, Pa (ISO 2533). `f32` holds it exactly.
 pub const ATMOSPHERE_PA: f32 = 101_325.0;
 
-/// Pressure above the atmosphere, Pa. Negative below it.
+/// Pressure above the atmosphere, Pa; negative below it. See the [module](self) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct Gauge<T>(pub T);
 
-/// Pressure above vacuum, Pa.
+/// Pressure above vacuum, Pa. See the [module](self) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 pub struct Absolute<T>(pub T);
 
@@ -52,6 +52,22 @@ impl<T: From<f32> + Sub<Output = T>> Absolute<T> {
     }
 }
 
+impl<T: Add<Output = T>> Add<T> for Gauge<T> {
+    type Output = Self;
+    /// The pressure that is higher by a difference, Pa.
+    fn add(self, difference: T) -> Self {
+        Self(self.0 + difference)
+    }
+}
+
+impl<T: Add<Output = T>> Add<T> for Absolute<T> {
+    type Output = Self;
+    /// The pressure that is higher by a difference, Pa.
+    fn add(self, difference: T) -> Self {
+        Self(self.0 + difference)
+    }
+}
+
 impl<T: Sub<Output = T>> Sub for Gauge<T> {
     /// A difference, Pa, which is neither gauge nor absolute.
     type Output = T;
@@ -78,5 +94,11 @@ mod tests {
         assert_eq!(Gauge(0.0_f32).absolute().pa(), 101_325.0);
         assert_eq!(Absolute(0.0_f32).gauge(), Gauge(-101_325.0));
         assert_eq!(Gauge(3.0e6_f64).absolute() - Gauge(1.0e6_f64).absolute(), 2.0e6);
+    }
+
+    #[test]
+    fn a_difference_shifts_either() {
+        assert_eq!(Gauge(3.0e6_f32) + -1.0e6, Gauge(2.0e6));
+        assert_eq!(Absolute(3.0e6_f32) + 1.0e6, Absolute(4.0e6));
     }
 }

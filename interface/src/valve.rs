@@ -4,7 +4,7 @@ use core::ops::{Index, IndexMut};
 
 use strum::{EnumString, IntoStaticStr, VariantArray};
 
-/// A solenoid valve of a strut. Open means energised.
+/// A solenoid valve of a strut. Open means energised. See [`StrutValves`] for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
 pub enum Valve {
     /// Valve 1 bypasses damper 1. Open: low damping in the path to the 0.1 l accumulator.
@@ -27,6 +27,29 @@ impl Valve {
     #[must_use]
     pub fn column(self) -> &'static str {
         self.into()
+    }
+
+    /// Number of the valve in the seed report, the CAN database and scenario files, 1 to 3.
+    #[must_use]
+    pub const fn number(self) -> usize {
+        self as usize + 1
+    }
+
+    /// The valve with a number from 1 to 3; `None` for any other.
+    ///
+    /// ```
+    /// use oleo_interface::Valve;
+    /// assert_eq!(Valve::from_number(3), Some(Valve::Spring));
+    /// assert_eq!(Valve::from_number(0), None);
+    /// ```
+    #[must_use]
+    pub const fn from_number(number: usize) -> Option<Self> {
+        match number {
+            1 => Some(Self::Bypass1),
+            2 => Some(Self::Bypass2),
+            3 => Some(Self::Spring),
+            _ => None,
+        }
     }
 
     /// Position in [`Valve::ALL`], 0 to 2.
@@ -58,6 +81,14 @@ impl<T> StrutValves<T> {
         Self(values)
     }
 
+    /// The same value for every valve.
+    pub const fn splat(value: T) -> Self
+    where
+        T: Copy,
+    {
+        Self([value; 3])
+    }
+
     /// From a function of the valve.
     pub fn from_fn(value: impl FnMut(Valve) -> T) -> Self {
         Self(Valve::ALL.map(value))
@@ -68,9 +99,21 @@ impl<T> StrutValves<T> {
         self.0
     }
 
+    /// References to the values, to change them.
+    pub fn each_mut(&mut self) -> StrutValves<&mut T> {
+        StrutValves(self.0.each_mut())
+    }
+
     /// Apply a function to every value.
     pub fn map<U>(self, function: impl FnMut(T) -> U) -> StrutValves<U> {
         StrutValves(self.0.map(function))
+    }
+
+    /// The value of this and of another for each valve, as pairs.
+    pub fn zip<U>(self, other: StrutValves<U>) -> StrutValves<(T, U)> {
+        let [a, b, c] = self.0;
+        let [d, e, f] = other.0;
+        StrutValves([(a, d), (b, e), (c, f)])
     }
 
     /// Valve and value, in the order of [`Valve::ALL`].
@@ -112,6 +155,7 @@ mod tests {
         for valve in Valve::ALL {
             assert_eq!(positions[valve], valve.index());
             assert_eq!(valve.column().parse(), Ok(valve));
+            assert_eq!(Valve::from_number(valve.number()), Some(valve));
         }
         assert_eq!(Valve::VARIANTS, Valve::ALL);
     }

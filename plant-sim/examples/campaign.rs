@@ -8,6 +8,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use oleo_interface::StrutValves;
 use oleo_plant_sim::strut::{Inputs, StrutModel, replay};
 
 /// Every term of the vocabulary, with ordinary figures.
@@ -63,7 +64,9 @@ fn read(path: &Path, noise_m: f64) -> Result<Recording, Box<dyn std::error::Erro
         Ok(rows.iter().map(|r| r[i]).collect())
     };
     let valves = [take("valve1")?, take("valve2")?, take("valve3")?];
-    let signals: Vec<[bool; 3]> = (0..rows.len()).map(|i| [0, 1, 2].map(|v| valves[v][i] > 0.5)).collect();
+    let signals: Vec<StrutValves<bool>> = (0..rows.len())
+        .map(|i| StrutValves::from_fn(|valve| valves[valve.index()][i] > 0.5))
+        .collect();
     let inputs = Inputs::from_recording(&take("time_s")?, &take("displacement_m")?, &signals, noise_m);
     let mut measured: [Vec<f64>; 5] = Default::default();
     for (to, name) in measured.iter_mut().zip(CHANNELS) {

@@ -52,10 +52,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("belgian soft", Arc::clone(&belgian), straight, DriverStyle::Eased, true),
         ("belgian stiff", belgian, straight, DriverStyle::Eased, false),
     ] {
-        let signals = [open; 3];
+        let signals = StrutValves::splat(open);
         let strut = |load_n| Strut::at_rest(&StrutModel::defender110(load_n), signals);
         let struts = Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]).map(StrutElement::new);
-        let signals = Corners::from_array([StrutValves::from_array(signals); 4]);
+        let signals = Corners::splat(signals);
         let course = Course {
             manoeuvre,
             driver,

@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn struts(parameters: &VehicleParameters, signals: StrutValves<bool>) -> Result<Corners<Strut>, Box<dyn Error>> {
     let [a, b, c, d] = parameters.static_strut_load_n().into_array();
-    let strut = |load_n| Strut::at_rest(&StrutModel::defender110(load_n), signals.into_array());
+    let strut = |load_n| Strut::at_rest(&StrutModel::defender110(load_n), signals);
     Ok(Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]))
 }
 

@@ -6,6 +6,7 @@
 
 use std::time::Instant;
 
+use oleo_interface::StrutValves;
 use oleo_plant_sim::strut::{Effects, Strut, StrutModel};
 
 const STEPS: usize = 40_000;
@@ -13,7 +14,7 @@ const STEPS: usize = 40_000;
 fn nanoseconds(model: &StrutModel, steps: usize, runs: usize) -> f64 {
     let mut best = f64::INFINITY;
     for _ in 0..runs {
-        let Ok(mut strut) = Strut::at_rest(model, [true; 3]) else {
+        let Ok(mut strut) = Strut::at_rest(model, StrutValves::from_array([true; 3])) else {
             return f64::NAN;
         };
         let mut before = 0.0;
@@ -29,7 +30,7 @@ fn nanoseconds(model: &StrutModel, steps: usize, runs: usize) -> f64 {
                 before,
                 (speed_step - strut.displacement_m()) / 1e-3,
                 1e-3,
-                [i % 500 < 250, true, soft],
+                StrutValves::new(i % 500 < 250, true, soft),
             ));
             before = (speed_step - strut.displacement_m()) / 1e-3;
         }

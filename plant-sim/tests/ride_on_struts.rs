@@ -16,7 +16,7 @@ fn vehicle(step_s: f64, signals: StrutValves<bool>, road: Arc<dyn Road>, speed_k
     parameters.solver.step_s = step_s;
     let struts = parameters
         .static_strut_load_n()
-        .map(|load| Strut::at_rest(&StrutModel::defender110(load), signals.into_array()).unwrap());
+        .map(|load| Strut::at_rest(&StrutModel::defender110(load), signals).unwrap());
     RideVehicle::new(&parameters, struts, road, speed_km_h / 3.6).unwrap()
 }
 
@@ -40,7 +40,7 @@ fn rests_on_its_struts() {
 #[test]
 fn a_strut_charged_for_a_truck_is_refused_in_one_line() {
     let parameters = VehicleParameters::defender110();
-    let struts = Corners::from_fn(|_| Strut::at_rest(&StrutModel::defender110(16e3), SOFT.into_array()).unwrap());
+    let struts = Corners::from_fn(|_| Strut::at_rest(&StrutModel::defender110(16e3), SOFT).unwrap());
     let error = RideVehicle::new(&parameters, struts, Arc::new(Flat), 1.0)
         .err()
         .unwrap();

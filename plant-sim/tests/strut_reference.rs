@@ -5,6 +5,7 @@
 //! Asked: 0.1 % of the pressure.
 
 use diffsol::{MatrixCommon, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod};
+use oleo_interface::{Absolute, StrutValves};
 use oleo_plant_sim::strut::*;
 
 const H: f64 = 2e-3;
@@ -43,10 +44,11 @@ fn reference(model: &StrutModel, edge3: f64, dampers: f64) -> Vec<[f64; 4]> {
     let tau = [heat.time_constant_1_s, heat.time_constant_2_s];
     let ambient = model.gas.temperature_k;
     let p0 = model.cylinder.static_pressure_pa;
-    let mr = [0, 1].map(|i| (p0 + ATMOSPHERE_PA) * model.accumulator[i].static_gas_volume_m3 / ambient);
+    let mr =
+        [0, 1].map(|i| model.static_pressure().absolute().pa() * model.accumulator[i].static_gas_volume_m3 / ambient);
     let packs = [0, 1].map(|i| model.damper[i].characteristic());
     let orifice = |d: f64| d / (d.abs() + model.orifice.transition_pressure_pa).sqrt();
-    let gas = move |i: usize, v: f64, t: f64| mr[i] * t / v - ATMOSPHERE_PA;
+    let gas = move |i: usize, v: f64, t: f64| Absolute(mr[i] * t / v).gauge().pa();
     let c = [0, 1, 2].map(|i| model.valve[i].total_flow_coefficient());
     let through2 = |d: f64| packs[1].value(d) + dampers * c[1] * orifice(d);
     // p3 between p1 and p4, where what comes through damper 2 goes through valve 3.
@@ -137,11 +139,11 @@ fn compare(dampers: bool, edge3: f64) {
     });
     model.valve_timing.response_polynomial_s = vec![RESPONSE_S];
     let exact = reference(&model, edge3, f64::from(u8::from(dampers)));
-    let mut strut = Strut::at_rest(&model, [dampers, dampers, edge3 < 0.0]).unwrap();
+    let mut strut = Strut::at_rest(&model, StrutValves::new(dampers, dampers, edge3 < 0.0)).unwrap();
     let mut worst = [0.0_f64; 4];
     for (k, exact) in exact.iter().enumerate() {
         let (from, to) = (H * k as f64, H * (k + 1) as f64);
-        let signals = [dampers, dampers, from >= edge3 - 1e-9];
+        let signals = StrutValves::new(dampers, dampers, from >= edge3 - 1e-9);
         let out = strut.advance_with_speeds(displacement(to).0, displacement(from).1, displacement(to).1, H, signals);
         for i in 0..4 {
             worst[i] = worst[i].max((out.pressure_pa[i] / exact[i] - 1.0).abs());

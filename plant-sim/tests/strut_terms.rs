@@ -3,10 +3,19 @@
 //! Slow moves make the gas isothermal (no `gas_heat_transfer` in these models) and the paths lossless; steady moves make
 //! flows known: `Q = A v` where only one path is open. Signs: compression positive.
 
-use oleo_plant_sim::strut::*;
+use oleo_interface::{Absolute, Gauge, StrutValves, Valve};
+use oleo_plant_sim::model_file::Checked;
+use oleo_plant_sim::strut::{
+    ATMOSPHERE_PA, AccumulatorPistonFriction, BumpStop, Characteristic, DamperLeakage, DampingFade, Effects,
+    EntrainedAir, GasChargeError, GasHeatTransfer, GasState, LawArgument, LawPlace, LineInertance, LineResistance,
+    MountCompliance, Nitrogen, OilCompressibility, OilCount, RealGas, SealFriction, SideLoadFriction, Strut,
+    StrutModel, StrutOutput, UnlistedLaw, Valve3Leakage, ValveDelay,
+};
 
-const STIFF: [bool; 3] = [true, true, false];
-const SOFT: [bool; 3] = [true; 3];
+const STIFF: StrutValves<bool> = StrutValves::new(true, true, false);
+const SOFT: StrutValves<bool> = StrutValves::new(true, true, true);
+const CLOSED: StrutValves<bool> = StrutValves::new(false, false, false);
+const BYPASS_1: StrutValves<bool> = StrutValves::new(true, false, false);
 
 /// The preset without any term.
 fn bare() -> StrutModel {
@@ -16,11 +25,11 @@ fn bare() -> StrutModel {
 }
 
 fn absolute(gauge: f64) -> f64 {
-    gauge + ATMOSPHERE_PA
+    Gauge(gauge).absolute().pa()
 }
 
 /// Slowly to a displacement: 2 mm/s in 10 ms steps.
-fn slowly(strut: &mut Strut, to_m: f64, signals: [bool; 3]) -> StrutOutput {
+fn slowly(strut: &mut Strut, to_m: f64, signals: StrutValves<bool>) -> StrutOutput {
     let from = strut.displacement_m();
     let steps = ((to_m - from).abs() / 2e-5).ceil().max(1.0);
     for i in 1..=steps as usize {
@@ -29,7 +38,7 @@ fn slowly(strut: &mut Strut, to_m: f64, signals: [bool; 3]) -> StrutOutput {
     (0..200).map(|_| strut.advance(to_m, 0.01, signals)).last().unwrap()
 }
 
-fn slow_pressure(model: &StrutModel, to_m: f64, signals: [bool; 3]) -> f64 {
+fn slow_pressure(model: &StrutModel, to_m: f64, signals: StrutValves<bool>) -> f64 {
     slowly(&mut Strut::at_rest(model, signals).unwrap(), to_m, signals).pressure_pa[0]
 }
 
@@ -125,15 +134,15 @@ fn entrained_air_softens_low_pressure_most() {
 
 #[test]
 fn a_strut_pulled_apart_reaches_vacuum_and_no_further() {
-    let mut strut = Strut::at_rest(&StrutModel::defender110(4000.0), [false; 3]).unwrap();
+    let mut strut = Strut::at_rest(&StrutModel::defender110(4000.0), CLOSED).unwrap();
     let lowest = (1..=100)
-        .map(|i| strut.advance(-1.4e-3 * f64::from(i), 1e-3, [false; 3]).pressure_pa[0])
+        .map(|i| strut.advance(-1.4e-3 * f64::from(i), 1e-3, CLOSED).pressure_pa[0])
         .fold(f64::INFINITY, f64::min);
     assert!(lowest > -ATMOSPHERE_PA && lowest < -0.5 * ATMOSPHERE_PA, "{lowest}");
     for i in 1..=400 {
-        strut.advance(-0.14 + 3.5e-4 * f64::from(i), 1e-2, [false; 3]);
+        strut.advance(-0.14 + 3.5e-4 * f64::from(i), 1e-2, CLOSED);
     }
-    let back = (0..6000).map(|_| strut.advance(0.0, 1e-2, [false; 3])).last().unwrap();
+    let back = (0..6000).map(|_| strut.advance(0.0, 1e-2, CLOSED)).last().unwrap();
     assert!((back.force_n - 4000.0).abs() < 400.0, "{}", back.force_n);
 }
 
@@ -159,10 +168,10 @@ fn real_gas_is_softer_than_ideal_at_moderate_and_harder_at_high_pressure() {
     let gas = Nitrogen::reference();
     let p0 = absolute(model.cylinder.static_pressure_pa);
     let t = model.gas.temperature_k;
-    let rho = gas.density(p0, t) * 1e-4 / (1e-4 - model.piston_area_m2() * 0.038);
+    let rho = gas.density(Absolute(p0), t) * 1e-4 / (1e-4 - model.piston_area_m2() * 0.038);
     close(
         absolute(slow_pressure(&model, 0.038, STIFF)),
-        gas.state(rho, t).pressure_pa,
+        gas.state(rho, t).pressure.pa(),
         1e-3,
     );
 }
@@ -186,7 +195,7 @@ fn heat_transfer_decays_with_its_time_constant() {
 }
 
 /// Pressure drop p1 - p2 at a steady speed through path 1 alone.
-fn steady_drop(model: &StrutModel, speed: f64, signals: [bool; 3]) -> (f64, f64) {
+fn steady_drop(model: &StrutModel, speed: f64, signals: StrutValves<bool>) -> (f64, f64) {
     let mut strut = Strut::at_rest(model, signals).unwrap();
     let out = (1..=100)
         .map(|i| strut.advance(speed * 5e-4 * f64::from(i), 5e-4, signals))
@@ -197,12 +206,11 @@ fn steady_drop(model: &StrutModel, speed: f64, signals: [bool; 3]) -> (f64, f64)
 
 #[test]
 fn pack_bypass_leak_and_line_in_steady_flow() {
-    let closed = [false; 3];
     let mut model = bare();
     let pack = |drop: f64| model.damper[0].characteristic().value(drop);
-    let (drop, q) = steady_drop(&model, 0.3, closed);
+    let (drop, q) = steady_drop(&model, 0.3, CLOSED);
     close(pack(drop), q, 1e-3);
-    let (drop, q) = steady_drop(&model, 0.3, [true, false, false]);
+    let (drop, q) = steady_drop(&model, 0.3, BYPASS_1);
     let orifice = |c: f64, d: f64| c * d / (d.abs() + model.orifice.transition_pressure_pa).sqrt();
     close(
         pack(drop) + orifice(model.valve[0].total_flow_coefficient(), drop),
@@ -217,15 +225,15 @@ fn pack_bypass_leak_and_line_in_steady_flow() {
     let (drop, q) = {
         let mut leaking = model.clone();
         leaking.effects.damper_leakage = Some(leak);
-        steady_drop(&leaking, 0.3, closed)
+        steady_drop(&leaking, 0.3, CLOSED)
     };
     close(expected(drop), q, 1e-3);
-    let (plain, q) = steady_drop(&model, 0.3, closed);
+    let (plain, q) = steady_drop(&model, 0.3, CLOSED);
     model.effects.line_resistance = Some(LineResistance {
         resistance_1_pa_s_m3: 5e8,
         resistance_2_pa_s_m3: 0.0,
     });
-    close(steady_drop(&model, 0.3, closed).0 - plain, 5e8 * q, 1e-3);
+    close(steady_drop(&model, 0.3, CLOSED).0 - plain, 5e8 * q, 1e-3);
 }
 
 #[test]
@@ -234,7 +242,7 @@ fn inertance_is_pressure_per_flow_acceleration() {
     // Path 1 as good as blocked, so that all flow takes path 2.
     model.damper[0] = model.damper[0].scaled(1e7);
     let peak = |model: &StrutModel| {
-        let signals = [false, true, true];
+        let signals = StrutValves::new(false, true, true);
         let mut strut = Strut::at_rest(model, signals).unwrap();
         let (a, h) = (20.0, 1e-3);
         let mut out = StrutOutput::default();
@@ -284,7 +292,7 @@ fn valve3_leak_passes_its_orifice_flow() {
 #[test]
 fn warm_dampers_weaken_by_the_heat_they_hold() {
     let mut model = bare();
-    let signals = [false; 3];
+    let signals = CLOSED;
     let (fresh, _) = steady_drop(&model, 0.3, signals);
     model.effects.damping_fade = Some(DampingFade {
         fade_1_per_j: 1e-3,
@@ -315,7 +323,7 @@ fn valves_answer_by_the_parabola_at_the_edge() {
     let mut opened = 0.0;
     for i in 1..=2000 {
         strut.advance(0.03, 1e-4, SOFT);
-        if strut.openings()[2] > 0.5 {
+        if strut.openings()[Valve::Spring] > 0.5 {
             opened = 1e-4 * f64::from(i);
             break;
         }
@@ -377,7 +385,7 @@ fn bubbles_that_open_and_close_keep_the_oil() {
         let out = strut.advance(
             0.1 * libm::sin(8.0 * std::f64::consts::PI * t),
             1e-3,
-            [false, false, true],
+            StrutValves::new(false, false, true),
         );
         lowest = out.pressure_pa[0].min(lowest);
     }
@@ -465,8 +473,8 @@ fn valves_in_parallel_pass_the_sum_of_their_flows() {
     }
     assert_eq!(steady_drop(&two, 0.3, STIFF), steady_drop(&one, 0.3, STIFF));
     two.valve[1].in_parallel = 0;
-    let error = StrutModel::from_toml(&two.to_toml(), "m.toml").unwrap_err().to_string();
-    assert!(error.contains("in_parallel is 0"), "{error}");
+    let error = two.check().unwrap_err().to_string();
+    assert!(error.starts_with("[valve 2] in_parallel is 0: "), "{error}");
 }
 
 fn law(place: LawPlace, depends_on: LawArgument, argument: [f64; 2], value: [f64; 2]) -> UnlistedLaw {
@@ -488,7 +496,6 @@ fn laws_of_paths_and_valves_in_steady_flow() {
     };
     let pack = |drop: f64| model.damper[0].characteristic().value(drop);
     let orifice = |c: f64, d: f64| c * d / (d.abs() + model.orifice.transition_pressure_pa).sqrt();
-    let closed = [false; 3];
     // The move ends at 15 mm of jounce, where the groove is open by 2.15e-7.
     let groove = law(
         LawPlace::BesidePack1,
@@ -496,13 +503,13 @@ fn laws_of_paths_and_valves_in_steady_flow() {
         [-0.1, 0.1],
         [1e-7, 3e-7],
     );
-    let (drop, q) = steady_drop(&with(groove), 0.3, closed);
+    let (drop, q) = steady_drop(&with(groove), 0.3, CLOSED);
     close(pack(drop) + orifice(2.15e-7, drop), q, 1e-3);
     let weak = law(LawPlace::Pack1, LawArgument::Displacement, [-0.1, 0.1], [0.5, 0.5]);
-    let (drop, q) = steady_drop(&with(weak), 0.3, closed);
+    let (drop, q) = steady_drop(&with(weak), 0.3, CLOSED);
     close(pack(drop / 0.5), q, 1e-3);
     let choking = law(LawPlace::Valves, LawArgument::PressureDrop, [0.0, 1e6], [1.0, 0.2]);
-    let (drop, q) = steady_drop(&with(choking), 0.3, [true, false, false]);
+    let (drop, q) = steady_drop(&with(choking), 0.3, BYPASS_1);
     let left = 1.0 - 0.8 * drop / 1e6;
     close(
         pack(drop) + orifice(left * model.valve[0].total_flow_coefficient(), drop),
@@ -534,7 +541,7 @@ fn a_choking_valve_3_passes_what_its_law_leaves_even_where_more_drop_means_less_
     for _ in 0..400 {
         let out = strut.advance(0.03, 5e-4, SOFT);
         let drop = out.pressure_pa[2] - out.pressure_pa[3];
-        let coefficient = model.valve[2].total_flow_coefficient() * strut.openings()[2];
+        let coefficient = model.valve[2].total_flow_coefficient() * strut.openings()[Valve::Spring];
         if coefficient > 0.0 && drop > 2e5 {
             let passed = table.value(drop) * coefficient * drop / (drop + model.orifice.transition_pressure_pa).sqrt();
             close(strut.flow_m3_s()[1], passed, 5e-3);

@@ -63,7 +63,7 @@ impl Bars {
             .marker(Marker::new().color(colour(self.traces.len())))
     }
 
-    pub(crate) fn into_figure(self) -> Figure {
+    fn into_figure(self) -> Figure {
         let layout = json!({
             "xaxis": { "automargin": true, "type": "category" }, "yaxis": self.y_axis.to_json(),
             "barmode": "group", "showlegend": self.traces.len() > 1, "hovermode": "x unified",
@@ -78,6 +78,12 @@ impl Bars {
                 layout,
             },
         }
+    }
+}
+
+impl From<Bars> for Figure {
+    fn from(figure: Bars) -> Self {
+        figure.into_figure()
     }
 }
 

@@ -209,7 +209,7 @@ impl Curves {
         seen.len()
     }
 
-    pub(crate) fn into_figure(self) -> Figure {
+    fn into_figure(self) -> Figure {
         let count = self.panels.len().max(1);
         let height_px = self.height_px.unwrap_or(if count == 1 {
             SINGLE_HEIGHT_PX
@@ -334,6 +334,12 @@ fn in_panel(mut item: Value, y_name: &str) -> Value {
 
 fn turns_back(x: &[f64]) -> bool {
     x.windows(2).any(|pair| pair[1] < pair[0])
+}
+
+impl From<Curves> for Figure {
+    fn from(figure: Curves) -> Self {
+        figure.into_figure()
+    }
 }
 
 #[cfg(test)]

@@ -76,7 +76,7 @@ impl Field {
         self
     }
 
-    pub(crate) fn into_figure(self) -> Figure {
+    fn into_figure(self) -> Figure {
         let [x_axis, y_axis, z_axis] = &self.axes;
         // On the side, where a long title does not squeeze the field.
         let bar = ColorBar::new()
@@ -144,6 +144,12 @@ impl Path {
                 .marker(marker)
                 .line(line)
         }
+    }
+}
+
+impl From<Field> for Figure {
+    fn from(figure: Field) -> Self {
+        figure.into_figure()
     }
 }
 

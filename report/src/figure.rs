@@ -5,8 +5,6 @@ use plotly::Trace;
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::{Bars, Curves, Field};
-
 /// Eight colours that stay apart for colour-blind readers and on light and dark grounds (after Okabe and Ito, "Color
 /// Universal Design", with black and yellow replaced).
 pub(crate) const COLOURS: [&str; 8] = [
@@ -30,24 +28,6 @@ pub(crate) struct Drawing {
     #[serde(rename = "data")]
     pub(crate) traces: Vec<Box<dyn Trace>>,
     pub(crate) layout: Value,
-}
-
-impl From<Curves> for Figure {
-    fn from(curves: Curves) -> Self {
-        curves.into_figure()
-    }
-}
-
-impl From<Field> for Figure {
-    fn from(field: Field) -> Self {
-        field.into_figure()
-    }
-}
-
-impl From<Bars> for Figure {
-    fn from(bars: Bars) -> Self {
-        bars.into_figure()
-    }
 }
 
 /// Colour of the series with this index; the palette repeats.

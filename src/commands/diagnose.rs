@@ -7,8 +7,8 @@ use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use oleo_diagnose::problem::Problem;
-use oleo_diagnose::{Campaign, Diagnosis, KeptBack, Unseen, json, page};
+use oleo_diagnose::estimation::LeastSquares;
+use oleo_diagnose::{Campaign, Diagnosis, KeptBack, Predictions, json, page};
 use oleo_report::{Cell, Column, OutputDirectory, Progress, Table};
 
 use crate::failure::Failure;
@@ -64,34 +64,32 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         fit_until: args.fit_until,
         recordings: args.hold_out.clone(),
     };
-    let (campaign, whole) = if kept_back.is_nothing() {
+    let (campaign, complete) = if kept_back.is_nothing() {
         (Campaign::open(folder)?, None)
     } else {
-        let (campaign, whole) = Campaign::open_in_part(folder, &kept_back)?;
-        (campaign, Some(whole))
+        let (campaign, complete) = Campaign::open_in_part(folder, &kept_back)?;
+        (campaign, Some(complete))
     };
     // Staged before the work: Ctrl-C from here on removes the folder and ends with nothing half-written.
     let mut out = OutputDirectory::stage(destination)?;
     let stop = AtomicBool::new(false);
-    let problem = Problem::new(&*campaign.specimen, &stop);
+    let problem = LeastSquares::new(&*campaign.specimen, &stop);
     let progress = Progress::new(&campaign.name, STEPS);
-    let diagnosis = Diagnosis::of(&campaign, &problem, &|_, part| {
-        progress.set((part * STEPS as f64) as u64)
-    })?;
-    let unseen = (whole.as_ref())
-        .map(|whole| Unseen::of(&problem, &diagnosis, whole, &kept_back))
+    let diagnosis = Diagnosis::of(&problem, &|_, part| progress.set((part * STEPS as f64) as u64))?;
+    let predictions = (complete.as_ref())
+        .map(|complete| Predictions::of(&problem, &diagnosis, complete, &kept_back))
         .transpose()?;
     drop(progress);
     let runtime_s = begun.elapsed().as_secs_f64();
     let mut report = json::report(&campaign, &diagnosis, runtime_s);
     let mut page = page::page(&campaign, &diagnosis, &args.command(folder, destination), runtime_s);
-    if let Some(unseen) = &unseen {
-        report["kept_back"] = unseen.json(&kept_back);
+    if let Some(predictions) = &predictions {
+        report["kept_back"] = predictions.json(&kept_back);
         page.section("Prediction of what was not fitted");
         page.text(
             "Every model was fitted on the same part and simulated freely over all of it; 1 is perfect, and lower is better.",
         )
-        .table(prediction_table(unseen));
+        .table(prediction_table(predictions));
     }
     out.json("report.json", &report)?;
     out.page(&page)?;
@@ -101,14 +99,14 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         "{}: {} (held-out noise ratio {:.2} before, {:.2} after)\n",
         campaign.name,
         diagnosis.verdict(),
-        diagnosis.selection.noise_ratio.0,
-        diagnosis.selection.noise_ratio.1
+        diagnosis.selection.calibrated_ratio,
+        diagnosis.selection.improved_ratio
     );
     if !diagnosis.effects.is_empty() {
         text += &page::effects_table(&diagnosis).to_string();
     }
-    if let Some(unseen) = &unseen {
-        text += &format!("\n{}", prediction_table(unseen));
+    if let Some(predictions) = &predictions {
+        text += &format!("\n{}", prediction_table(predictions));
     }
     if let Some(next) = &diagnosis.next_experiment {
         text += &format!("\n{next}\n");
@@ -132,14 +130,14 @@ impl Args {
 }
 
 /// Noise ratios of every model on what was fitted and on what was kept back.
-fn prediction_table(unseen: &Unseen) -> Table {
+fn prediction_table(predictions: &Predictions) -> Table {
     let mut columns = vec![Column::text("Model")];
-    for channel in &unseen.channels {
+    for channel in &predictions.channels {
         columns.push(Column::number(&format!("{channel}, fitted")));
         columns.push(Column::number(&format!("{channel}, kept back")));
     }
     let mut table = Table::new(columns);
-    for model in &unseen.models {
+    for model in &predictions.models {
         let mut row = vec![Cell::from(model.model.as_str())];
         for (fitted, kept_back) in model.fitted.iter().zip(&model.kept_back) {
             row.push(Cell::from(format!("{fitted:.2}")));

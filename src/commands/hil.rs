@@ -1,29 +1,34 @@
-//! `oleo hil`: reads what is to be run, lets `oleo_hil` run it, writes what it leaves.
+//! `oleo hil`: reads what is to be run, lets `oleo_hil` run it, and writes the results.
 
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::str::FromStr;
 
-use oleo_controller::strategy::{DamperPolicy, Strategy};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use oleo_controller::{DamperPolicy, FaultCode, Mode, Strategy};
 use oleo_hil::bus::BusAddress;
 use oleo_hil::metrics::Metrics;
 use oleo_hil::output::{self, Summary};
-use oleo_hil::record::{command_hash, fault_name, mode_name};
+use oleo_hil::record::command_hash;
 use oleo_hil::run::{self, ControllerOutcome, Outcome, Plant};
-use oleo_hil::scenario::{self, Clock, Scenario, TICK_S};
+use oleo_hil::scenario::{self, Clock, Scenario};
 use oleo_hil::{page, sync::Role};
+use oleo_interface::tick::TICK_S;
 use oleo_report::{Column, OutputDirectory, Progress, Table, interrupt::Graceful, significant};
+use strum::VariantNames;
 
 use crate::failure::Failure;
 
 /// Drive the vehicle with controller and plant talking only through CAN frames.
 ///
-/// Without arguments: 20 s of Belgian block at 60 km/h with the ride/handling strategy, in this process, as fast as it goes.
+/// Without arguments it drives over 20 s of Belgian block at 60 km/h with the ride/handling strategy, in this process and as fast
+/// as the machine can.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
   oleo hil --out belgian                                    the default scenario, with report.html
-  oleo hil --scenario bus-silence                           a built-in fault scenario (--list names them)
+  oleo hil --scenario bus-silence                           a built-in fault scenario (--list shows all)
   oleo hil --road ../shared/roads/belgian_block.crg         on a measured surface
   oleo hil --bus socketcan:vcan0                            over a real CAN interface
   oleo hil --clock realtime --duration 5                    against the wall clock
@@ -32,18 +37,18 @@ Examples:
 
 Exit status: 0 all checks met; 1 a check failed or the plant was lost; 2 bad input.")]
 pub struct Args {
-    /// Built-in scenario or a TOML file
+    /// Built-in scenario, or a scenario file
     #[arg(long, value_name = "FILE|NAME", default_value = "belgian")]
     scenario: String,
     /// List the built-in scenarios and end
     #[arg(long)]
     list: bool,
-    /// Where frames go: inproc, socketcan:IFACE, slcan:DEVICE, slcan:tcp:HOST:PORT
-    #[arg(long)]
+    /// Bus that carries the frames: inproc, socketcan:IFACE, slcan:DEVICE or slcan:tcp:HOST:PORT
+    #[arg(long, value_name = "BUS")]
     bus: Option<String>,
-    /// How time passes: lockstep or realtime
-    #[arg(long)]
-    clock: Option<String>,
+    /// How time passes: both nodes in step and as fast as the machine can, or against the wall clock
+    #[arg(long, value_parser = by_name::<Clock>())]
+    clock: Option<Clock>,
     /// Built-in road (belgian, apg-left, iso-c, flat, ...) or a .crg or .csv file
     #[arg(long, value_name = "FILE|NAME")]
     road: Option<String>,
@@ -53,24 +58,24 @@ pub struct Args {
     /// Simulated time, s
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     duration: Option<f64>,
-    /// always-soft, always-stiff or ride-handling
-    #[arg(long, value_name = "NAME")]
-    strategy: Option<String>,
-    /// Dampers in ride mode: low, karnopp or hoelscher-huang
-    #[arg(long, value_name = "NAME")]
-    damper_policy: Option<String>,
-    /// Strut model, as oleo diagnose writes it
+    /// How the controller decides the valves
+    #[arg(long, value_name = "NAME", value_parser = by_name::<Strategy>())]
+    strategy: Option<Strategy>,
+    /// How dampers are switched in ride mode
+    #[arg(long, value_name = "NAME", value_parser = by_name::<DamperPolicy>())]
+    damper_policy: Option<DamperPolicy>,
+    /// Strut model, as oleo diagnose writes it [default: the scenario's]
     #[arg(long, value_name = "MODEL.toml")]
     strut: Option<String>,
-    /// Vehicle parameters
+    /// Vehicle parameters [default: the scenario's]
     #[arg(long, value_name = "VEHICLE.toml")]
     vehicle: Option<String>,
-    /// Of random roads and injected faults
+    /// Seed of random roads and injected faults
     #[arg(long)]
     seed: Option<u64>,
-    /// Run only this node; the other one is another process on the same bus
-    #[arg(long, value_parser = ["plant", "controller"])]
-    node: Option<String>,
+    /// Run only this node; the other node is another process on the same bus
+    #[arg(long, value_parser = by_name::<Role>())]
+    node: Option<Role>,
     /// Threads for the two nodes, 1 or 2 (real time always takes 2)
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=2))]
     threads: u8,
@@ -85,14 +90,14 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         return list();
     }
     let scenario = chosen(&args)?;
-    if args.node.as_deref() == Some("controller") {
+    if args.node == Some(Role::Controller) {
         return controller(&scenario, args.out);
     }
-    // Refused before the run, not after it.
+    // A folder that cannot be written to is refused before the run.
     let staged = args.out.as_ref().map(OutputDirectory::stage).transpose()?;
     let plant = Plant::build(&scenario)?;
     let progress = Progress::new(&scenario.name, scenario.ticks.into());
-    // In real time Ctrl-C ends the run in order; what has been driven is reported.
+    // In real time Ctrl-C ends the run, and what has been driven is reported.
     let graceful = (scenario.clock == Clock::RealTime).then(Graceful::begin);
     let mut watch = |ticks: u32| {
         progress.set(ticks.into());
@@ -115,7 +120,7 @@ fn list() -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The scenario with what the command line changes.
+/// The scenario, with the changes of the command line.
 fn chosen(args: &Args) -> Result<Scenario, Failure> {
     let mut chosen = scenario::named(&args.scenario)?;
     let own = |given: &Option<String>, value: &mut String| {
@@ -131,15 +136,9 @@ fn chosen(args: &Args) -> Result<Scenario, Failure> {
             .parse::<BusAddress>()
             .map_err(|e| Failure::new(format!("--bus: {e}")))?;
     }
-    if let Some(clock) = &args.clock {
-        chosen.clock = by_name("--clock", clock, &Clock::ALL)?;
-    }
-    if let Some(strategy) = &args.strategy {
-        chosen.strategy = by_name("--strategy", strategy, &Strategy::ALL)?;
-    }
-    if let Some(policy) = &args.damper_policy {
-        chosen.damper_policy = by_name("--damper-policy", policy, &DamperPolicy::ALL)?;
-    }
+    chosen.clock = args.clock.unwrap_or(chosen.clock);
+    chosen.strategy = args.strategy.unwrap_or(chosen.strategy);
+    chosen.damper_policy = args.damper_policy.unwrap_or(chosen.damper_policy);
     if let Some(speed_km_h) = args.speed {
         chosen.speed_m_s = within("--speed", speed_km_h, 0.0, scenario::file::FASTEST_KM_H)? / 3.6;
     }
@@ -152,13 +151,12 @@ fn chosen(args: &Args) -> Result<Scenario, Failure> {
     Ok(chosen)
 }
 
-fn by_name<T: Copy>(option: &str, name: &str, all: &[(&str, T)]) -> Result<T, Failure> {
-    all.iter()
-        .find_map(|(n, value)| (*n == name).then_some(*value))
-        .ok_or_else(|| {
-            let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
-            Failure::new(format!("{option} {name}: must be one of {}", names.join(", ")))
-        })
+/// Reads an enum of a library by the names that the library gives its variants.
+fn by_name<T>() -> impl TypedValueParser<Value = T>
+where
+    T: VariantNames + FromStr<Err = strum::ParseError> + Clone + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(T::VARIANTS).try_map(|name| name.parse())
 }
 
 fn within(option: &str, value: f64, low: f64, high: f64) -> Result<f64, Failure> {
@@ -199,7 +197,7 @@ fn command_line() -> String {
         .join(" ")
 }
 
-/// The controller's node: no plant, no road; its account of the run goes to standard output and, if wanted, to `summary.json`.
+/// Runs the controller's node alone. Its results go to standard output and, if a folder is given, to `summary.json`.
 fn controller(scenario: &Scenario, out: Option<PathBuf>) -> Result<ExitCode, Failure> {
     let staged = out.map(OutputDirectory::stage).transpose()?;
     let ended = run::controller_alone(scenario)?;
@@ -211,14 +209,10 @@ fn controller(scenario: &Scenario, out: Option<PathBuf>) -> Result<ExitCode, Fai
     table.row(["frames lost".to_owned(), ended.frames_lost.to_string()]);
     table.row(["end-to-end errors".to_owned(), ended.e2e_errors.to_string()]);
     for (tick, mode, fault) in &ended.account {
-        let cause = if *mode == oleo_controller::Mode::Normal {
-            ""
-        } else {
-            fault_name(*fault)
-        };
+        let cause = if *mode == Mode::Normal { "" } else { fault.name() };
         table.row([
             format!("tick {tick}: mode"),
-            format!("{} {cause}", mode_name(*mode)).trim_end().to_owned(),
+            format!("{} {cause}", mode.name()).trim_end().to_owned(),
         ]);
     }
     if let Some(late) = &ended.lateness {
@@ -257,10 +251,10 @@ struct ControllerSummary {
 }
 
 fn controller_summary(ended: &ControllerOutcome) -> ControllerSummary {
-    let entry = |(tick, mode, fault): &(u32, _, _)| output::ModeEntry {
+    let entry = |(tick, mode, fault): &(u32, Mode, FaultCode)| output::ModeEntry {
         tick: *tick,
-        mode: mode_name(*mode),
-        fault: fault_name(*fault),
+        mode: mode.name(),
+        fault: fault.name(),
     };
     ControllerSummary {
         schema: 1,
@@ -276,7 +270,7 @@ fn controller_summary(ended: &ControllerOutcome) -> ControllerSummary {
     }
 }
 
-/// A reader that went away (`oleo hil | head`) is no failure.
+/// Writes to standard output. If its reader has gone away (`oleo hil | head`), that is no failure.
 fn say(text: &str) {
     let _ = std::io::stdout().write_all(text.as_bytes());
 }

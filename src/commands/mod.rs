@@ -4,6 +4,8 @@
 pub mod diagnose;
 pub mod drive;
 pub mod hil;
+mod parameter_files;
 pub mod predict;
 pub mod rig;
 pub mod study;
+mod word;

@@ -8,6 +8,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use oleo_interface::Valve;
 use oleo_plant_sim::rig::{Columns, RecordedStrut};
 use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, smooth_motion, specimen_name};
 use oleo_plant_sim::strut::{StrutModel, replay};
@@ -55,7 +56,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let (folder, name) = place(&args.out)?;
     let mut out = OutputDirectory::stage(&folder)?;
 
-    let kind = specimen_name(&text, &model_file).map_err(Failure::new)?.kind;
+    let kind = specimen_name(&text, &model_file)?.kind;
     let (inputs, channels) = match kind.as_str() {
         "gas spring" => gas_spring(&text, &model_file, source, &file)?,
         "cylinder" => cylinder(&text, &model_file, source, &file)?,
@@ -89,7 +90,7 @@ fn strut(text: &str, model_file: &str, source: File, file: &str) -> Result<Predi
     let recording = RecordedStrut::read(source, file)?;
     let noise = |name: &str| model.noise.get(name).copied();
     let predicted = replay(&model, &recording.inputs(noise("displacement_m").unwrap_or(0.0)))?;
-    let signal = |valve: usize| {
+    let signal = |valve: Valve| {
         recording
             .signals
             .iter()
@@ -99,9 +100,9 @@ fn strut(text: &str, model_file: &str, source: File, file: &str) -> Result<Predi
     let inputs = vec![
         ("time_s".to_owned(), recording.time_s.clone()),
         ("displacement_m".to_owned(), recording.displacement_m.clone()),
-        ("valve1".to_owned(), signal(0)),
-        ("valve2".to_owned(), signal(1)),
-        ("valve3".to_owned(), signal(2)),
+        ("valve1".to_owned(), signal(Valve::Bypass1)),
+        ("valve2".to_owned(), signal(Valve::Bypass2)),
+        ("valve3".to_owned(), signal(Valve::Spring)),
     ];
     let mut channels = vec![Channel {
         name: "force_N".into(),
@@ -122,7 +123,7 @@ fn strut(text: &str, model_file: &str, source: File, file: &str) -> Result<Predi
 }
 
 fn gas_spring(text: &str, model_file: &str, source: File, file: &str) -> Result<Predicted, Failure> {
-    let model = GasSpringModel::from_toml(text, model_file).map_err(Failure::new)?;
+    let model = GasSpringModel::from_toml(text, model_file)?;
     let recording = Columns::read(source, file, &["displacement_m", "p_Pa"], &[])?;
     let (time, x) = (recording.time_s(), column(&recording, "displacement_m"));
     let recorded = column(&recording, "p_Pa");
@@ -143,7 +144,7 @@ fn gas_spring(text: &str, model_file: &str, source: File, file: &str) -> Result<
 }
 
 fn cylinder(text: &str, model_file: &str, source: File, file: &str) -> Result<Predicted, Failure> {
-    let model = CylinderModel::from_toml(text, model_file).map_err(Failure::new)?;
+    let model = CylinderModel::from_toml(text, model_file)?;
     let mut needed = vec!["displacement_m"];
     needed.extend(model.chamber.iter().map(|chamber| chamber.column.as_str()));
     let recording = Columns::read(source, file, &needed, &["force_N"])?;

@@ -1,28 +1,38 @@
-//! One line for every message: identifier, period, protection and what silence means.
+//! One line for every message: its identifier, its period, its protection, and when its silence is a fault.
 //!
-//! Sender and receiver must agree on these; the mode machine, the bus-load computation and the database test all read this table, so it cannot say two things.
-//! Identifiers are priorities on CAN: the command comes first (it can only make things safer in time), then the sensors in the order in which
-//! the controller needs them, status last.
+//! Sender and receiver must agree on all of this. Node, plant end, bus load and the test of the database read this one table.
+//! Identifiers are priorities on CAN. The command has the highest, because it is what closes valves in time; then come the sensors
+//! in the order in which the controller needs them, and the status last.
 
-use crate::timing::TICK_MS;
+use oleo_interface::tick::TICK_MS;
+use oleo_interface::{Axle, Axles, Corner, Corners};
 
-/// The agreement about one message.
+use super::frame::FRAME_BYTES;
+use crate::sensor_message::SensorMessage;
+
+/// What sender and receiver of a message agree on.
+///
+/// ```
+/// use oleo_controller::can::{COMMAND, MESSAGES};
+/// assert_eq!((COMMAND.id, COMMAND.period_ms, COMMAND.timeout_ticks), (0x0A0, 5, 4));
+/// assert!(MESSAGES.iter().all(|contract| contract.id >= COMMAND.id)); // it wins every arbitration
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contract {
     /// Name in the database.
     pub name: &'static str,
-    /// Standard (11-bit) identifier; lower wins arbitration.
+    /// Standard identifier, 0 to 0x7FF. The lower one wins arbitration.
     pub id: u16,
-    /// Data length, bytes.
+    /// Number of data bytes.
     pub length: usize,
     /// Sending period, ms.
     pub period_ms: u32,
-    /// Data identifiers of AUTOSAR profile 2, by counter: never sent, part of the CRC, so that a frame under the wrong
-    /// identifier fails its check.
+    /// Data identifiers of AUTOSAR profile 2, by counter. They are never sent but are part of the CRC, so that a frame under
+    /// the wrong identifier fails its check.
     pub data_ids: [u8; 16],
-    /// Lost frames in a row that the counter check tolerates, plus one (`MaxDeltaCounterInit`).
+    /// Number of lost frames in a row that the counter check tolerates, plus one (`MaxDeltaCounterInit`).
     pub max_delta: u8,
-    /// Ticks without an accepted frame after which the content is no longer substituted by the last value but invalid.
+    /// Number of ticks without an accepted frame after which the message is lost. Until then its last values are used.
     pub timeout_ticks: u8,
 }
 
@@ -38,7 +48,7 @@ const fn contract(number: u16, name: &'static str, id: u16, period_ms: u32) -> C
     Contract {
         name,
         id,
-        length: super::FRAME_BYTES,
+        length: FRAME_BYTES,
         period_ms,
         data_ids,
         max_delta: 3,
@@ -46,51 +56,87 @@ const fn contract(number: u16, name: &'static str, id: u16, period_ms: u32) -> C
     }
 }
 
-/// Pressures p1 to p4 of one strut, one message a corner.
-pub const PRESSURE: [Contract; 4] = [
+/// Pressures p1 to p4 of the strut at each corner.
+pub const PRESSURE: Corners<Contract> = Corners::from_array([
     contract(0, "PRESSURE_FRONT_LEFT", 0x110, TICK_MS),
     contract(1, "PRESSURE_FRONT_RIGHT", 0x111, TICK_MS),
     contract(2, "PRESSURE_REAR_LEFT", 0x112, TICK_MS),
     contract(3, "PRESSURE_REAR_RIGHT", 0x113, TICK_MS),
-];
+]);
 
-/// Displacements of the two struts of an axle and the sender's tick: front, rear.
-pub const DISPLACEMENT: [Contract; 2] = [
+/// Displacements of the two struts of each axle, and the sender's tick.
+pub const DISPLACEMENT: Axles<Contract> = Axles::new(
     contract(4, "DISPLACEMENT_FRONT", 0x114, TICK_MS),
     contract(5, "DISPLACEMENT_REAR", 0x115, TICK_MS),
-];
+);
 
-/// The valve command, controller to output stage.
+/// The valve command, from the controller to the output stage.
 pub const COMMAND: Contract = contract(6, "COMMAND", 0x0A0, TICK_MS);
 
 /// The controller's state, for people and loggers.
 pub const STATUS: Contract = contract(7, "STATUS", 0x300, 100);
 
-/// What the controller listens to, in sending order. The last one completes a set of one tick.
-pub const SENSOR_MESSAGES: [Contract; 6] = [
-    PRESSURE[0],
-    PRESSURE[1],
-    PRESSURE[2],
-    PRESSURE[3],
-    DISPLACEMENT[0],
-    DISPLACEMENT[1],
-];
+/// Everything on the bus: what sensors send, in sending order, then the controller's two messages.
+pub const MESSAGES: [Contract; 8] = {
+    let [front_left, front_right, rear_left, rear_right] = *PRESSURE.as_array();
+    [
+        front_left,
+        front_right,
+        rear_left,
+        rear_right,
+        DISPLACEMENT.front,
+        DISPLACEMENT.rear,
+        COMMAND,
+        STATUS,
+    ]
+};
 
-/// Everything on the bus.
-pub const MESSAGES: [Contract; 8] = [
-    PRESSURE[0],
-    PRESSURE[1],
-    PRESSURE[2],
-    PRESSURE[3],
-    DISPLACEMENT[0],
-    DISPLACEMENT[1],
-    COMMAND,
-    STATUS,
-];
+impl SensorMessage {
+    /// What sender and receiver of this message agree on.
+    pub const fn contract(self) -> Contract {
+        let [front_left, front_right, rear_left, rear_right] = *PRESSURE.as_array();
+        match self {
+            Self::Pressure(Corner::FrontLeft) => front_left,
+            Self::Pressure(Corner::FrontRight) => front_right,
+            Self::Pressure(Corner::RearLeft) => rear_left,
+            Self::Pressure(Corner::RearRight) => rear_right,
+            Self::Displacement(Axle::Front) => DISPLACEMENT.front,
+            Self::Displacement(Axle::Rear) => DISPLACEMENT.rear,
+        }
+    }
+}
+
+/// The sensor message with a standard identifier, if there is one.
+///
+/// ```
+/// use oleo_controller::can::sensor_message;
+/// use oleo_controller::{Corner, SensorMessage};
+/// assert_eq!(sensor_message(0x112), Some(SensorMessage::Pressure(Corner::RearLeft)));
+/// assert_eq!(sensor_message(0x0A0), None); // the command
+/// ```
+pub fn sensor_message(id: u16) -> Option<SensorMessage> {
+    SensorMessage::ALL
+        .into_iter()
+        .find(|message| message.contract().id == id)
+}
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn identifiers_lead_to_sensor_messages() {
+        for message in SensorMessage::ALL {
+            assert_eq!(sensor_message(message.contract().id), Some(message));
+        }
+        assert_eq!(sensor_message(COMMAND.id), None);
+        assert!(
+            MESSAGES
+                .iter()
+                .zip(SensorMessage::ALL)
+                .all(|(contract, message)| *contract == message.contract())
+        );
+    }
 
     #[test]
     fn data_ids_tell_messages_and_counters_apart() {

@@ -1,26 +1,30 @@
 //! End-to-end protection after AUTOSAR profile 2.
 //!
-//! CAN's own CRC protects a frame on the wire; it does not see a frame that was stored twice, sent by the wrong node, or
-//! frozen in a gateway. Profile 2 adds an 8-bit CRC with polynomial 0x2F over counter, payload and a data identifier which is not sent, and a
-//! 4-bit counter.
-//! Source (*recalled*, held against the Python package `autosar-e2e`): AUTOSAR FO R20-11, "E2E Protocol Specification" (document 849), profile 2; CRC8H2F of "Specification of CRC
-//! Routines" (start 0xFF, final XOR 0xFF; check value of "123456789" 0xDF). Layout: byte 0 CRC, low nibble of byte 1 the counter.
+//! CAN's own CRC protects a frame on the wire. It does not see a frame that was sent twice, sent by the wrong node, or repeated by
+//! a gateway that hangs. Profile 2 adds a 4-bit counter and an 8-bit CRC with polynomial 0x2F over counter, payload and a data
+//! identifier that is not sent. Byte 0 is the CRC, the low half of byte 1 the counter.
+//!
+//! Source (*recalled*, and compared with the Python package `autosar-e2e`): AUTOSAR FO R20-11, "E2E Protocol Specification"
+//! (document 849), profile 2; CRC8H2F of "Specification of CRC Routines" (start 0xFF, final XOR 0xFF; check value of "123456789"
+//! 0xDF).
 //!
 //! ```text
 //!   CRC = CRC8H2F( byte 1 .. byte 7, data_ids[counter] )
 //! ```
 
-use super::{Contract, FRAME_BYTES};
 use crc::{CRC_8_AUTOSAR, Crc};
 
-/// CRC8H2F, by a table of 256 bytes.
+use super::contract::Contract;
+use super::frame::FRAME_BYTES;
+
+/// CRC8H2F, computed with a table of 256 bytes.
 const CRC8H2F: Crc<u8> = Crc::<u8>::new(&CRC_8_AUTOSAR);
 
 const COUNTER_MASK: u8 = 0x0F;
 
-/// Frames in sequence that must follow a broken sequence before data is used again (`SyncCounterInit`).
+/// Number of frames in sequence that must follow a broken sequence before data is used again (`SyncCounterInit`).
 const SYNC_FRAMES: u8 = 2;
-/// Periods without new data after which the sequence counts as broken (`MaxNoNewOrRepeatedData`).
+/// Number of periods without new data after which the sequence counts as broken (`MaxNoNewOrRepeatedData`).
 const MAX_NO_NEW: u8 = 3;
 
 fn crc_of(data: &[u8; FRAME_BYTES], data_ids: &[u8; 16]) -> u8 {
@@ -33,6 +37,18 @@ fn crc_of(data: &[u8; FRAME_BYTES], data_ids: &[u8; 16]) -> u8 {
 }
 
 /// Sending side of one message.
+///
+/// ```
+/// use oleo_controller::can::{COMMAND, CheckStatus, Checker, Protector};
+/// let (mut sender, mut receiver) = (Protector::new(&COMMAND), Checker::new(&COMMAND));
+/// let mut data = [0; 8];
+/// sender.protect(&mut data);
+/// assert_eq!(receiver.check(&data), CheckStatus::Initial);
+/// sender.protect(&mut data);
+/// assert_eq!(receiver.check(&data), CheckStatus::Ok);
+/// data[5] ^= 1;
+/// assert_eq!(receiver.check(&data), CheckStatus::WrongCrc);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Protector {
     data_ids: [u8; 16],
@@ -40,7 +56,8 @@ pub struct Protector {
 }
 
 impl Protector {
-    /// The first protected frame carries counter 1, as the profile's sender increments before it sends.
+    /// A sender that has sent nothing. Its first frame carries the counter 1, because the profile's sender increments before it
+    /// sends.
     pub const fn new(contract: &Contract) -> Self {
         Self {
             data_ids: contract.data_ids,
@@ -60,18 +77,25 @@ impl Protector {
     }
 }
 
-/// Outcome for one received frame (`E2E_P02CheckStatusType`).
+/// Outcome of the check of one received frame (`E2E_P02CheckStatusType`).
+///
+/// ```
+/// use oleo_controller::can::CheckStatus;
+/// assert!(CheckStatus::OkSomeLost.is_usable());
+/// assert!(!CheckStatus::Initial.is_usable() && !CheckStatus::Initial.is_error());
+/// assert!(CheckStatus::Repeated.is_error());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CheckStatus {
-    /// Right CRC, counter one further: use the data.
+    /// The CRC is right and the counter one further: the data may be used.
     Ok,
-    /// Right CRC, up to `max_delta - 1` frames are missing: use the data.
+    /// The CRC is right and up to `max_delta - 1` frames are missing: the data may be used.
     OkSomeLost,
-    /// Wrong CRC: not for us, corrupted, or masqueraded.
+    /// The CRC is wrong: the frame is corrupted, or it is another message under this identifier.
     WrongCrc,
-    /// First frame ever: nothing to compare the counter with.
+    /// This is the first frame: there is nothing to compare its counter with.
     Initial,
-    /// In sequence again after a broken sequence, not yet for long enough.
+    /// The frame is in sequence again after a broken sequence, but not yet for long enough.
     Sync,
     /// The counter did not move.
     Repeated,
@@ -85,13 +109,13 @@ impl CheckStatus {
         matches!(self, Self::Ok | Self::OkSomeLost)
     }
 
-    /// Whether the frame breaks the contract (counts in the hysteresis of [`crate::node`]).
+    /// Whether the frame counts against the message: it is corrupted, repeated or out of sequence.
     pub const fn is_error(self) -> bool {
         matches!(self, Self::WrongCrc | Self::Repeated | Self::WrongSequence)
     }
 }
 
-/// Receiving side of one message.
+/// Receiving side of one message. See [`Protector`] for an example.
 #[derive(Clone, Copy, Debug)]
 pub struct Checker {
     data_ids: [u8; 16],
@@ -103,7 +127,7 @@ pub struct Checker {
 }
 
 impl Checker {
-    /// Has seen nothing yet.
+    /// A receiver that has received nothing.
     pub const fn new(contract: &Contract) -> Self {
         Self {
             data_ids: contract.data_ids,
@@ -115,7 +139,7 @@ impl Checker {
         }
     }
 
-    /// A period went by without a frame: the counter may be one further when the next arrives.
+    /// Notes that a period has passed without a frame, so that the counter may be one further when the next one arrives.
     pub fn no_new_data(&mut self) {
         self.no_new = self.no_new.saturating_add(1);
         self.max_delta = self.max_delta.saturating_add(1).min(COUNTER_MASK);

@@ -1,36 +1,28 @@
 //! The controller's CAN bus: message contracts, signals, end-to-end protection and bus load.
 //!
-//! `oleo.dbc`, beside this crate's manifest, is the database other people's tools read. This module is the same thing in
-//! Rust, for both ends of the bus (the plant side of a simulation uses it too); the tests read the database with
-//! an independent reader and hold every constant and every bit here against it.
+//! `oleo.dbc`, beside this crate's manifest, is the database that other tools read. This module is the same in Rust, for both
+//! ends of the bus. The tests read the database with an independent reader and compare every constant and every bit with it.
 //!
-//! ```text
-//!   [contract]  ids, periods, data ids, time-outs           one table
-//!   [signals]   struct <-> 52 payload bits                  no meaning of faults here
-//!   [e2e]       8-bit CRC and 4-bit counter in bytes 0, 1   AUTOSAR profile 2
-//!   [plant_end] what sits opposite the controller           sensors out, valve command in
-//!   [bus_load]  computed from the table at compile time
-//! ```
+//! | file | what it holds |
+//! |---|---|
+//! | `contract` | identifiers, periods, data identifiers and time-outs of all messages, in one table |
+//! | `signals` | a struct for each kind of message, to and from the 52 bits of its payload |
+//! | `e2e` | end-to-end protection: an 8-bit CRC and a 4-bit counter in bytes 0 and 1 (AUTOSAR profile 2) |
+//! | `plant_end` | the node opposite the controller: it sends sensor messages and receives the command |
+//! | [`bus_load`] | worst-case load of the bus, computed from the table at compile time |
 
 pub mod bus_load;
-pub mod contract;
-pub mod e2e;
-pub mod plant_end;
-pub mod signals;
+mod contract;
+mod e2e;
+mod frame;
+mod plant_end;
+mod signals;
 
-pub use contract::{COMMAND, Contract, DISPLACEMENT, MESSAGES, PRESSURE, SENSOR_MESSAGES, STATUS};
+pub use contract::{COMMAND, Contract, DISPLACEMENT, MESSAGES, PRESSURE, STATUS, sensor_message};
 pub use e2e::{CheckStatus, Checker, Protector};
+pub use frame::{FRAME_BYTES, Frame};
 pub use plant_end::PlantEnd;
-pub use signals::{CommandMessage, DisplacementMessage, PressureMessage, StatusMessage};
-
-/// Bytes of every frame of this bus.
-pub const FRAME_BYTES: usize = 8;
-
-/// A data frame of this bus: 11-bit identifier and eight bytes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Frame {
-    /// Standard identifier.
-    pub id: u16,
-    /// Protected payload.
-    pub data: [u8; FRAME_BYTES],
-}
+pub use signals::{
+    ACCELERATION_STEP_M_S2, CommandMessage, DISPLACEMENT_STEP_M, DisplacementMessage, PRESSURE_OFFSET_PA,
+    PRESSURE_RAW_ERROR, PRESSURE_RAW_MAX, PRESSURE_STEP_PA, PressureMessage, StatusMessage,
+};

@@ -1,19 +1,23 @@
-//! The other end of the bus: sensors out, valve command in.
+//! The other end of the bus: it sends the sensor messages and receives the valve command.
 //!
-//! Simulations, benches and tests all have to stand opposite the controller. They use this, so that what
-//! they send is what the database says.
+//! Simulations, benchmarks and tests need a node opposite the controller. They all use this one, so that what they send is what the
+//! database says.
 
-use super::{
-    COMMAND, CheckStatus, Checker, CommandMessage, DISPLACEMENT, DisplacementMessage, FRAME_BYTES, Frame, PRESSURE,
-    PressureMessage, Protector,
-};
+use oleo_interface::{Axle, Axles, Corner, Corners, Side};
+
+use super::contract::{COMMAND, DISPLACEMENT, PRESSURE};
+use super::e2e::{CheckStatus, Checker, Protector};
+use super::frame::{FRAME_BYTES, Frame};
+use super::signals::{CommandMessage, DisplacementMessage, PressureMessage};
 use crate::reading::Inputs;
+use crate::sensor_message::SensorMessage;
 
-/// Sensor side of the bus: six protectors and the checker of the command.
+/// The node opposite the controller: it protects six sensor messages and checks the command. See
+/// [`Node`](crate::Node) for an example.
 #[derive(Clone, Copy, Debug)]
 pub struct PlantEnd {
-    pressure: [Protector; 4],
-    displacement: [Protector; 2],
+    pressure: Corners<Protector>,
+    displacement: Axles<Protector>,
     command: Checker,
 }
 
@@ -24,59 +28,36 @@ impl Default for PlantEnd {
 }
 
 impl PlantEnd {
-    /// Nothing sent, nothing received.
-    pub const fn new() -> Self {
-        let [p0, p1, p2, p3] = &PRESSURE;
-        let [front, rear] = &DISPLACEMENT;
+    /// A node that has sent and received nothing.
+    pub fn new() -> Self {
         Self {
-            pressure: [
-                Protector::new(p0),
-                Protector::new(p1),
-                Protector::new(p2),
-                Protector::new(p3),
-            ],
-            displacement: [Protector::new(front), Protector::new(rear)],
+            pressure: PRESSURE.map(|contract| Protector::new(&contract)),
+            displacement: DISPLACEMENT.map(|contract| Protector::new(&contract)),
             command: Checker::new(&COMMAND),
         }
     }
 
-    /// The six frames of one tick in sending order. `plant_tick` is the tick modulo 65536; readings that are invalid are sent as such.
+    /// The six frames of one tick in sending order. `plant_tick` is the tick modulo 65536. Invalid readings are sent as sensor
+    /// errors.
     pub fn encode(&mut self, plant_tick: u16, inputs: &Inputs) -> [Frame; 6] {
-        let [fl, fr, rl, rr] = inputs.pressure.map(|pressure| PressureMessage { pressure }.encode());
-        let [left_front, right_front, left_rear, right_rear] = inputs.displacement;
-        let front = DisplacementMessage {
-            plant_tick,
-            left: left_front,
-            right: right_front,
-        }
-        .encode();
-        let rear = DisplacementMessage {
-            plant_tick,
-            left: left_rear,
-            right: right_rear,
-        }
-        .encode();
-        let [i0, i1, i2, i3] = PRESSURE.map(|c| c.id);
-        let [i4, i5] = DISPLACEMENT.map(|c| c.id);
-        let [e0, e1, e2, e3] = &mut self.pressure;
-        let [e4, e5] = &mut self.displacement;
-        let seal = |id: u16, protector: &mut Protector, mut data: [u8; FRAME_BYTES]| {
+        SensorMessage::ALL.map(|message| {
+            let (mut data, protector) = match message {
+                SensorMessage::Pressure(corner) => (pressures(inputs, corner), &mut self.pressure[corner]),
+                SensorMessage::Displacement(axle) => {
+                    (displacements(plant_tick, inputs, axle), &mut self.displacement[axle])
+                }
+            };
             protector.protect(&mut data);
-            Frame { id, data }
-        };
-        [
-            seal(i0, e0, fl),
-            seal(i1, e1, fr),
-            seal(i2, e2, rl),
-            seal(i3, e3, rr),
-            seal(i4, e4, front),
-            seal(i5, e5, rear),
-        ]
+            Frame {
+                id: message.contract().id,
+                data,
+            }
+        })
     }
 
-    /// A received frame: the command if it is one, with the outcome of its check; `None` for any other identifier. The
-    /// message is `Some` where its CRC and complement are right, so that a first or late command's echo
-    /// can be seen; drive valves only where the status is usable or initial.
+    /// Takes a received frame. Returns `None` for any identifier but the command's, and otherwise the outcome of its check and
+    /// its content. The content is `Some` whenever CRC and complement are right, so that the echo of a first or late command
+    /// can be seen; drive valves only if the status is usable or [`CheckStatus::Initial`].
     pub fn receive(&mut self, id: u16, data: &[u8]) -> Option<(CheckStatus, Option<CommandMessage>)> {
         if id != COMMAND.id {
             return None;
@@ -93,8 +74,22 @@ impl PlantEnd {
         Some((status, message))
     }
 
-    /// A tick without a command.
+    /// Notes that a tick has passed without a command.
     pub fn no_command(&mut self) {
         self.command.no_new_data();
     }
+}
+
+fn pressures(inputs: &Inputs, corner: Corner) -> [u8; FRAME_BYTES] {
+    let pressure = inputs.pressure[corner];
+    PressureMessage { pressure }.encode()
+}
+
+fn displacements(plant_tick: u16, inputs: &Inputs, axle: Axle) -> [u8; FRAME_BYTES] {
+    DisplacementMessage {
+        plant_tick,
+        left: inputs.displacement[axle.corner(Side::Left)],
+        right: inputs.displacement[axle.corner(Side::Right)],
+    }
+    .encode()
 }

@@ -1,22 +1,26 @@
 //! Signals to bits and back.
 //!
-//! A frame has 64 bits, of which protection takes 12; every message's signals fill the other 52 as one little-endian
-//! number, so packing is shifts of a `u64` and cannot overlap unnoticed. Raw values that are reserved for "no value" come
-//! out as [`Reading::INVALID`], and a value outside the range of its signal goes in as an error, never as a clipped number.
+//! A frame has 64 bits, of which the protection takes 12. The signals of every message fill the other 52 bits as one little-endian
+//! number, so that packing them is shifting a `u64`. Raw values that are reserved for "no value" are decoded to
+//! [`Reading::INVALID`]. A value outside the range of its signal is encoded as an error, never as the nearest number.
 
-use super::FRAME_BYTES;
+use oleo_interface::StrutPressures;
+
+use super::frame::FRAME_BYTES;
 use crate::failsafe::{FaultCode, Mode};
-use crate::reading::{MessageSet, Reading};
+use crate::reading::Reading;
+use crate::sensor_message::MessageSet;
 use crate::valves::ValveCommand;
 
 /// Step of a pressure signal, Pa.
 pub const PRESSURE_STEP_PA: f32 = 5_000.0;
-/// Pressure of raw value 0, Pa gauge. Far below vacuum on purpose: a dead sensor is not mistaken for an empty strut, and
-/// simulated oil, which knows no cavitation, can be sent as it is (a fast rebound pulls p1 some MPa below p2).
+/// Pressure of raw value 0, Pa gauge. It is far below vacuum on purpose, so that a dead sensor is not mistaken for an empty strut.
+/// It also lets a simulation without cavitation, in which a fast rebound pulls p1 some MPa below p2, send its pressures as they
+/// are.
 pub const PRESSURE_OFFSET_PA: f32 = -5_000_000.0;
-/// Largest raw pressure that is a measurement: 35.945 MPa.
+/// Largest raw pressure that is a measurement; it means 35.945 MPa.
 pub const PRESSURE_RAW_MAX: u16 = 8_189;
-/// Raw pressure of a sensor that reports an error. 8191 is "not available".
+/// Raw pressure of a sensor that reports an error. The next one, 8191, means "not available".
 pub const PRESSURE_RAW_ERROR: u16 = 8_190;
 /// Step of a displacement signal, m.
 pub const DISPLACEMENT_STEP_M: f32 = 1e-5;
@@ -50,7 +54,7 @@ fn pressure_from_raw(raw: u64) -> Reading {
     Reading::new(raw as u16 as f32 * PRESSURE_STEP_PA + PRESSURE_OFFSET_PA)
 }
 
-/// (raw, status)
+/// The raw displacement and its status.
 fn displacement_to_raw(reading: Reading) -> (u64, u64) {
     let Some(displacement_m) = reading.value() else {
         return (0, STATUS_ERROR);
@@ -71,47 +75,72 @@ fn displacement_from_raw(raw: u64, status: u64) -> Reading {
     }
 }
 
-/// Non-negative, saturating.
+/// The raw value of an acceleration that is not negative; it saturates.
 fn acceleration_to_raw(acceleration_m_s2: f32) -> u64 {
     u64::from(libm::rintf(acceleration_m_s2 / ACCELERATION_STEP_M_S2).clamp(0.0, 1023.0) as u16)
 }
 
-/// Pressures p1 to p4 of one strut, gauge, Pa. Resolution 5 kPa (9.8 N on the 50 mm piston).
+/// Pressures p1 to p4 of one strut, Pa gauge. Their resolution is 5 kPa, which is 9.8 N on the piston of 50 mm.
+///
+/// ```
+/// use oleo_controller::can::PressureMessage;
+/// use oleo_controller::{Reading, StrutPressures};
+/// let mut pressure = StrutPressures::splat(Reading::new(2.0e6));
+/// pressure.p3 = Reading::new(9.0e7); // outside the signal's range
+/// let received = PressureMessage::decode(&PressureMessage { pressure }.encode());
+/// assert_eq!(received.pressure.p1.value(), Some(2.0e6));
+/// assert_eq!(received.pressure.p3.value(), None);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PressureMessage {
-    /// p1 to p4.
-    pub pressure: [Reading; 4],
+    /// Readings at the four points, Pa.
+    pub pressure: StrutPressures<Reading>,
 }
 
 impl PressureMessage {
-    /// Payload, unprotected.
+    /// The payload, without its protection.
     pub fn encode(&self) -> [u8; FRAME_BYTES] {
-        let [p1, p2, p3, p4] = self.pressure.map(pressure_to_raw);
+        let StrutPressures { p1, p2, p3, p4 } = self.pressure.map(pressure_to_raw);
         (p1 << 12 | p2 << 25 | p3 << 38 | p4 << 51).to_le_bytes()
     }
 
-    /// From a payload that passed its check.
+    /// The content of a payload that has passed its check.
     pub fn decode(data: &[u8; FRAME_BYTES]) -> Self {
         let bits = u64::from_le_bytes(*data);
         Self {
-            pressure: [12, 25, 38, 51].map(|start| pressure_from_raw(field(bits, start, 13))),
+            pressure: StrutPressures {
+                p1: 12,
+                p2: 25,
+                p3: 38,
+                p4: 51,
+            }
+            .map(|start| pressure_from_raw(field(bits, start, 13))),
         }
     }
 }
 
-/// Displacements of an axle's struts, m, compression positive, resolution 0.01 mm, and the sender's tick.
+/// Displacements of the struts of an axle, m, compression positive, with a resolution of 0.01 mm, and the sender's tick.
+///
+/// ```
+/// use oleo_controller::Reading;
+/// use oleo_controller::can::DisplacementMessage;
+/// let sent = DisplacementMessage { plant_tick: 7, left: Reading::new(0.012_34), right: Reading::INVALID };
+/// let received = DisplacementMessage::decode(&sent.encode());
+/// assert!((received.left.value().unwrap() - 0.012_34).abs() < 1e-6);
+/// assert_eq!((received.plant_tick, received.right), (7, Reading::INVALID));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DisplacementMessage {
-    /// Sender's tick, modulo 65536; the command echoes it.
+    /// The sender's tick, modulo 65536. The command echoes it.
     pub plant_tick: u16,
-    /// Left strut.
+    /// Displacement of the left strut, m.
     pub left: Reading,
-    /// Right strut.
+    /// Displacement of the right strut, m.
     pub right: Reading,
 }
 
 impl DisplacementMessage {
-    /// Payload, unprotected.
+    /// The payload, without its protection.
     pub fn encode(&self) -> [u8; FRAME_BYTES] {
         let (left, left_status) = displacement_to_raw(self.left);
         let (right, right_status) = displacement_to_raw(self.right);
@@ -119,7 +148,7 @@ impl DisplacementMessage {
         bits.to_le_bytes()
     }
 
-    /// From a payload that passed its check.
+    /// The content of a payload that has passed its check.
     pub fn decode(data: &[u8; FRAME_BYTES]) -> Self {
         let bits = u64::from_le_bytes(*data);
         Self {
@@ -130,21 +159,31 @@ impl DisplacementMessage {
     }
 }
 
-/// The valve command. The word travels twice, once complemented, so that a fault in the sender's memory is seen too.
+/// The valve command. Its word is sent twice, once inverted, so that a fault in the sender's memory is seen too.
+///
+/// ```
+/// use oleo_controller::ValveCommand;
+/// use oleo_controller::can::CommandMessage;
+/// let sent = CommandMessage { command: ValveCommand::SOFT, echo_tick: 7, ..CommandMessage::default() };
+/// let mut payload = sent.encode();
+/// assert_eq!(CommandMessage::decode(&payload), Some(sent));
+/// payload[2] ^= 1; // now word and inverted word disagree
+/// assert_eq!(CommandMessage::decode(&payload), None);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CommandMessage {
-    /// Valve positions.
+    /// Commanded positions of the twelve valves.
     pub command: ValveCommand,
-    /// Tick of the displacement message this answers.
+    /// Tick of the last rear displacement message that was received, modulo 65536.
     pub echo_tick: u16,
     /// Mode of the controller.
     pub mode: Mode,
-    /// First cause of a mode other than normal.
+    /// First cause of a mode other than [`Mode::Normal`].
     pub fault: FaultCode,
 }
 
 impl CommandMessage {
-    /// Payload, unprotected.
+    /// The payload, without its protection.
     pub fn encode(&self) -> [u8; FRAME_BYTES] {
         let word = u64::from(self.command.word());
         let bits = word << 12
@@ -155,7 +194,8 @@ impl CommandMessage {
         bits.to_le_bytes()
     }
 
-    /// From a payload that passed its check; `None` where word and complement disagree or mode or fault do not exist.
+    /// The content of a payload that has passed its check; `None` if word and inverted word disagree, or if mode or fault do not
+    /// exist.
     pub fn decode(data: &[u8; FRAME_BYTES]) -> Option<Self> {
         let bits = u64::from_le_bytes(*data);
         let word = field(bits, 12, 12);
@@ -165,35 +205,42 @@ impl CommandMessage {
         Some(Self {
             command: ValveCommand::from_word(word as u16),
             echo_tick: field(bits, 36, 16) as u16,
-            mode: Mode::from_raw(field(bits, 52, 4) as u8)?,
-            fault: FaultCode::from_raw(field(bits, 56, 8) as u8)?,
+            mode: Mode::from_repr(field(bits, 52, 4) as u8)?,
+            fault: FaultCode::from_repr(field(bits, 56, 8) as u8)?,
         })
     }
 }
 
-/// State of the controller, every 100 ms.
+/// State of the controller, sent every 100 ms for people and loggers.
+///
+/// ```
+/// use oleo_controller::Mode;
+/// use oleo_controller::can::StatusMessage;
+/// let sent = StatusMessage { mode: Mode::Normal, vertical_rms_m_s2: 1.5, ..StatusMessage::default() };
+/// assert_eq!(StatusMessage::decode(&sent.encode()), Some(sent));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StatusMessage {
     /// Mode of the controller.
     pub mode: Mode,
-    /// First cause of a mode other than normal.
+    /// First cause of a mode other than [`Mode::Normal`].
     pub fault: FaultCode,
-    /// The strategy is in handling mode.
+    /// Whether the strategy is in handling mode.
     pub handling: bool,
-    /// The roll-over guard is active.
+    /// Whether the roll-over guard is active.
     pub rollover_guard: bool,
-    /// Running RMS of the lateral acceleration's surrogate, m/s2, 0 to 20.46.
+    /// Running RMS of the estimated lateral acceleration, m/s2, 0 to 20.46.
     pub lateral_rms_m_s2: f32,
-    /// Running RMS of the body's vertical acceleration, m/s2, 0 to 20.46.
+    /// Running RMS of the body's estimated vertical acceleration, m/s2, 0 to 20.46.
     pub vertical_rms_m_s2: f32,
-    /// Readings that are invalid at present, 0 to 20.
+    /// Number of readings that are invalid at present, 0 to 20.
     pub invalid_readings: u8,
-    /// Sensor messages whose contract is broken, bits as [`crate::Inputs::lost_messages`].
+    /// Sensor messages that are late or not trusted, see [`crate::Inputs::lost_messages`].
     pub lost_messages: MessageSet,
 }
 
 impl StatusMessage {
-    /// Payload, unprotected.
+    /// The payload, without its protection.
     pub fn encode(&self) -> [u8; FRAME_BYTES] {
         let bits = u64::from(self.mode.raw()) << 12
             | u64::from(self.fault.raw()) << 16
@@ -202,22 +249,22 @@ impl StatusMessage {
             | acceleration_to_raw(self.lateral_rms_m_s2) << 28
             | acceleration_to_raw(self.vertical_rms_m_s2) << 38
             | u64::from(self.invalid_readings.min(31)) << 48
-            | u64::from(self.lost_messages & 0x3F) << 53;
+            | u64::from(self.lost_messages.bits()) << 53;
         bits.to_le_bytes()
     }
 
-    /// From a payload that passed its check; `None` where mode or fault do not exist.
+    /// The content of a payload that has passed its check; `None` if mode or fault do not exist.
     pub fn decode(data: &[u8; FRAME_BYTES]) -> Option<Self> {
         let bits = u64::from_le_bytes(*data);
         Some(Self {
-            mode: Mode::from_raw(field(bits, 12, 4) as u8)?,
-            fault: FaultCode::from_raw(field(bits, 16, 8) as u8)?,
+            mode: Mode::from_repr(field(bits, 12, 4) as u8)?,
+            fault: FaultCode::from_repr(field(bits, 16, 8) as u8)?,
             handling: field(bits, 24, 1) == 1,
             rollover_guard: field(bits, 25, 1) == 1,
             lateral_rms_m_s2: field(bits, 28, 10) as u16 as f32 * ACCELERATION_STEP_M_S2,
             vertical_rms_m_s2: field(bits, 38, 10) as u16 as f32 * ACCELERATION_STEP_M_S2,
             invalid_readings: field(bits, 48, 5) as u8,
-            lost_messages: field(bits, 53, 6) as u8,
+            lost_messages: MessageSet::from_bits(field(bits, 53, 6) as u8),
         })
     }
 }

@@ -1,32 +1,59 @@
-//! Displacement against the gas volumes: the oil that the piston displaced must be in the accumulators.
+//! Displacement against the gas volumes: the oil that the piston has displaced must be in the accumulators.
 //!
-//! With `S = V1 / p2 + V2 / p4` (absolute pressures), gas volumes `V1`, `V2` at static position and charge pressure `k`, isothermal gas and
-//! incompressible oil (report, "based on isothermal compression") give
+//! With `S = V1 / p2 + V2 / p4` (absolute pressures), gas volumes `V1` and `V2` at static position and charge pressure `k`,
+//! isothermal gas and incompressible oil (report, "based on isothermal compression") give
 //!
 //! ```text
 //!   A x = V1 + V2 - k S
 //! ```
 //!
-//! which holds for any valve position and any load, also with oil trapped behind valve 3. `k` is not configured but learnt
-//! while the controller starts, from the same equation, and then follows the gas temperature slowly (60 s). What remains, lagged by 1 s,
-//! is expected within 25 mm (gas 30 K warmer: 10 % of 0.255 m); 40 mm for 40 ticks condemns the displacement reading. A charge outside
-//! 0.3 to 15 MPa is not a suspension.
+//! which holds for any valve position and any load, also with oil trapped behind valve 3. The charge pressure `k` is not
+//! configured. It is learnt from the same equation while the controller starts, and then follows the gas temperature slowly
+//! (60 s). The residual, lagged by 1 s, is expected to stay within 25 mm (gas that is 30 K warmer: 10 % of 0.255 m). At 40 mm for
+//! 40 ticks the displacement reading is called wrong, and so it is if the charge is outside 0.3 to 15 MPa, which no suspension
+//! has.
 
-use super::{Verdicts, blame};
-use crate::configuration::Configuration;
+use oleo_interface::{Absolute, Gauge, StrutPressures};
+
+use super::verdict::{Verdicts, blame};
 use crate::failsafe::FaultCode;
-use crate::filter::at_least;
-
-/// Standard atmosphere, Pa.
-pub const ATMOSPHERE_PA: f32 = 101_325.0;
+use crate::filter::{LowPass, at_least};
+use crate::vehicle::VehicleDescription;
 
 const WRONG_M: f32 = 0.04;
 const CONFIRM_TICKS: u8 = 40;
 const CHARGE_PA: (f32, f32) = (0.3e6, 15.0e6);
-/// An accumulator is never emptier than this, Pa absolute; keeps the quotient finite.
+/// Lowest pressure that is counted with, Pa absolute. It keeps the quotient finite where an accumulator is empty.
 const LEAST_PA: f32 = 2.0e4;
 
-/// State for one strut.
+/// Dimensions and filters of the balance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    piston_area_m2: f32,
+    per_piston_area: f32,
+    gas_volume_1_m3: f32,
+    gas_volume_2_m3: f32,
+    residual: LowPass,
+    charge_start: LowPass,
+    charge_drift: LowPass,
+}
+
+impl Parameters {
+    /// From a description that has been checked.
+    pub fn new(vehicle: &VehicleDescription) -> Self {
+        Self {
+            piston_area_m2: vehicle.piston_area_m2,
+            per_piston_area: 1.0 / vehicle.piston_area_m2,
+            gas_volume_1_m3: vehicle.gas_volume_1_m3,
+            gas_volume_2_m3: vehicle.gas_volume_2_m3,
+            residual: LowPass::from_time_constant_s(1.0),
+            charge_start: LowPass::from_time_constant_s(0.02),
+            charge_drift: LowPass::from_time_constant_s(60.0),
+        }
+    }
+}
+
+/// State of the balance of one strut.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OilBalance {
     charge_pa: f32,
@@ -37,22 +64,22 @@ pub struct OilBalance {
 }
 
 impl OilBalance {
-    /// One tick; returns the charge pressure, Pa absolute.
+    /// One tick; returns the charge pressure as learnt so far.
     pub fn step(
         &mut self,
-        c: &Configuration,
+        c: &Parameters,
         displacement_m: f32,
-        &[_, p2, _, p4]: &[f32; 4],
+        pressure: &StrutPressures<Gauge<f32>>,
         learning: bool,
         verdict: &mut Verdicts,
-    ) -> f32 {
-        let [_, f2, _, f4] = verdict.pressure;
-        let measured = [verdict.displacement, f2, f4]
+    ) -> Absolute<f32> {
+        let measured = [verdict.displacement, verdict.pressure.p2, verdict.pressure.p4]
             .iter()
             .all(|&fault| fault == FaultCode::None);
         if measured {
-            let [v1, v2] = c.gas_volume_m3;
-            let s = v1 / at_least(p2 + ATMOSPHERE_PA, LEAST_PA) + v2 / at_least(p4 + ATMOSPHERE_PA, LEAST_PA);
+            let (v1, v2) = (c.gas_volume_1_m3, c.gas_volume_2_m3);
+            let least = |p: Gauge<f32>| at_least(p.absolute().pa(), LEAST_PA);
+            let s = v1 / least(pressure.p2) + v2 / least(pressure.p4);
             let now_pa = (v1 + v2 - c.piston_area_m2 * displacement_m) / s;
             if !self.started {
                 self.started = true;
@@ -64,7 +91,7 @@ impl OilBalance {
                 self.residual_m = 0.0;
             } else {
                 c.charge_drift.step(&mut self.charge_pa, now_pa);
-                c.vote.step(&mut self.residual_m, residual);
+                c.residual.step(&mut self.residual_m, residual);
             }
             let wrong = self.residual_m.abs() > WRONG_M || self.charge_pa < CHARGE_PA.0 || self.charge_pa > CHARGE_PA.1;
             self.wrong = if wrong {
@@ -81,6 +108,6 @@ impl OilBalance {
         if self.flagged {
             blame(&mut verdict.displacement, FaultCode::OilBalance);
         }
-        self.charge_pa
+        Absolute(self.charge_pa)
     }
 }

@@ -1,23 +1,16 @@
-//! One reading by itself: is it there, finite, in range, and no faster than the hardware?
+//! Check of one reading by itself: is it present, finite, in range, and not faster than the hardware can move?
 //!
-//! A single bad sample is bridged with the last good one; three in a row (or three bad for every nine good) make the reading faulty,
-//! and it takes twelve good ones more than bad to be believed again: a counter that goes up by 4 and down by 1.
+//! A single bad sample is replaced by the last good one. A counter goes up by 4 with each bad sample and down by 1 with each good
+//! one. At 12 the reading is faulty, which takes three bad samples in a row, and at 0 it is believed again.
 
+use super::limits::Limits;
 use crate::failsafe::FaultCode;
 use crate::reading::Reading;
 
 const UP: u8 = 4;
 const LIMIT: u8 = 12;
 
-/// Range, and largest change within a tick, in the reading's unit.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits {
-    pub least: f32,
-    pub most: f32,
-    pub step: f32,
-}
-
-/// State of the check. Starts as faulty: a sensor is believed after it has delivered.
+/// State of the check. It starts as faulty: a sensor is believed after it has delivered twelve good samples.
 #[derive(Clone, Copy, Debug)]
 pub struct ReadingCheck {
     last: f32,
@@ -41,14 +34,14 @@ impl Default for ReadingCheck {
 }
 
 impl ReadingCheck {
-    /// Last good value.
+    /// The last good value.
     pub fn value(&self) -> f32 {
         self.last
     }
 
-    /// One tick; what is wrong, if the reading is to be replaced.
+    /// One tick; returns what is wrong if the reading is to be replaced, and [`FaultCode::None`] if it may be used.
     pub fn step(&mut self, reading: Reading, message_lost: bool, limits: &Limits) -> FaultCode {
-        // The usual tick: nothing was wrong lately, so the last sample was good, and nothing is wrong now.
+        // Most ticks end here: nothing was wrong lately, so the last sample was good, and nothing is wrong now.
         if self.bad == 0
             && let Some(value) = reading.value()
             && value >= limits.least
@@ -61,7 +54,7 @@ impl ReadingCheck {
         self.doubt(reading, message_lost, limits)
     }
 
-    /// The whole check, for a reading that was or may be wrong.
+    /// The whole check, for a reading that was wrong lately or may be wrong now.
     #[inline(never)]
     fn doubt(&mut self, reading: Reading, message_lost: bool, limits: &Limits) -> FaultCode {
         let in_range = reading.value().filter(|&v| v >= limits.least && v <= limits.most);
@@ -78,7 +71,7 @@ impl ReadingCheck {
             }
             other => {
                 self.age = self.age.saturating_add(1);
-                // The node has waited already before it called a message lost.
+                // The node has already waited before it called a message lost.
                 self.bad = if message_lost {
                     LIMIT
                 } else {
@@ -144,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lost_message_needs_no_second_opinion() {
+    fn a_lost_message_is_a_fault_at_once() {
         assert_eq!(healthy().step(Reading::INVALID, true, &LIMITS), FaultCode::MessageLost);
     }
 

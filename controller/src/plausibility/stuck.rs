@@ -1,20 +1,25 @@
 //! Readings that do not change while they must.
 //!
-//! A frozen sensor stays in range and never jumps. What gives it away is its neighbours: in windows of 0.5 s the span (largest less
-//! smallest) of every reading is compared with the spans of those that must move with it. On a smooth road nothing moves
-//! and nothing is said.
+//! A stuck sensor stays in range and never jumps; only its neighbours show that it is stuck. In windows of 0.5 s the span
+//! (largest less smallest value) of every reading is compared with the spans of those that must move with it. On a smooth road
+//! nothing moves, and nothing can be concluded.
 //!
-//! - Displacement: span below 0.03 mm, and either the strut's own p1 spans 0.3 MPa (in the stiff setting 0.03 mm are about
-//!   1 kPa), or p1 spans 50 kPa while two other struts span 5 mm. A strut that its seals hold fast shows neither.
-//! - p1 to p3: span of one step (5 kPa) or less while the strut's displacement spans 5 mm (about 40 kPa in the soft setting).
-//! - p4: the same with 20 mm, and only if valve 3 was open during the whole window; behind a closed valve it is trapped.
+//! - A displacement is stuck if its span is below 0.03 mm and either the strut's own p1 spans 0.3 MPa (in the stiff setting
+//!   0.03 mm are about 1 kPa), or p1 spans 50 kPa while two other struts span 5 mm. A strut that its seals hold fast shows
+//!   neither.
+//! - p1, p2 or p3 is stuck if it spans one step (5 kPa) or less while the strut's displacement spans 5 mm (about 40 kPa in the
+//!   soft setting).
+//! - p4 is stuck by the same rule with 20 mm, but only if valve 3 was open during the whole window: behind a closed valve its
+//!   pressure is trapped.
 //!
-//! Two windows, 200 ticks, at the most from freezing to verdict. A window in which the reading moves clears it.
+//! A stuck reading is found within two windows, which are 200 ticks. A window in which the reading moves clears the verdict.
 
-use super::{Context, Trusted, Verdicts, blame};
+use oleo_interface::{Corners, PressurePoint, StrutPressures};
+
+use super::trusted::Trusted;
+use super::verdict::{Verdicts, blame};
 use crate::failsafe::FaultCode;
 use crate::timing::ticks;
-use crate::valves::CORNERS;
 
 const WINDOW_TICKS: u16 = ticks(500);
 
@@ -54,18 +59,18 @@ impl Span {
 #[derive(Clone, Copy, Debug)]
 struct CornerWindow {
     displacement: Span,
-    pressure: [Span; 4],
+    pressure: StrutPressures<Span>,
     spring_open: bool,
     displacement_stuck: bool,
-    pressure_stuck: [bool; 4],
+    pressure_stuck: StrutPressures<bool>,
 }
 
 /// Windows of all corners; they end in the same tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Stuck {
     ticks: u16,
-    corners: [CornerWindow; CORNERS],
-    /// Any reading of any corner is found stuck: spares the usual tick the look.
+    corners: Corners<CornerWindow>,
+    /// Whether any reading of any corner is stuck, so that most ticks need not look at each.
     any: bool,
 }
 
@@ -73,40 +78,35 @@ impl Default for Stuck {
     fn default() -> Self {
         let corner = CornerWindow {
             displacement: Span::EMPTY,
-            pressure: [Span::EMPTY; 4],
+            pressure: StrutPressures::splat(Span::EMPTY),
             spring_open: true,
             displacement_stuck: false,
-            pressure_stuck: [false; 4],
+            pressure_stuck: StrutPressures::splat(false),
         };
         Self {
             ticks: 0,
-            corners: [corner; CORNERS],
+            corners: Corners::splat(corner),
             any: false,
         }
     }
 }
 
 impl Stuck {
-    /// One tick.
-    pub fn step(&mut self, trusted: &Trusted, context: &Context, verdicts: &mut [Verdicts; CORNERS]) {
-        for ((((window, x), pressures), open), verdict) in self
-            .corners
-            .iter_mut()
-            .zip(trusted.displacement_m)
-            .zip(trusted.pressure_pa)
-            .zip(context.spring_settled_open)
-            .zip(&*verdicts)
-        {
-            // What stands in for a reading (at first, zero) does not move with it: a parked vehicle would be called broken.
+    /// One tick. `spring_settled_open` says where valve 3 has been open for so long that p4 follows p1.
+    pub fn step(&mut self, trusted: &Trusted, spring_settled_open: Corners<bool>, verdicts: &mut Corners<Verdicts>) {
+        for (corner, window) in self.corners.iter_mut() {
+            let verdict = &verdicts[corner];
+            // A value that replaces a reading (at first, zero) does not move with the strut. It must not count, or a parked
+            // vehicle would be called broken.
             if verdict.displacement == FaultCode::None {
-                window.displacement.add(x);
+                window.displacement.add(trusted.displacement_m[corner]);
             }
-            for ((span, pressure), &fault) in window.pressure.iter_mut().zip(pressures).zip(&verdict.pressure) {
-                if fault == FaultCode::None {
-                    span.add(pressure);
+            for point in PressurePoint::ALL {
+                if verdict.pressure[point] == FaultCode::None {
+                    window.pressure[point].add(trusted.pressure[corner][point].pa());
                 }
             }
-            window.spring_open &= open;
+            window.spring_open &= spring_settled_open[corner];
         }
         self.ticks = self.ticks.saturating_add(1);
         if self.ticks >= WINDOW_TICKS {
@@ -116,13 +116,14 @@ impl Stuck {
         if !self.any {
             return;
         }
-        for (window, verdict) in self.corners.iter().zip(verdicts) {
+        for (corner, window) in self.corners.iter() {
+            let verdict = &mut verdicts[corner];
             if window.displacement_stuck {
                 blame(&mut verdict.displacement, FaultCode::SensorStuck);
             }
-            for (&stuck, fault) in window.pressure_stuck.iter().zip(&mut verdict.pressure) {
-                if stuck {
-                    blame(fault, FaultCode::SensorStuck);
+            for (point, stuck) in window.pressure_stuck.iter() {
+                if *stuck {
+                    blame(&mut verdict.pressure[point], FaultCode::SensorStuck);
                 }
             }
         }
@@ -131,62 +132,60 @@ impl Stuck {
     fn end_of_window(&mut self) {
         let moving = self
             .corners
-            .iter()
-            .filter(|w| w.displacement.width() >= DISPLACEMENT_MOVING_M)
+            .values()
+            .filter(|window| window.displacement.width() >= DISPLACEMENT_MOVING_M)
             .count();
-        for window in &mut self.corners {
+        for window in self.corners.values_mut() {
             let x_width = window.displacement.width();
-            let [p1_width, ..] = window.pressure.map(|span| span.width());
+            let p1_width = window.pressure.p1.width();
             if x_width > DISPLACEMENT_STILL_M {
                 window.displacement_stuck = false;
             } else if p1_width >= PRESSURE_MOVING_ALONE_PA || (moving >= 2 && p1_width >= PRESSURE_MOVING_PA) {
                 window.displacement_stuck = true;
             }
-            let moves_p = x_width >= DISPLACEMENT_MOVING_M;
-            let moves_p4 = x_width >= DISPLACEMENT_MOVING_FOR_P4_M && window.spring_open;
-            for ((stuck, span), moves) in window
-                .pressure_stuck
-                .iter_mut()
-                .zip(&window.pressure)
-                .zip([moves_p, moves_p, moves_p, moves_p4])
-            {
-                if span.width() > PRESSURE_STILL_PA {
-                    *stuck = false;
-                } else if moves {
-                    *stuck = true;
+            let must_move = StrutPressures {
+                p4: x_width >= DISPLACEMENT_MOVING_FOR_P4_M && window.spring_open,
+                ..StrutPressures::splat(x_width >= DISPLACEMENT_MOVING_M)
+            };
+            for (point, must_move) in must_move.iter() {
+                if window.pressure[point].width() > PRESSURE_STILL_PA {
+                    window.pressure_stuck[point] = false;
+                } else if *must_move {
+                    window.pressure_stuck[point] = true;
                 }
             }
             window.displacement = Span::EMPTY;
-            window.pressure = [Span::EMPTY; 4];
+            window.pressure = StrutPressures::splat(Span::EMPTY);
             window.spring_open = true;
         }
-        self.any = (self.corners.iter()).any(|w| w.displacement_stuck || w.pressure_stuck.contains(&true));
+        let nothing = StrutPressures::splat(false);
+        self.any = (self.corners.values()).any(|window| window.displacement_stuck || window.pressure_stuck != nothing);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oleo_interface::Gauge;
 
     #[test]
     fn a_parked_vehicle_that_is_switched_on_is_not_stuck() {
         let mut stuck = Stuck::default();
-        let context = Context::default();
         for tick in 0..3 * WINDOW_TICKS {
             let believed = tick >= 16;
             let mut trusted = Trusted::default();
-            let mut verdicts = [Verdicts::default(); CORNERS];
+            let mut verdicts = Corners::<Verdicts>::default();
             if believed {
-                trusted.pressure_pa = [[2.0e6; 4]; CORNERS];
+                trusted.pressure = Corners::splat(StrutPressures::splat(Gauge(2.0e6)));
             } else {
-                verdicts = [Verdicts {
+                verdicts = Corners::splat(Verdicts {
                     displacement: FaultCode::SensorRange,
-                    pressure: [FaultCode::SensorRange; 4],
-                }; CORNERS];
+                    pressure: StrutPressures::splat(FaultCode::SensorRange),
+                });
             }
-            stuck.step(&trusted, &context, &mut verdicts);
+            stuck.step(&trusted, Corners::splat(false), &mut verdicts);
             let healthy = verdicts
-                .iter()
+                .values()
                 .flat_map(Verdicts::all)
                 .all(|fault| fault == FaultCode::None);
             assert_eq!(healthy, believed, "tick {tick}");

@@ -1,70 +1,87 @@
 //! The pressures of one strut against each other.
 //!
-//! At rest p1 = p2 = p3, and = p4 behind an open valve 3: dampers and orifices take pressure only from moving oil. In motion the *means* over
-//! a second still agree but for the asymmetry of the damper packs (rebound takes about twice jounce: estimated 0.4 MPa at 0.5 m/s).
-//! So lagged pressures are compared, and the one that is more than 1 MPa off two that agree is wrong. An offset of
-//! `d` is seen after `tau ln(d / (d - 1 MPa))` and 40 ticks of confirmation: 1.1 s for 1.7 MPa, 0.5 s for 4 MPa.
-//! Smaller offsets are not seen by this check.
+//! At rest p1, p2 and p3 are equal, and p4 too behind an open valve 3, because dampers and orifices cause a pressure drop only
+//! while oil moves. In motion the *means* over a second still agree, except for the asymmetry of the damper packs (rebound takes
+//! about twice as much as jounce, estimated 0.4 MPa at 0.5 m/s). So lagged pressures are compared, and one that differs by more
+//! than 1 MPa from two that agree is wrong. An offset of `d` is seen after `tau ln(d / (d - 1 MPa))` and 40 ticks of
+//! confirmation, which is 1.1 s for 1.7 MPa and 0.5 s for 4 MPa. This check does not see offsets below 1 MPa.
 
-use super::{Verdicts, blame};
-use crate::configuration::Configuration;
+use oleo_interface::{Gauge, PressurePoint, StrutPressures};
+
+use super::verdict::{Verdicts, blame};
 use crate::failsafe::FaultCode;
+use crate::filter::LowPass;
 
 const DISAGREE_PA: f32 = 1.0e6;
 const CONFIRM_TICKS: u8 = 40;
 
-/// State for one strut.
+/// The lag of the compared pressures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters {
+    lag: LowPass,
+}
+
+impl Default for Parameters {
+    fn default() -> Self {
+        Self {
+            lag: LowPass::from_time_constant_s(1.0),
+        }
+    }
+}
+
+/// State of the vote on one strut.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Vote {
-    lagged: [f32; 4],
-    outvoted: [u8; 4],
-    flagged: [bool; 4],
+    lagged: StrutPressures<Gauge<f32>>,
+    outvoted: StrutPressures<u8>,
+    flagged: StrutPressures<bool>,
     started: bool,
 }
 
 impl Vote {
-    /// One tick. `p4_follows`: valve 3 has been open for long enough.
-    pub fn step(&mut self, c: &Configuration, pressure: &[f32; 4], p4_follows: bool, verdict: &mut Verdicts) {
-        let healthy = verdict.pressure.iter().all(|&fault| fault == FaultCode::None);
+    /// One tick. `p4_follows` says whether valve 3 has been open for so long that p4 follows p1.
+    pub fn step(
+        &mut self,
+        parameters: &Parameters,
+        pressure: &StrutPressures<Gauge<f32>>,
+        p4_follows: bool,
+        verdict: &mut Verdicts,
+    ) {
+        let healthy = verdict.pressure == StrutPressures::splat(FaultCode::None);
         if !healthy {
-            // Held values are no witnesses; begin again when all four speak. A verdict already reached stands.
+            // A replaced value says nothing about the others: start again when all four are measured. A verdict that was
+            // reached before stays.
             self.started = false;
         } else {
             if !self.started {
                 self.started = true;
                 self.lagged = agreed(pressure);
             }
-            for (lagged, &p) in self.lagged.iter_mut().zip(pressure) {
-                c.vote.step(lagged, p);
+            for (Gauge(lagged), pressure) in self.lagged.each_mut().zip(*pressure).into_array() {
+                parameters.lag.step(lagged, pressure.pa());
             }
-            // Behind a closed valve 3 p4 is no witness; when the valve has opened, its disagreement begins anew.
+            // Behind a closed valve 3 the pressure p4 need not agree; when the valve has opened, the comparison starts again.
             if !p4_follows {
-                let [_, _, p3, p4] = &mut self.lagged;
-                *p4 = *p3;
+                self.lagged.p4 = self.lagged.p3;
             }
         }
-        let [p1, p2, p3, p4] = self.lagged;
-        let apart = |a: f32, b: f32| (a - b).abs() > DISAGREE_PA;
+        let StrutPressures { p1, p2, p3, p4 } = self.lagged;
+        let apart = |a: Gauge<f32>, b: Gauge<f32>| (a - b).abs() > DISAGREE_PA;
         let (d12, d13, d23) = (apart(p1, p2), apart(p1, p3), apart(p2, p3));
-        let wrong = [
-            d12 && d13 && !d23,
-            d12 && d23 && !d13,
-            d13 && d23 && !d12,
-            p4_follows && apart(p4, p3) && !(d13 && d23),
-        ];
-        // The usual tick: nobody is or was outvoted. A flag falls when its count reaches 0, so none is up.
-        if self.outvoted == [0; 4] && !(healthy && wrong.contains(&true)) {
+        let wrong = StrutPressures {
+            p1: d12 && d13 && !d23,
+            p2: d12 && d23 && !d13,
+            p3: d13 && d23 && !d12,
+            p4: p4_follows && apart(p4, p3) && !(d13 && d23),
+        };
+        // Most ticks end here: no pressure is or was outvoted. A flag falls when its count reaches 0, so none is set.
+        if self.outvoted == StrutPressures::splat(0) && !(healthy && wrong != StrutPressures::splat(false)) {
             return;
         }
-        for (((count, flagged), wrong), fault) in self
-            .outvoted
-            .iter_mut()
-            .zip(&mut self.flagged)
-            .zip(wrong)
-            .zip(&mut verdict.pressure)
-        {
+        for point in PressurePoint::ALL {
+            let (count, flagged) = (&mut self.outvoted[point], &mut self.flagged[point]);
             if healthy {
-                *count = if wrong {
+                *count = if wrong[point] {
                     count.saturating_add(1).min(CONFIRM_TICKS)
                 } else {
                     count.saturating_sub(1)
@@ -76,36 +93,43 @@ impl Vote {
                 }
             }
             if *flagged {
-                blame(fault, FaultCode::SensorVote);
+                blame(&mut verdict.pressure[point], FaultCode::SensorVote);
             }
         }
     }
 }
 
-/// What the lags start from when witnesses (again) speak: agreement, so that disagreement has to build up as it has after an offset
-/// begins. One sample of a strut in motion would not do: through closed dampers its pressures are 2 MPa apart, and the
-/// lag would take a second to forget that.
-fn agreed(&[p1, p2, p3, _]: &[f32; 4]) -> [f32; 4] {
-    [(p1 + p2 + p3) * (1.0 / 3.0); 4]
+/// What the lags start from: agreement at the mean of the pressures, so that a disagreement has to build up as it does after an
+/// offset begins. A single sample of a strut in motion would not do, because through closed dampers its pressures are 2 MPa
+/// apart, and the lag would need a second to forget that.
+fn agreed(&StrutPressures { p1, p2, p3, .. }: &StrutPressures<Gauge<f32>>) -> StrutPressures<Gauge<f32>> {
+    StrutPressures::splat(Gauge((p1.pa() + p2.pa() + p3.pa()) * (1.0 / 3.0)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Votes on a strut that is shaken through closed dampers: p1 swings by 2 MPa about p2 at 8 Hz.
+    fn outvoted(verdict: &Verdicts) -> bool {
+        verdict.all().any(|fault| fault == FaultCode::SensorVote)
+    }
+
+    /// The first tick in which a pressure is outvoted, on a strut that is shaken through closed dampers: p1 swings by 2 MPa
+    /// about p2 at 8 Hz, and p3 has an offset.
     fn shaken(vote: &mut Vote, ticks: core::ops::Range<u16>, offset_pa: f32) -> Option<u16> {
-        let c = Configuration::defender110();
+        let parameters = Parameters::default();
         for tick in ticks {
-            let swing = 2.0e6 * libm::cosf(2.0 * core::f32::consts::PI * 8.0 * f32::from(tick) * crate::timing::TICK_S);
+            let swing = 2.0e6
+                * libm::cosf(2.0 * core::f32::consts::PI * 8.0 * f32::from(tick) * oleo_interface::tick::TICK_S_F32);
             let mut verdict = Verdicts::default();
-            vote.step(
-                &c,
-                &[4.0e6 + swing, 4.0e6, 4.0e6 + offset_pa, 4.0e6],
-                false,
-                &mut verdict,
-            );
-            if verdict.pressure.contains(&FaultCode::SensorVote) {
+            let pressure = StrutPressures {
+                p1: 4.0e6 + swing,
+                p2: 4.0e6,
+                p3: 4.0e6 + offset_pa,
+                p4: 4.0e6,
+            };
+            vote.step(&parameters, &pressure.map(Gauge), false, &mut verdict);
+            if outvoted(&verdict) {
                 return Some(tick);
             }
         }
@@ -122,14 +146,14 @@ mod tests {
 
     #[test]
     fn begins_again_from_agreement_after_silence() {
-        let c = Configuration::defender110();
+        let parameters = Parameters::default();
         let mut vote = Vote::default();
         assert_eq!(shaken(&mut vote, 0..500, 0.0), None);
         let mut silent = Verdicts {
-            pressure: [FaultCode::MessageLost; 4],
+            pressure: StrutPressures::splat(FaultCode::MessageLost),
             ..Verdicts::default()
         };
-        vote.step(&c, &[0.0; 4], false, &mut silent);
+        vote.step(&parameters, &StrutPressures::default(), false, &mut silent);
         assert_eq!(shaken(&mut vote, 0..1000, 0.0), None);
     }
 
@@ -142,15 +166,19 @@ mod tests {
 
     #[test]
     fn oil_trapped_behind_valve_3_is_no_disagreement_when_the_valve_has_opened() {
-        let c = Configuration::defender110();
+        let parameters = Parameters::default();
         let mut vote = Vote::default();
         for tick in 0..1500 {
             // Trapped 3 MPa apart for 2.5 s; equal once the valve is settled open.
             let open = tick >= 500;
             let p4 = if open { 4.0e6 } else { 7.0e6 };
             let mut verdict = Verdicts::default();
-            vote.step(&c, &[4.0e6, 4.0e6, 4.0e6, p4], open, &mut verdict);
-            assert!(!verdict.pressure.contains(&FaultCode::SensorVote), "tick {tick}");
+            let pressure = StrutPressures {
+                p4,
+                ..StrutPressures::splat(4.0e6)
+            };
+            vote.step(&parameters, &pressure.map(Gauge), open, &mut verdict);
+            assert!(!outvoted(&verdict), "tick {tick}");
         }
     }
 }

@@ -1,150 +1,158 @@
 //! How valves are decided: replaceable, each strategy in a file of its own.
 //!
-//! A strategy only *wants*. How a wanted spring setting is reached at whatever displacement the strut happens to have is [`crate::spring`]'s
-//! business, how often a valve may move is [`crate::dwell`]'s, and what is permitted is [`crate::failsafe`]'s.
+//! A strategy only says what it wants. How a wanted spring is reached at whatever displacement the strut happens to have is
+//! [`crate::spring`]'s business, how often a bypass valve may move is decided after it, and what is permitted is
+//! [`crate::failsafe`]'s.
 //!
 //! | strategy | springs | dampers |
 //! |---|---|---|
 //! | `always-soft` | soft | low |
 //! | `always-stiff` | stiff | high |
 //! | `ride-handling` | soft in ride mode, stiff in handling mode or under the roll-over guard | ride mode: the damper policy; else high |
+//!
+//! A new strategy is a file here with a type that implements [`Decide`], and one line in the list at the end of this
+//! file. Its name on the command line is the name of its variant: `AlwaysSoft` is `always-soft`.
 
+mod demand;
+mod fixed;
+pub mod parts;
 pub mod ride_handling;
-pub mod rollover;
-pub mod semi_active;
 
-use crate::configuration::Configuration;
+use strum::{EnumString, IntoStaticStr, VariantArray, VariantNames};
+
+pub use demand::{Decide, Demand, Urgency};
+pub use parts::semi_active::DamperPolicy;
+
 use crate::estimate::Estimate;
 use crate::plausibility::Trusted;
-use crate::valves::CORNERS;
-use ride_handling::RideHandling;
-use rollover::Rollover;
-use semi_active::SemiActive;
+use crate::range::ConfigurationError;
+use crate::vehicle::VehicleDescription;
 
-/// The strategies there are.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Strategy {
-    /// All valves open, for comparison.
-    AlwaysSoft,
-    /// All valves closed, for comparison.
-    AlwaysStiff,
-    /// Ride mode or handling mode by running RMS.
-    #[default]
-    RideHandling,
+/// From one line for each strategy: the enum of their names, and their tunings, parameters and states side by side.
+macro_rules! strategies {
+    ($($(#[$attribute:meta])* $variant:ident, $field:ident: $strategy:ty;)*) => {
+        /// The strategies there are. Their names are those of the command line: `ride-handling`.
+        ///
+        /// ```
+        /// use oleo_controller::Strategy;
+        /// assert_eq!("always-soft".parse(), Ok(Strategy::AlwaysSoft));
+        /// assert_eq!(Strategy::RideHandling.name(), "ride-handling");
+        /// ```
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+        #[derive(EnumString, IntoStaticStr, VariantArray, VariantNames)]
+        #[strum(serialize_all = "kebab-case")]
+        pub enum Strategy {
+            $($(#[$attribute])* $variant,)*
+        }
+
+        /// What a person may choose about each strategy, whether it is the one in use or not.
+        ///
+        /// ```
+        /// use oleo_controller::{Builder, DamperPolicy};
+        /// let mut builder = Builder::default();
+        /// builder.tuning.strategy.ride_handling.dampers.policy = DamperPolicy::Low;
+        /// assert!(builder.build().is_ok());
+        /// ```
+        #[derive(Clone, Copy, Debug, Default, PartialEq)]
+        pub struct Tuning {
+            $(
+                #[doc = concat!("Tuning of [`Strategy::", stringify!($variant), "`].")]
+                pub $field: <$strategy as Decide>::Tuning,
+            )*
+        }
+
+        impl Tuning {
+            /// Whether every value is within its range.
+            pub(crate) fn check(&self) -> Result<(), ConfigurationError> {
+                $(<$strategy as Decide>::check(&self.$field)?;)*
+                Ok(())
+            }
+        }
+
+        /// Which strategy is in use, and the parameters of each. See [`State`] for an example.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Parameters {
+            strategy: Strategy,
+            $($field: $strategy,)*
+        }
+
+        impl Parameters {
+            /// From a description and a tuning that have been checked.
+            pub(crate) fn new(strategy: Strategy, vehicle: &VehicleDescription, tuning: &Tuning) -> Self {
+                Self {
+                    strategy,
+                    $($field: <$strategy as Decide>::new(vehicle, &tuning.$field),)*
+                }
+            }
+        }
+
+        /// Memory of each strategy.
+        ///
+        /// ```
+        /// use oleo_controller::plausibility::Trusted;
+        /// use oleo_controller::{Configuration, Estimate, Strategy, ValveCommand, strategy};
+        /// let parameters = Configuration::defender110().with_strategy(Strategy::AlwaysSoft).strategy;
+        /// let mut state = strategy::State::default();
+        /// let demand = state.step(&parameters, &Estimate::default(), &Trusted::default());
+        /// assert_eq!(demand.valves, ValveCommand::SOFT);
+        /// ```
+        #[derive(Clone, Copy, Debug, Default)]
+        pub struct State {
+            $($field: <$strategy as Decide>::State,)*
+        }
+
+        impl State {
+            /// One tick of the strategy in use; returns what it wants.
+            pub fn step(&mut self, parameters: &Parameters, estimate: &Estimate, trusted: &Trusted) -> Demand {
+                match parameters.strategy {
+                    $(Strategy::$variant => parameters.$field.step(&mut self.$field, estimate, trusted),)*
+                }
+            }
+        }
+    };
 }
 
 impl Strategy {
-    /// Names, as on a command line.
-    pub const ALL: [(&'static str, Self); 3] = [
-        ("always-soft", Self::AlwaysSoft),
-        ("always-stiff", Self::AlwaysStiff),
-        ("ride-handling", Self::RideHandling),
-    ];
-
-    /// By name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL
-            .into_iter()
-            .find_map(|(n, strategy)| (n == name).then_some(strategy))
+    /// Name on the command line and in scenario files.
+    pub fn name(self) -> &'static str {
+        self.into()
     }
 }
 
-/// How dampers are switched in ride mode.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum DamperPolicy {
-    /// Low damping always.
-    Low,
-    /// High where the damper's force opposes the body's velocity (skyhook in two stages).
-    #[default]
-    Karnopp,
-    /// High where the damper's force opposes the body's acceleration.
-    HoelscherHuang,
-}
-
-impl DamperPolicy {
-    /// Names, as on a command line.
-    pub const ALL: [(&'static str, Self); 3] = [
-        ("low", Self::Low),
-        ("karnopp", Self::Karnopp),
-        ("hoelscher-huang", Self::HoelscherHuang),
-    ];
-
-    /// By name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Self::ALL
-            .into_iter()
-            .find_map(|(n, policy)| (n == name).then_some(policy))
+impl Parameters {
+    /// Puts another strategy into use.
+    pub(crate) fn choose(&mut self, strategy: Strategy) {
+        self.strategy = strategy;
     }
 }
 
-/// How much a change of springs matters against how smooth it is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Urgency {
-    /// Comfort: may wait for a smooth moment.
+strategies! {
+    /// All valves open, for comparison.
+    AlwaysSoft, always_soft: fixed::AlwaysSoft;
+    /// All valves closed, for comparison.
+    AlwaysStiff, always_stiff: fixed::AlwaysStiff;
+    /// Ride mode or handling mode by running RMS, with a roll-over guard.
     #[default]
-    Comfort,
-    /// Handling: may wait for a fraction of a body oscillation.
-    Handling,
-    /// Roll-over guard: now.
-    Emergency,
+    RideHandling, ride_handling: ride_handling::RideHandling;
 }
 
-/// What a strategy wants.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Wish {
-    /// Soft spring (valve 3 open), for the whole vehicle: left and right are never wanted different.
-    pub soft_spring: bool,
-    /// Low damping (valves 1 and 2 open) at each corner.
-    pub low_damping: [bool; CORNERS],
-    /// For the springs.
-    pub urgency: Urgency,
-    /// Handling mode.
-    pub handling: bool,
-    /// Roll-over guard active.
-    pub rollover_guard: bool,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use strum::{VariantArray, VariantNames};
 
-/// Memory of the strategies.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct State {
-    mode: RideHandling,
-    guard: Rollover,
-    dampers: SemiActive,
-}
-
-impl State {
-    /// One tick.
-    pub fn step(&mut self, c: &Configuration, estimate: &Estimate, trusted: &Trusted) -> Wish {
-        match c.strategy {
-            Strategy::AlwaysSoft => Wish {
-                soft_spring: true,
-                low_damping: [true; CORNERS],
-                ..Wish::default()
-            },
-            Strategy::AlwaysStiff => Wish {
-                urgency: Urgency::Handling,
-                handling: true,
-                ..Wish::default()
-            },
-            Strategy::RideHandling => {
-                let rollover_guard = self.guard.step(c, estimate);
-                let handling = self.mode.step(c, estimate);
-                let low_damping = self.dampers.step(c, estimate, trusted);
-                let stiff = handling || rollover_guard;
-                Wish {
-                    soft_spring: !stiff,
-                    low_damping: if stiff { [false; CORNERS] } else { low_damping },
-                    urgency: if rollover_guard {
-                        Urgency::Emergency
-                    } else if handling {
-                        Urgency::Handling
-                    } else {
-                        Urgency::Comfort
-                    },
-                    handling,
-                    rollover_guard,
-                }
-            }
+    #[test]
+    fn every_strategy_has_a_name_and_decides() {
+        let tuning = Tuning::default();
+        assert_eq!(tuning.check(), Ok(()));
+        for (strategy, name) in <Strategy as VariantArray>::VARIANTS
+            .iter()
+            .zip(<Strategy as VariantNames>::VARIANTS)
+        {
+            assert_eq!((strategy.name(), name.parse()), (*name, Ok(*strategy)));
+            let parameters = Parameters::new(*strategy, &VehicleDescription::default(), &tuning);
+            let demand = State::default().step(&parameters, &Estimate::default(), &Trusted::default());
+            assert!(!demand.rollover_guard, "{name} at rest");
         }
     }
 }

@@ -6,7 +6,9 @@
 #![allow(dead_code, reason = "each test binary uses its part")]
 
 use oleo_controller::can::{CommandMessage, Frame, PlantEnd};
-use oleo_controller::{Configuration, Inputs, Node, Outputs, ValveCommand};
+use oleo_controller::{
+    Absolute, Configuration, Corners, Gauge, Inputs, Node, Outputs, StrutPressures, Valve, ValveCommand,
+};
 
 pub const AREA_M2: f32 = 1.963_495_4e-3;
 pub const STATIC_PA: f32 = 2.0e6;
@@ -36,7 +38,7 @@ impl QuietStrut {
     }
 
     /// Gauge pressures p1 to p4 at a displacement, compression positive.
-    pub fn pressures(&mut self, displacement_m: f32, spring_open: bool) -> [f32; 4] {
+    pub fn pressures(&mut self, displacement_m: f32, spring_open: bool) -> StrutPressures<Gauge<f32>> {
         let oil_m3 = AREA_M2 * displacement_m;
         let [v1, v2] = VOLUME_M3;
         let (p1, p4) = if spring_open {
@@ -47,27 +49,31 @@ impl QuietStrut {
             let gas1_m3 = (v1 + v2 - oil_m3 - self.gas2_m3).max(1e-6);
             (self.charge_pa * v1 / gas1_m3, self.charge_pa * v2 / self.gas2_m3)
         };
-        [p1, p1, p1, p4].map(|p| p - ATMOSPHERE_PA)
+        StrutPressures {
+            p4,
+            ..StrutPressures::splat(p1)
+        }
+        .map(|p| Absolute(p).gauge())
     }
 }
 
 /// Displacements in metres as a function of the tick: several incommensurate sines, so that everything moves.
-pub fn rough_road(tick: u32) -> [f32; 4] {
+pub fn rough_road(tick: u32) -> Corners<f32> {
     let t = tick as f32 * 0.005;
     let sine = |hz: f32, phase: f32| libm::sinf(6.283_185_5 * hz * t + phase);
-    [
+    Corners::from_array([
         0.012 * sine(1.3, 0.0) + 0.004 * sine(7.1, 0.3),
         0.012 * sine(1.3, 0.4) + 0.004 * sine(6.7, 1.1),
         0.011 * sine(1.3, 1.9) + 0.004 * sine(7.9, 0.2),
         0.011 * sine(1.3, 2.3) + 0.004 * sine(8.3, 2.0),
-    ]
+    ])
 }
 
 /// Controller and test vehicle with a bus between.
 pub struct Loop {
     pub node: Node,
     pub plant: PlantEnd,
-    pub struts: [QuietStrut; 4],
+    pub struts: Corners<QuietStrut>,
     pub tick: u32,
     pub command: ValveCommand,
     pub answer: Option<CommandMessage>,
@@ -78,7 +84,7 @@ impl Loop {
         Self {
             node: Node::new(configuration),
             plant: PlantEnd::new(),
-            struts: [QuietStrut::default(); 4],
+            struts: Corners::splat(QuietStrut::default()),
             tick: 0,
             command: ValveCommand::SAFE,
             answer: None,
@@ -86,18 +92,18 @@ impl Loop {
     }
 
     /// What the sensors say at present displacements.
-    pub fn sensors(&mut self, displacement_m: [f32; 4]) -> Inputs {
-        let mut pressure_pa = [[0.0; 4]; 4];
-        for corner in 0..4 {
-            pressure_pa[corner] = self.struts[corner].pressures(displacement_m[corner], self.command.valve(corner, 2));
-        }
-        Inputs::from_values(displacement_m, pressure_pa)
+    pub fn sensors(&mut self, displacement_m: Corners<f32>) -> Inputs {
+        let pressure = Corners::from_fn(|corner| {
+            let open = self.command.is_open(corner, Valve::Spring);
+            self.struts[corner].pressures(displacement_m[corner], open)
+        });
+        Inputs::from_values(displacement_m, pressure)
     }
 
     /// One tick on which `tamper` may change readings and frames.
     pub fn step(
         &mut self,
-        displacement_m: [f32; 4],
+        displacement_m: Corners<f32>,
         tamper_inputs: impl FnOnce(&mut Inputs),
         tamper_frames: impl FnOnce(&mut Vec<Frame>),
     ) -> Outputs {

@@ -9,6 +9,9 @@
 
 use std::ops::Range;
 
+use crate::specimen::StateSeries;
+use crate::vocabulary::State;
+
 /// Groups of equal numbers of samples that a state is cut into.
 const GROUPS: usize = 48;
 /// A region needs this much more of the misfit than of the samples to be called one.
@@ -16,34 +19,11 @@ const LEAST_CONCENTRATION: f64 = 0.25;
 /// A state is followed if it explains this part of the misfit's variance.
 const LEAST_FOLLOWING: f64 = 0.5;
 
-/// A quantity of the recordings, all samples of the campaign in one series; NaN where it is not defined.
-#[derive(Debug, Clone)]
-pub struct State {
-    /// Quantity, unit after a comma.
-    pub name: String,
-    /// Values.
-    pub values: Vec<f64>,
-}
-
-impl State {
-    /// Quantity and unit.
-    #[must_use]
-    pub fn quantity_and_unit(&self) -> (&str, &str) {
-        split(&self.name)
-    }
-}
-
-/// "speed, m/s" as quantity and unit.
-#[must_use]
-pub fn split(name: &str) -> (&str, &str) {
-    name.rsplit_once(", ").unwrap_or((name, ""))
-}
-
 /// The stretch of a state in which the misfit concentrates.
 #[derive(Debug, Clone)]
 pub struct Region {
-    /// Quantity with unit.
-    pub state: String,
+    /// The state.
+    pub state: State,
     /// From.
     pub from: f64,
     /// To.
@@ -66,16 +46,16 @@ pub struct Condition {
     /// Where it concentrates, if it does.
     pub region: Option<Region>,
     /// Which state it follows, and the part of its variance that this explains.
-    pub follows: Option<(String, f64)>,
+    pub follows: Option<(State, f64)>,
 }
 
 impl Condition {
     /// Finds both. `misfit` is squared misfit a sample (negative where the model with the effect is worse), `residual` what
     /// the effect changes in the residual.
     #[must_use]
-    pub fn of(states: &[State], misfit: &[f64], residual: &[f64]) -> Self {
+    pub fn of(states: &[StateSeries], misfit: &[f64], residual: &[f64]) -> Self {
         let mut region: Option<Region> = None;
-        let mut follows: Option<(String, f64)> = None;
+        let mut follows: Option<(State, f64)> = None;
         for state in states {
             let groups = Groups::of(&state.values);
             let better = |r: &Region| region.as_ref().is_none_or(|b| r.concentration() > b.concentration());
@@ -84,15 +64,15 @@ impl Condition {
             }
             let eta = groups.following(residual);
             if follows.as_ref().is_none_or(|(_, best)| eta > *best) {
-                follows = Some((state.name.clone(), eta));
+                follows = Some((state.state, eta));
             }
         }
         let region = region.filter(|r| r.concentration() > LEAST_CONCENTRATION);
         let follows = follows.filter(|f| f.1 > LEAST_FOLLOWING);
         let text = match (&region, &follows) {
-            (Some(r), Some((state, part))) => format!("{}; {}", r.words(), follow(state, *part)),
+            (Some(r), Some((state, part))) => format!("{}; {}", r.words(), follow(*state, *part)),
             (Some(r), None) => r.words(),
-            (None, Some((state, part))) => format!("over the whole range; {}", follow(state, *part)),
+            (None, Some((state, part))) => format!("over the whole range; {}", follow(*state, *part)),
             (None, None) => "over the whole range of every recorded state".into(),
         };
         Self {
@@ -114,18 +94,18 @@ impl Region {
     /// "near zero speed, below 4 mm/s: 83 % of the misfit in 12 % of the samples".
     #[must_use]
     pub fn words(&self) -> String {
-        let (quantity, unit) = split(&self.state);
+        let (quantity, unit) = self.state.quantity_and_unit();
         let (from, to) = (shown(self.from, unit), shown(self.to, unit));
-        let place = match (quantity, self.reaches) {
-            ("displacement", (false, true)) if self.to > 0.0 => {
+        let place = match (self.state, self.reaches) {
+            (State::Displacement, (false, true)) if self.to > 0.0 => {
                 format!("near the end of travel in jounce, beyond {from}")
             }
-            ("displacement", (true, false)) if self.from < 0.0 => {
+            (State::Displacement, (true, false)) if self.from < 0.0 => {
                 format!("near the end of travel in rebound, below {to}")
             }
-            ("time since a switching edge", (true, _)) => format!("at a switching edge, up to {to} after it"),
-            ("size of the speed", (false, true)) => format!("at speeds above {from}"),
-            ("size of the speed", (true, _)) => format!("near zero speed, up to {to}"),
+            (State::TimeSinceSwitching, (true, _)) => format!("at a switching edge, up to {to} after it"),
+            (State::SpeedMagnitude, (false, true)) => format!("at speeds above {from}"),
+            (State::SpeedMagnitude, (true, _)) => format!("near zero speed, up to {to}"),
             (_, (true, true)) => format!("everywhere in {quantity}"),
             (_, (true, false)) => format!("at {quantity} below {to}"),
             (_, (false, true)) => format!("at {quantity} above {from}"),
@@ -139,8 +119,12 @@ impl Region {
     }
 }
 
-fn follow(state: &str, part: f64) -> String {
-    format!("follows {} (explains {:.0} % of it)", split(state).0, 100.0 * part)
+fn follow(state: State, part: f64) -> String {
+    format!(
+        "follows {} (explains {:.0} % of it)",
+        state.quantity_and_unit().0,
+        100.0 * part
+    )
 }
 
 /// A value in the unit people use for it.
@@ -181,7 +165,7 @@ impl Groups {
         Self { order, cuts }
     }
 
-    fn region(&self, state: &State, misfit: &[f64]) -> Option<Region> {
+    fn region(&self, state: &StateSeries, misfit: &[f64]) -> Option<Region> {
         let total: f64 = misfit.iter().sum();
         if total <= 0.0 || self.cuts.len() < 4 {
             return None;
@@ -210,7 +194,7 @@ impl Groups {
         let samples = self.cuts[found.start].start..self.cuts[found.end - 1].end;
         let at = |k: usize| state.values[self.order[k]];
         Some(Region {
-            state: state.name.clone(),
+            state: state.state,
             from: at(samples.start),
             to: at(samples.end - 1),
             share_of_misfit: shares[found.clone()].iter().map(|s| s.0).sum(),
@@ -249,17 +233,12 @@ mod tests {
             .unzip()
     }
 
-    fn states(x: &[f64], v: &[f64]) -> Vec<State> {
-        [
-            ("displacement, m", x.to_vec()),
-            ("direction of travel", v.iter().map(|v| v.signum()).collect()),
-            ("size of the speed, m/s", v.iter().map(|v| v.abs()).collect()),
+    fn states(x: &[f64], v: &[f64]) -> Vec<StateSeries> {
+        vec![
+            StateSeries::new(State::Displacement, x.to_vec()),
+            StateSeries::new(State::Direction, v.iter().map(|v| v.signum()).collect()),
+            StateSeries::new(State::SpeedMagnitude, v.iter().map(|v| v.abs()).collect()),
         ]
-        .map(|(name, values)| State {
-            name: name.into(),
-            values,
-        })
-        .into()
     }
 
     fn condition(x: &[f64], v: &[f64], residual: &[f64]) -> Condition {

@@ -7,18 +7,18 @@ pub mod relations;
 use std::sync::Arc;
 
 use crate::error::DiagnoseError;
-use crate::fit::{Effort, fit};
-use crate::problem::Problem;
-use crate::select::Selection;
-use crate::specimen::{Candidate, Series, Specimen};
-use condition::{Condition, State};
-pub use relations::{Reach, Relation, reaches, relations};
+use crate::estimation::{LeastSquares, fit};
+use crate::search::Selection;
+use crate::specimen::{Candidate, Series, Specimen, StateSeries};
+use crate::vocabulary::{Column, Place, Site, State};
+use condition::Condition;
+pub use relations::{ChangedRelation, relations_changed_alone};
 
 /// A place with the misfit that belongs to it.
 #[derive(Debug, Clone)]
 pub struct Location {
-    /// Place of the vocabulary.
-    pub place: String,
+    /// The place.
+    pub place: Place,
     /// Part of the excess misfit of the calibrated model that disappears with the effect found there.
     pub share_of_excess: f64,
     /// Recording in which it shows most.
@@ -47,13 +47,13 @@ const SHARP: f64 = 0.8;
 /// # Errors
 /// As the fit without an effect.
 pub fn locate(
-    problem: &Problem<'_>,
+    problem: &LeastSquares<'_>,
     selection: &Selection,
     calibrated: &[Series],
     improved: &[Series],
 ) -> Result<Vec<Location>, DiagnoseError> {
-    let specimen = problem.specimen;
-    let count = problem.count() as f64;
+    let specimen = problem.specimen();
+    let count = problem.residuals() as f64;
     let total = |r: &[Series]| {
         r.iter()
             .flatten()
@@ -63,19 +63,20 @@ pub fn locate(
     let excess = (total(calibrated) - count).max(1.0);
     let states = states(specimen, every(specimen));
     let mut out = Vec::new();
-    for chosen in &selection.chosen {
-        let Some(position) = selection.best.point.effects.iter().position(|&e| e == chosen.candidate) else {
+    for effect in &selection.effects {
+        let Some(position) = selection.best.point.effects.iter().position(|&e| e == effect.candidate) else {
             continue;
         };
-        let without = fit(problem, problem.without(&selection.best.point, position), Effort::QUICK)?;
-        let without = Arc::new(problem.residuals(&problem.predict(&without.point)?));
+        let start = selection.best.point.without_effect(specimen, position);
+        let without = fit(problem, start, problem.criteria.fitting.quick)?;
+        let without = Arc::new(problem.evaluation.residuals_at(&without.point)?);
         let share = ((total(&without) - total(improved)) / excess).clamp(0.0, 1.0);
-        for (place, channels, part) in places(specimen, &specimen.candidates()[chosen.candidate], &without, improved) {
+        for (place, channels, part) in places(specimen, &specimen.candidates()[effect.candidate], &without, improved) {
             let found = strongest(specimen, &states, &channels, &without, improved);
             out.push(Location {
                 place,
                 share_of_excess: share * part,
-                candidate: Some(chosen.candidate),
+                candidate: Some(effect.candidate),
                 without: without.clone(),
                 ..found
             });
@@ -88,7 +89,7 @@ pub fn locate(
             .collect();
         let channels: Vec<usize> = (0..specimen.channels().len()).collect();
         out.push(Location {
-            place: "unknown".into(),
+            place: Site::Unknown.into(),
             share_of_excess: ((total(improved) - count) / excess).clamp(0.0, 1.0),
             without: Arc::new(improved.to_vec()),
             ..strongest(specimen, &states, &channels, improved, &none)
@@ -105,19 +106,26 @@ fn places(
     candidate: &Candidate,
     without: &[Series],
     with: &[Series],
-) -> Vec<(String, Vec<usize>, f64)> {
-    let channel = |name: &str| specimen.channels().iter().position(|c| c.name == name);
-    let pair = match candidate.place.as_str() {
-        "accumulators" => [("accumulator-1", channel("p2_Pa")), ("accumulator-2", channel("p4_Pa"))],
-        "path-1+path-2" => [("path-1", channel("p2_Pa")), ("path-2", channel("p4_Pa"))],
-        place => {
-            let mut channels: Vec<usize> = nearest(place).iter().filter_map(|c| channel(c)).collect();
+) -> Vec<(Place, Vec<usize>, f64)> {
+    let channel = |column: &Column| specimen.channels().iter().position(|c| c.column == *column);
+    let place = &candidate.place;
+    let parts = match place.site {
+        Site::Accumulators | Site::Paths => place.site.parts(),
+        _ => {
+            let mut channels: Vec<usize> = specimen.nearest_channels(place).iter().filter_map(channel).collect();
             if channels.is_empty() {
                 channels = (0..specimen.channels().len()).collect();
             }
-            return vec![(place.to_owned(), channels, 1.0)];
+            return vec![(place.clone(), channels, 1.0)];
         }
     };
+    let parts: Vec<(Place, Option<usize>)> = (parts.into_iter())
+        .map(|site| {
+            let part = place.with_site(site);
+            let beyond = specimen.nearest_channels(&part).last().and_then(channel);
+            (part, beyond)
+        })
+        .collect();
     let misfit = |c: Option<usize>| -> f64 {
         c.map_or(0.0, |c| {
             (0..without.len())
@@ -126,26 +134,15 @@ fn places(
                 .max(0.0)
         })
     };
-    let both = misfit(pair[0].1) + misfit(pair[1].1);
-    pair.iter()
-        .map(|(place, c)| {
-            let part = if both > 0.0 { misfit(*c) / both } else { 0.5 };
-            ((*place).to_owned(), c.iter().copied().collect(), part)
+    let all: f64 = parts.iter().map(|(_, c)| misfit(*c)).sum();
+    let equal = 1.0 / parts.len() as f64;
+    parts
+        .into_iter()
+        .map(|(part, c)| {
+            let fraction = if all > 0.0 { misfit(c) / all } else { equal };
+            (part, c.into_iter().collect(), fraction)
         })
         .collect()
-}
-
-/// The instruments of a strut next to a place; none where all are as near.
-fn nearest(place: &str) -> Vec<&str> {
-    match place {
-        "main-seal" | "end-stop" => vec!["force_N"],
-        "main-chamber" => vec!["p1_Pa"],
-        "accumulator-1" => vec!["p2_Pa"],
-        "accumulator-2" => vec!["p4_Pa"],
-        "path-1" => vec!["p1_Pa", "p2_Pa"],
-        "path-2" | "valve-3" => vec!["p3_Pa", "p4_Pa"],
-        _ => place.strip_prefix("sensor:").into_iter().collect(),
-    }
 }
 
 /// Squared misfit a sample that goes with the effect.
@@ -158,7 +155,7 @@ fn gain(without: &[Series], with: &[Series], recording: usize, channel: usize) -
 /// Where `without` is worst against `with`, in the given channels.
 fn strongest(
     specimen: &dyn Specimen,
-    states: &[State],
+    states: &[StateSeries],
     channels: &[usize],
     without: &[Series],
     with: &[Series],
@@ -218,7 +215,7 @@ fn strongest(
         }
     }
     Location {
-        place: String::new(),
+        place: Site::Unknown.into(),
         share_of_excess: 0.0,
         recording,
         t_s,
@@ -244,59 +241,48 @@ fn window(gain: &[f64]) -> (usize, usize) {
     (at, (at + width - 1).min(n - 1))
 }
 
-const SPEED: &str = "speed, m/s";
-
 fn speed(specimen: &dyn Specimen, recording: usize) -> Option<Vec<f64>> {
     let mut states = specimen.states(recording).into_iter();
-    states.find(|(name, _)| *name == SPEED).map(|(_, values)| values)
+    states.find(|s| s.state == State::Speed).map(|s| s.values)
 }
 
 /// Samples from which a condition is read: of longer campaigns one of `every` is taken.
 const SAMPLES: usize = 200_000;
 
 fn every(specimen: &dyn Specimen) -> usize {
-    let all: usize = (0..specimen.recordings()).map(|r| specimen.time_s(r).len()).sum();
-    all.div_ceil(SAMPLES).max(1)
+    specimen.samples().div_ceil(SAMPLES).max(1)
 }
 
 /// States of all recordings one after the other, one sample of `every` in each, and what follows from the speed: its size and its direction.
 #[must_use]
-pub fn states(specimen: &dyn Specimen, every: usize) -> Vec<State> {
-    let mut all: Vec<State> = Vec::new();
+pub fn states(specimen: &dyn Specimen, every: usize) -> Vec<StateSeries> {
+    let mut all: Vec<StateSeries> = Vec::new();
     let mut before = 0;
-    for r in 0..specimen.recordings() {
+    for r in 0..specimen.recordings().len() {
         let n = specimen.time_s(r).len().div_ceil(every);
-        for (name, values) in specimen.states(r) {
-            let state = match all.iter_mut().find(|s| s.name == name) {
-                Some(known) => known,
-                None => {
-                    all.push(State {
-                        name: name.into(),
-                        values: Vec::new(),
-                    });
-                    all.last_mut().expect("just added")
-                }
-            };
+        for StateSeries { state, values } in specimen.states(r) {
+            let known = all.iter().position(|s| s.state == state).unwrap_or_else(|| {
+                all.push(StateSeries::new(state, Vec::new()));
+                all.len() - 1
+            });
             // Undefined in the recordings that do not have it.
-            state.values.resize(before, f64::NAN);
-            state.values.extend(values.into_iter().step_by(every));
+            all[known].values.resize(before, f64::NAN);
+            all[known].values.extend(values.into_iter().step_by(every));
         }
         before += n;
     }
     all.iter_mut().for_each(|s| s.values.resize(before, f64::NAN));
-    if let Some(speed) = all.iter().find(|s| s.name == SPEED).map(|s| s.values.clone()) {
+    if let Some(speed) = all.iter().find(|s| s.state == State::Speed).map(|s| s.values.clone()) {
         let fastest = speed.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let direction = |v: &f64| {
             if v.abs() < 1e-4 * fastest { 0.0 } else { v.signum() }
         };
-        all.push(State {
-            name: "direction of travel".into(),
-            values: speed.iter().map(direction).collect(),
-        });
-        all.push(State {
-            name: "size of the speed, m/s".into(),
-            values: speed.iter().map(|v| v.abs()).collect(),
-        });
+        all.push(StateSeries::new(
+            State::Direction,
+            speed.iter().map(direction).collect(),
+        ));
+        let magnitude = speed.iter().map(|v| v.abs()).collect();
+        all.push(StateSeries::new(State::SpeedMagnitude, magnitude));
     }
     all
 }

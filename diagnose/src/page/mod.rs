@@ -1,16 +1,15 @@
 //! `report.html`: where, what, model, how much better, what to record next, for somebody who was not there.
 
-mod cause;
-mod gain;
+mod effects;
+mod improvement;
+mod locations;
 mod model;
-mod place;
-mod schematic;
 pub mod words;
 
-use oleo_report::{Cell, Column, Page, Table, Verdict, significant};
+use oleo_report::{Cell, Column, Page, Table, Verdict as Colour, significant};
 
 use crate::campaign::Campaign;
-use crate::diagnosis::{Diagnosis, Effect};
+use crate::diagnosis::{Diagnosis, Effect, Verdict};
 use crate::json;
 use crate::specimen::Candidate;
 
@@ -19,9 +18,9 @@ use crate::specimen::Candidate;
 pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s: f64) -> Page {
     let specimen = &*campaign.specimen;
     let mut page = Page::new(&format!("Diagnosis of {}", campaign.name), command);
-    page.fact("Specimen", specimen.kind());
-    let samples: usize = (0..specimen.recordings()).map(|r| specimen.time_s(r).len()).sum();
-    let names: Vec<&str> = (0..specimen.recordings()).map(|r| specimen.recording_name(r)).collect();
+    page.fact("Specimen", specimen.kind().as_str());
+    let samples = specimen.samples();
+    let names: Vec<&str> = specimen.recordings().iter().map(|r| r.name.as_str()).collect();
     page.fact(
         "Recordings",
         &format!("{}: {} ({samples} samples)", names.len(), names.join(", ")),
@@ -37,19 +36,15 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
     if !diagnosis.effects.is_empty() {
         page.outcome(in_brief(diagnosis));
     }
-    let inputs = match specimen.kind() {
-        "gas spring" => "displacement and the first pressure",
-        "cylinder" => "displacement and the pressures",
-        _ => "displacement and switching signals",
-    };
     page.text(&format!(
         "Noise ratio: RMS of recording minus simulation over the sensor's noise. 1 is perfect. Held out: judged on stretches \
-         that had no say in the fit. The model is simulated freely: it gets {inputs}, and nothing else that was measured."
+         that had no say in the fit. The model is simulated freely: it gets {}, and nothing else that was measured.",
+        specimen.inputs_in_words()
     ));
-    place::section(&mut page, campaign, diagnosis);
-    cause::section(&mut page, campaign, diagnosis);
+    locations::section(&mut page, campaign, diagnosis);
+    effects::section(&mut page, campaign, diagnosis);
     model::section(&mut page, diagnosis);
-    gain::section(&mut page, campaign, diagnosis);
+    improvement::section(&mut page, campaign, diagnosis);
     next(&mut page, campaign, diagnosis);
     if !campaign.notes.is_empty() {
         page.section("Remarks on the recordings");
@@ -60,43 +55,45 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
     page
 }
 
-fn colour(diagnosis: &Diagnosis) -> Verdict {
+fn colour(diagnosis: &Diagnosis) -> Colour {
     match diagnosis.verdict() {
-        "consistent" => Verdict::Pass,
-        "missing_physics" if !diagnosis.selection.incomplete && diagnosis.ambiguous.is_empty() => Verdict::Attention,
-        _ => Verdict::Fail,
+        Verdict::Consistent => Colour::Pass,
+        Verdict::MissingPhysics if !diagnosis.selection.incomplete && diagnosis.ambiguous.is_empty() => {
+            Colour::Attention
+        }
+        _ => Colour::Fail,
     }
 }
 
 /// The whole story in two sentences.
 #[must_use]
 pub fn headline(all: &[Candidate], diagnosis: &Diagnosis) -> String {
-    let (before, after) = diagnosis.selection.noise_ratio;
+    let (before, after) = (diagnosis.selection.calibrated_ratio, diagnosis.selection.improved_ratio);
     let (before, after) = (significant(before, 3), significant(after, 3));
     let mut text = match diagnosis.verdict() {
-        "consistent" => format!(
+        Verdict::Consistent => format!(
             "Nothing is missing: recalibrated within its tolerances, the model predicts every recording to {after} times the \
              sensors' noise."
         ),
-        "missing_physics" => format!(
+        Verdict::MissingPhysics => format!(
             "The model leaves out {}. With {}, what was held out of the fit is predicted to {after} times the sensors' \
              noise instead of {before} times.",
             list(&phrases(diagnosis)),
             if phrases(diagnosis).len() == 1 { "it" } else { "them" },
         ),
-        _ => format!(
+        Verdict::Unexplained => format!(
             "The model disagrees with the recordings ({after} times the sensors' noise), and no effect that was tried explains it."
         ),
     };
-    if diagnosis.selection.incomplete && diagnosis.verdict() == "missing_physics" {
+    if diagnosis.selection.incomplete && diagnosis.verdict() == Verdict::MissingPhysics {
         text += " That is not all: a misfit that no effect tried explains is left.";
     }
-    for chosen in diagnosis.selection.chosen.iter().filter(|c| c.ambiguous) {
-        if let Some((rival, ..)) = chosen.rival {
+    for effect in &diagnosis.selection.effects {
+        if let Some(rival) = effect.ambiguous_rival() {
             let said = |c: &Candidate| format!("{} {}", words::called(c.id, &c.label), words::at(&c.place));
             text += &format!(
                 " The recordings cannot tell {} from {}; what to record to separate them is said below.",
-                said(&all[chosen.candidate]),
+                said(&all[effect.candidate]),
                 said(&all[rival])
             );
         }
@@ -107,8 +104,8 @@ pub fn headline(all: &[Candidate], diagnosis: &Diagnosis) -> String {
 /// Effects as phrases, one an id, with all its places.
 fn phrases(diagnosis: &Diagnosis) -> Vec<String> {
     let mut out: Vec<(String, String)> = Vec::new();
-    for e in diagnosis.effects.iter().filter(|e| e.chosen.is_some()) {
-        let name = words::called(&e.id, &e.label);
+    for e in diagnosis.effects.iter().filter(|e| e.selected.is_some()) {
+        let name = words::called(e.id, &e.label);
         let place = words::at(&e.place);
         match out.iter_mut().find(|(known, _)| *known == name) {
             Some((_, places)) => *places += &format!(" and {place}"),
@@ -148,7 +145,7 @@ fn in_brief(diagnosis: &Diagnosis) -> Table {
             .collect();
         let place = words::at(&e.place);
         table.row([
-            format!("{} ({})", words::words(&e.id, &e.label).name, name(e)),
+            format!("{} ({})", words::words(e.id, &e.label).name, name(e)),
             place.trim_start_matches("in ").trim_start_matches("at ").to_owned(),
             match points(e) {
                 Some(n) => format!("a law of {n} points, drawn under What"),
@@ -156,8 +153,8 @@ fn in_brief(diagnosis: &Diagnosis) -> Table {
                 None => large.join("; "),
             },
             format!("{:.2}", e.confidence),
-            format!("{:.2}", e.held_out.0),
-            format!("{:.2}", e.held_out.1),
+            format!("{:.2}", e.ratio_without),
+            format!("{:.2}", e.ratio_with),
         ]);
     }
     table
@@ -170,7 +167,7 @@ fn points(effect: &Effect) -> Option<usize> {
 
 fn name(effect: &Effect) -> String {
     if effect.label.is_empty() {
-        effect.id.clone()
+        effect.id.to_string()
     } else {
         format!("{}: {}", effect.id, effect.label)
     }
@@ -224,11 +221,11 @@ pub fn effects_table(diagnosis: &Diagnosis) -> Table {
             .collect();
         table.row([
             name(e),
-            e.place.clone(),
+            e.place.as_reported(),
             format!("{:.2}", e.confidence),
             points(e).map_or_else(|| numbers.join("; "), |n| format!("a law of {n} points")),
-            format!("{:.2}", e.held_out.0),
-            format!("{:.2}", e.held_out.1),
+            format!("{:.2}", e.ratio_without),
+            format!("{:.2}", e.ratio_with),
         ]);
     }
     table

@@ -3,7 +3,7 @@
 use oleo_report::{Cell, Column, Page, Table, significant};
 
 use super::words;
-use crate::diagnosis::Diagnosis;
+use crate::diagnosis::{Correlation, Diagnosis};
 
 pub fn section(page: &mut Page, diagnosis: &Diagnosis) {
     page.section("The improved model");
@@ -36,7 +36,7 @@ fn calibration(page: &mut Page, diagnosis: &Diagnosis) {
     let most = diagnosis
         .calibration
         .iter()
-        .map(|(_, z)| 0.5 * z.abs())
+        .map(|c| c.tolerance_used)
         .fold(0.0, f64::max);
     page.text(&format!(
         "Recalibration is part of every fit and is not physics: the values below were re-estimated within the tolerances that \
@@ -50,10 +50,10 @@ fn calibration(page: &mut Page, diagnosis: &Diagnosis) {
         Column::text("Unit"),
         Column::text("Of its tolerance"),
     ]);
-    for (e, z) in &diagnosis.calibration {
+    for c in &diagnosis.calibration {
+        let (e, used) = (&c.estimate, c.tolerance_used);
         let (name, unit) = words::quantity(&e.key);
         let (value, interval) = words::value_and_interval(e.value, e.ci95);
-        let used = 0.5 * z.abs();
         let text = format!("{:.0} %", 100.0 * used);
         table.row([
             name.into(),
@@ -68,14 +68,18 @@ fn calibration(page: &mut Page, diagnosis: &Diagnosis) {
         ]);
     }
     page.details("Calibration, value by value", table);
-    if !diagnosis.correlated.is_empty() {
+    if !diagnosis.correlations.is_empty() {
         let mut table = Table::new([
             Column::text("Estimate"),
             Column::text("and"),
             Column::number("Correlation"),
         ]);
-        for (a, b, r) in &diagnosis.correlated {
-            table.row([a.clone(), b.clone(), significant(*r, 3)]);
+        for Correlation {
+            keys: [a, b],
+            coefficient,
+        } in &diagnosis.correlations
+        {
+            table.row([a.clone(), b.clone(), significant(*coefficient, 3)]);
         }
         let summary = format!(
             "{} strongly correlated pairs of estimates: only their combination is well determined",

@@ -1,5 +1,9 @@
 //! The vocabulary in words: what an effect is called where it acts, its equation as the model has it, and its source.
 
+use oleo_interface::Valve;
+
+use crate::vocabulary::{EffectId, Place, Site};
+
 /// Name, equation in words and source of an effect.
 pub struct Words {
     /// "gas heat transfer".
@@ -12,106 +16,106 @@ pub struct Words {
 
 /// Words of an id of the vocabulary; `label` tells laws without a name apart.
 #[must_use]
-pub fn words(id: &str, label: &str) -> Words {
+pub fn words(id: EffectId, label: &str) -> Words {
     let (name, equation, source) = match id {
-        "oil_compressibility" => (
+        EffectId::OilCompressibility => (
             "oil compressibility",
             "dp1/dt = beta / (V_oil - A x) (A dx/dt - Q1 - Q2): the oil column is a spring of bulk modulus beta between piston and dampers",
             "Theron & Els, final report 2002, figure 21",
         ),
-        "entrained_air" => (
+        EffectId::EntrainedAir => (
             "air in the oil",
             "1/beta_eff = 1/beta + a (p_atm/p)^(1/n) / (n p), p absolute: the bulk modulus falls at low pressure, a the volume fraction of air at atmospheric pressure, n its polytropic exponent",
             "Gholizadeh, Burton & Schoenau, Int. J. Fluid Power 12(3), 2011",
         ),
-        "gas_heat_transfer" => (
+        EffectId::GasHeatTransfer => (
             "gas heat transfer",
             "m c_v dT/dt = -T (dp/dT)_V dV/dt - m c_v (T - T_ambient)/tau: compression warms the gas, which cools with the time constant tau",
             "Els & Grobbelaar, SAE 930265; Otis & Pourmovahed, J. Dyn. Sys. 107, 1985",
         ),
-        "real_gas" => (
+        EffectId::RealGas => (
             "real-gas behaviour of the nitrogen",
             "p = rho R T (1 + delta alpha_delta): the pressure departs from the ideal gas law as density grows",
             "Span et al., J. Phys. Chem. Ref. Data 29(6), 2000",
         ),
-        "gas_charge_error" => (
+        EffectId::GasChargeError => (
             "a wrong gas charge",
             "gas volume at static pressure times (1 + e): more or less gas than the model believes, beyond tolerance",
             "definition of the recordings",
         ),
-        "seal_friction" => (
+        EffectId::SealFriction => (
             "seal friction",
             "dF/dx = k (1 - sgn(v) F/g), g = F_c + (F_s - F_c) exp(-(v/v_s)^2): Coulomb force F_c, breakaway force F_s, Stribeck speed v_s",
             "Dahl 1968; Canudas de Wit et al., IEEE TAC 40(3), 1995",
         ),
-        "side_load_friction" => (
+        EffectId::SideLoadFriction => (
             "friction that grows with load",
             "friction level mu |F|: what presses the seal or bends the rod makes it rub",
             "Theron & Els, final report 2002, section 3.5.1",
         ),
-        "accumulator_piston_friction" => (
+        EffectId::AccumulatorPistonFriction => (
             "friction of the floating piston",
             "p_oil = p_gas + p_f s, ds/dV = (1 - s sgn(Q))/V_s: the piston's seal holds back the pressure p_f, and gives way over the volume V_s",
             "Theron & Els, final report 2002, section 3.5.1",
         ),
-        "damper_leakage" => (
+        EffectId::DamperLeakage => (
             "oil passing beside the damper pack",
             "Q = c dp / sqrt(|dp| + p_t) in parallel with the pack",
             "Theron & Els, final report 2002, section 3.5.2",
         ),
-        "line_resistance" => (
+        EffectId::LineResistance => (
             "viscous loss in a line",
             "dp = R Q in series with the pack",
             "Hagen-Poiseuille",
         ),
-        "line_inertance" => (
+        EffectId::LineInertance => (
             "mass of the oil column in a line",
             "dp = I dQ/dt, I = rho l / a",
             "Newton, oil column",
         ),
-        "valve_delay" => (
+        EffectId::ValveDelay => (
             "valve response that depends on pressure",
             "total = c0 + c1 dP + c2 dP^2 s, dP the pressure difference across the valve at the edge in MPa",
             "Theron & Els, final report 2002, figures 24 and 25",
         ),
-        "valve_transition" => (
+        EffectId::ValveTransition => (
             "gradual valve opening",
             "opening is the straight line through 5 % at the initial delay and 95 % at the total response time, not a step",
             "Theron & Els, final report 2002, section 3.6",
         ),
-        "valve3_leakage" => (
+        EffectId::Valve3Leakage => (
             "leakage through the closed valve",
             "Q = c dp / sqrt(|dp| + p_t) while the valve is closed",
             "definition of the recordings",
         ),
-        "bump_stop" => (
+        EffectId::BumpStop => (
             "contact with a stop",
             "F = k d + c d^3, d the travel beyond the clearance",
             "progressive rubber buffer",
         ),
-        "mount_compliance" => (
+        EffectId::MountCompliance => (
             "compliance",
             "x_strut = x - (F - F_static)/k: the strut moves less than the actuator",
             "rubber bush in series",
         ),
-        "damping_fade" => (
+        EffectId::DampingFade => (
             "damping that fades with heat",
             "drop / (1 + f E), dE/dt = dp Q - E/tau: dampers weaken as their oil warms",
             "lumped energy balance",
         ),
-        "sensor_lag" => ("a lagging instrument", "tau dy/dt + y = x", "first-order instrument"),
-        "sensor_skew" => (
+        EffectId::SensorLag => ("a lagging instrument", "tau dy/dt + y = x", "first-order instrument"),
+        EffectId::SensorSkew => (
             "a late (or early) instrument",
             "y(t) = x(t - s)",
             "definition of the recordings",
         ),
-        "sensor_gain" => (
+        EffectId::SensorGain => (
             "a wrong gain of an instrument",
             "y = rest + (1 + e)(x - rest)",
             "definition of the recordings",
         ),
-        "sensor_drift" => ("a drifting instrument", "y = x + d t", "definition of the recordings"),
-        "sensor_sign" => (
+        EffectId::SensorDrift => ("a drifting instrument", "y = x + d t", "definition of the recordings"),
+        EffectId::SensorSign => (
             "an instrument with the wrong sign",
             "y = -x",
             "definition of the recordings",
@@ -139,8 +143,8 @@ fn unlisted(label: &str) -> Words {
 
 /// The name; a law that has none is called after what it relates.
 #[must_use]
-pub fn called(id: &str, label: &str) -> String {
-    if id == "unlisted" && label.contains(" over ") {
+pub fn called(id: EffectId, label: &str) -> String {
+    if id == EffectId::Unlisted && label.contains(" over ") {
         format!("a {label}, which has no name in the vocabulary,")
     } else {
         words(id, label).name.to_owned()
@@ -149,22 +153,22 @@ pub fn called(id: &str, label: &str) -> String {
 
 /// "in accumulator 1": a place after an effect's name.
 #[must_use]
-pub fn at(place: &str) -> String {
-    if let Some(column) = place.strip_prefix("sensor:") {
-        return format!("({column})");
-    }
-    match place {
-        "main-chamber" => "in the main chamber".into(),
-        "main-seal" => "at the main seal".into(),
-        "mount" => "at the mount".into(),
-        "end-stop" => "at the end of travel".into(),
-        "valve-1..3" => "(valves 1 to 3)".into(),
-        "valve-3" => "(valve 3)".into(),
-        "accumulators" | "both accumulators" => "in both accumulators".into(),
-        "chamber" => "in the gas chamber".into(),
-        "path-1+path-2" => "in both paths".into(),
-        "unknown" => "at a place that the recordings do not tell".into(),
-        other => format!("in {}", other.replace('-', " ")),
+pub fn at(place: &Place) -> String {
+    match &place.site {
+        Site::Sensor(column) => format!("({column})"),
+        Site::MainChamber => "in the main chamber".into(),
+        Site::MainSeal => "at the main seal".into(),
+        Site::Mount => "at the mount".into(),
+        Site::EndStop => "at the end of travel".into(),
+        Site::Valves => "(valves 1 to 3)".into(),
+        Site::Valve(Valve::Spring) => "(valve 3)".into(),
+        Site::Accumulators => "in both accumulators".into(),
+        Site::Chamber => "in the gas chamber".into(),
+        Site::Paths => "in both paths".into(),
+        Site::Unknown => "at a place that the recordings do not tell".into(),
+        Site::Accumulator(_) | Site::Path(_) | Site::Valve(_) => {
+            format!("in {}", place.site.to_string().replace('-', " "))
+        }
     }
 }
 
@@ -297,7 +301,10 @@ mod tests {
 
     #[test]
     fn every_id_of_the_vocabulary_has_words() {
-        for id in crate::specimen::strut::TERMS.into_iter().filter(|id| *id != "unlisted") {
+        for id in crate::specimen::strut::TERMS
+            .into_iter()
+            .filter(|id| *id != EffectId::Unlisted)
+        {
             assert!(!words(id, "").name.contains("without a name"), "{id}");
         }
     }

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use oleo_interface::StrutValves;
 use oleo_plant_sim::strut::{Inputs, Motion, Segment};
 
 use super::draw::Draw;
@@ -49,7 +50,7 @@ impl Move {
             })
             .collect();
         let signals = (0..n)
-            .map(|k| (self.signals)((k / refinement) as f64 * self.interval_s))
+            .map(|k| StrutValves::from_array((self.signals)((k / refinement) as f64 * self.interval_s)))
             .collect();
         Inputs {
             motion: Motion {
@@ -257,6 +258,7 @@ pub fn moves(draw: &mut Draw) -> Vec<Move> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oleo_interface::Valve;
 
     #[test]
     fn every_move_starts_at_rest_and_stays_within_the_travel() {
@@ -297,14 +299,14 @@ mod tests {
     #[test]
     fn every_valve_is_switched() {
         let all = moves(&mut Draw::named("valves"));
-        for valve in 0..3 {
+        for valve in Valve::ALL {
             let edges: usize = (all.iter())
                 .map(|m| {
                     let signals = m.inputs(1).signals;
                     signals.windows(2).filter(|w| w[0][valve] != w[1][valve]).count()
                 })
                 .sum();
-            assert!(edges >= 8, "valve {}: {edges}", valve + 1);
+            assert!(edges >= 8, "{valve:?}: {edges}");
         }
     }
 }

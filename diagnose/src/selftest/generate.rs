@@ -8,18 +8,20 @@
 use std::sync::atomic::AtomicBool;
 
 use nalgebra::{DMatrix, DVector};
+use oleo_interface::Valve;
 use oleo_plant_sim::strut::{COLUMNS, Effects, Inputs, StrutModel, record_column, replay};
 
 use super::draw::Draw;
 use super::excitation::{Move, moves};
 use super::hidden::{Hidden, Truth};
-use super::specimen::nominal;
+use super::nominal_strut::nominal;
 use crate::error::DiagnoseError;
-use crate::fit::bounded_step;
-use crate::problem::Problem;
+use crate::estimation::bounded_step::bounded_step;
+use crate::estimation::{Evaluation, Point};
 use crate::recording::Recording;
 use crate::specimen::strut::{CHANNELS, TwoStageStrut};
 use crate::specimen::{Hypothesis, Series, Specimen};
+use crate::vocabulary::EffectId;
 
 /// The truth's grid is this many times finer than a recording's.
 const REFINEMENT: usize = 5;
@@ -53,7 +55,7 @@ pub struct Generated {
 ///
 /// # Errors
 /// A drawn model that cannot be simulated.
-pub fn generate(name: &str, wanted: &[(&'static str, f64)]) -> Result<Generated, DiagnoseError> {
+pub fn generate(name: &str, wanted: &[(EffectId, f64)]) -> Result<Generated, DiagnoseError> {
     let mut draw = Draw::named(name);
     let mut given = nominal(name, &mut draw);
     let seen = moves(&mut draw);
@@ -98,7 +100,7 @@ pub fn generate(name: &str, wanted: &[(&'static str, f64)]) -> Result<Generated,
 }
 
 /// Draws the effects; two faults of one instrument would be one.
-fn concealed(wanted: &[(&'static str, f64)], complete: &StrutModel, draw: &mut Draw) -> Vec<(Hidden, f64)> {
+fn concealed(wanted: &[(EffectId, f64)], complete: &StrutModel, draw: &mut Draw) -> Vec<(Hidden, f64)> {
     let mut all: Vec<(Hidden, f64)> = Vec::new();
     for &(id, size) in wanted {
         let mut hidden = Hidden::draw(id, complete, draw);
@@ -111,7 +113,7 @@ fn concealed(wanted: &[(&'static str, f64)], complete: &StrutModel, draw: &mut D
 }
 
 fn switching(inputs: &Inputs) -> [Vec<f64>; 3] {
-    std::array::from_fn(|v| inputs.signals.iter().map(|s| f64::from(u8::from(s[v]))).collect())
+    Valve::ALL.map(|valve| inputs.signals.iter().map(|s| f64::from(u8::from(s[valve]))).collect())
 }
 
 fn positions(inputs: &Inputs) -> Vec<f64> {
@@ -216,10 +218,9 @@ struct Ruler<'a> {
 impl<'a> Ruler<'a> {
     fn new(scaffold: &TwoStageStrut, believed: &'a StrutModel, moves: &[Move]) -> Result<Self, DiagnoseError> {
         let stop = AtomicBool::new(false);
-        let problem = Problem::new(scaffold, &stop);
-        let nominal = problem.nominal();
+        let nominal = Point::nominal(scaffold);
         let all: Vec<usize> = (0..nominal.z.len()).collect();
-        let sensitivities = problem.sensitivities(&nominal, &all, None)?;
+        let sensitivities = Evaluation::new(scaffold, &stop).sensitivities(&nominal, &all, None)?;
         let columns: Vec<Vec<f64>> = all
             .iter()
             .map(|&k| {
@@ -320,6 +321,7 @@ impl<'a> Ruler<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::estimation::{LeastSquares, fit};
 
     #[test]
     fn a_complete_campaign_is_met_by_its_own_truth_to_the_noise() {
@@ -329,9 +331,9 @@ mod tests {
         assert_eq!(g.unseen.len(), UNSEEN.len());
         let strut = TwoStageStrut::new(g.given, g.recordings).unwrap();
         let stop = AtomicBool::new(false);
-        let problem = Problem::new(&strut, &stop);
-        let fit = crate::fit::fit(&problem, problem.nominal(), crate::fit::Effort::FULL).unwrap();
-        let ratio = (fit.cost / problem.count() as f64).sqrt();
+        let problem = LeastSquares::new(&strut, &stop);
+        let calibrated = fit(&problem, Point::nominal(&strut), problem.criteria.fitting.converged).unwrap();
+        let ratio = (calibrated.cost / problem.residuals() as f64).sqrt();
         assert!(ratio > 0.98 && ratio < 1.06, "{ratio}");
     }
 
@@ -343,7 +345,7 @@ mod tests {
                 .map(|v| v.to_bits())
                 .collect::<Vec<_>>()
         };
-        let wanted = [("seal_friction", 1.0)];
+        let wanted = [(EffectId::SealFriction, 1.0)];
         let (a, b) = (
             generate("test:bits", &wanted).unwrap(),
             generate("test:bits", &wanted).unwrap(),
@@ -355,11 +357,11 @@ mod tests {
     #[test]
     fn effects_have_the_size_asked_for() {
         for id in [
-            "seal_friction",
-            "oil_compressibility",
-            "sensor_gain",
-            "line_resistance",
-            "valve_delay",
+            EffectId::SealFriction,
+            EffectId::OilCompressibility,
+            EffectId::SensorGain,
+            EffectId::LineResistance,
+            EffectId::ValveDelay,
         ] {
             let g = generate(&format!("test:size:{id}"), &[(id, 1.0)]).unwrap();
             assert!((g.sizes[0] - 1.0).abs() < 0.1, "{id}: {:?} {:?}", g.sizes, g.truth);

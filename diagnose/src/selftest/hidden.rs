@@ -1,6 +1,7 @@
 //! What is concealed: every effect of the vocabulary at a drawn place, with an amount that can be scaled, so that power can
 //! be asked for over the size of the effect; and laws that no vocabulary names.
 
+use oleo_interface::Valve;
 use oleo_plant_sim::strut::{
     AccumulatorPistonFriction, BumpStop, COLUMNS, DamperLeakage, DampingFade, EntrainedAir, GasChargeError,
     GasEquation, GasHeatTransfer, LawArgument, LawPlace, LineInertance, LineResistance, MountCompliance,
@@ -11,14 +12,15 @@ use serde::{Deserialize, Serialize};
 
 use super::draw::Draw;
 pub use crate::specimen::strut::TERMS;
+use crate::vocabulary::{Branch, Column, EffectId, Place, Site};
 
 /// A number of the truth, as the report would give it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
     /// Id of the vocabulary.
-    pub id: String,
-    /// Place.
-    pub place: String,
+    pub id: EffectId,
+    /// Where it acts.
+    pub place: Place,
     /// Key with unit, empty for an effect without numbers.
     pub key: String,
     /// Value.
@@ -29,7 +31,7 @@ pub struct Truth {
 #[derive(Debug, Clone)]
 pub struct Hidden {
     /// Id of the vocabulary.
-    pub id: &'static str,
+    pub id: EffectId,
     /// Smallest and largest amount; `None` for what is there or not.
     pub range: Option<(f64, f64)>,
     /// Which of several places, and the sign where both are possible.
@@ -44,39 +46,42 @@ pub struct Hidden {
 impl Hidden {
     /// Draws place and shape of an effect of a strut whose complete nominal model is given.
     #[must_use]
-    pub fn draw(id: &'static str, complete: &StrutModel, draw: &mut Draw) -> Self {
+    pub fn draw(id: EffectId, complete: &StrutModel, draw: &mut Draw) -> Self {
         let c = &complete.valve_timing.response_polynomial_s;
         let places = match id {
-            "gas_charge_error" | "accumulator_piston_friction" | "damper_leakage" | "line_resistance" => 2,
-            "damping_fade" | "bump_stop" => 3,
-            "unlisted" => LAWS.len(),
-            id if id.starts_with("sensor") => COLUMNS.len(),
+            EffectId::GasChargeError
+            | EffectId::AccumulatorPistonFriction
+            | EffectId::DamperLeakage
+            | EffectId::LineResistance => 2,
+            EffectId::DampingFade | EffectId::BumpStop => 3,
+            EffectId::Unlisted => LAWS.len(),
+            id if id.is_instrument_fault() => COLUMNS.len(),
             _ => 1,
         };
         let which = draw.index(places);
         let column = if which == 0 { 0.05 } else { 5e6 };
         let range = match id {
-            "real_gas" | "valve_transition" | "sensor_sign" => None,
-            "oil_compressibility" => Some((1e-13, 1.0 / 0.8e9)),
-            "entrained_air" => Some((1e-6, 0.04)),
+            EffectId::RealGas | EffectId::ValveTransition | EffectId::SensorSign => None,
+            EffectId::OilCompressibility => Some((1e-13, 1.0 / 0.8e9)),
+            EffectId::EntrainedAir => Some((1e-6, 0.04)),
             // Faster gas is isothermal for all that a strut does (plant-sim: 0.5 to 20 s).
-            "gas_heat_transfer" => Some((0.5, 12.0)),
-            "gas_charge_error" => Some((1e-4, 0.3)),
-            "seal_friction" => Some((0.3, 600.0)),
-            "side_load_friction" => Some((1e-5, 0.08)),
-            "accumulator_piston_friction" => Some((100.0, 5e5)),
-            "damper_leakage" => Some((1e-11, 6e-7)),
-            "line_resistance" => Some((1e4, 3e9)),
-            "line_inertance" => Some((1e3, 2e7)),
-            "valve_delay" => Some((1e-3, 4.0)),
-            "valve3_leakage" => Some((1e-13, 5e-8)),
-            "bump_stop" => Some((100.0, 5e5)),
-            "mount_compliance" => Some((1e-10, 1e-6)),
-            "damping_fade" => Some((1e-8, 3e-4)),
-            "sensor_lag" => Some((1e-6, 0.03)),
-            "sensor_skew" => Some((1e-6, 0.03)),
-            "sensor_gain" => Some((1e-5, 0.2)),
-            "sensor_drift" => Some((1e-6 * column, 0.02 * column)),
+            EffectId::GasHeatTransfer => Some((0.5, 12.0)),
+            EffectId::GasChargeError => Some((1e-4, 0.3)),
+            EffectId::SealFriction => Some((0.3, 600.0)),
+            EffectId::SideLoadFriction => Some((1e-5, 0.08)),
+            EffectId::AccumulatorPistonFriction => Some((100.0, 5e5)),
+            EffectId::DamperLeakage => Some((1e-11, 6e-7)),
+            EffectId::LineResistance => Some((1e4, 3e9)),
+            EffectId::LineInertance => Some((1e3, 2e7)),
+            EffectId::ValveDelay => Some((1e-3, 4.0)),
+            EffectId::Valve3Leakage => Some((1e-13, 5e-8)),
+            EffectId::BumpStop => Some((100.0, 5e5)),
+            EffectId::MountCompliance => Some((1e-10, 1e-6)),
+            EffectId::DampingFade => Some((1e-8, 3e-4)),
+            EffectId::SensorLag => Some((1e-6, 0.03)),
+            EffectId::SensorSkew => Some((1e-6, 0.03)),
+            EffectId::SensorGain => Some((1e-5, 0.2)),
+            EffectId::SensorDrift => Some((1e-6 * column, 0.02 * column)),
             _ => Some((1e-5, 1.0)),
         };
         Self {
@@ -92,16 +97,16 @@ impl Hidden {
     /// Column of a faulty instrument.
     #[must_use]
     pub fn column(&self) -> Option<&'static str> {
-        self.id.starts_with("sensor").then(|| COLUMNS[self.which])
+        self.id.is_instrument_fault().then(|| COLUMNS[self.which])
     }
 
     /// Takes the effect out of what is believed, where the complete model has it.
     pub fn conceal(&self, given: &mut StrutModel) {
         match self.id {
-            "oil_compressibility" => given.effects.oil_compressibility = None,
-            "gas_heat_transfer" => given.effects.gas_heat_transfer = None,
-            "valve_transition" => given.effects.valve_transition = None,
-            "valve_delay" => given.valve_timing.response_polynomial_s.truncate(1),
+            EffectId::OilCompressibility => given.effects.oil_compressibility = None,
+            EffectId::GasHeatTransfer => given.effects.gas_heat_transfer = None,
+            EffectId::ValveTransition => given.effects.valve_transition = None,
+            EffectId::ValveDelay => given.valve_timing.response_polynomial_s.truncate(1),
             _ => {}
         }
     }
@@ -110,61 +115,61 @@ impl Hidden {
     pub fn put(&self, model: &mut StrutModel, amount: f64) -> Vec<Truth> {
         let effects = &mut model.effects;
         let shape = |k: usize, low: f64, high: f64| low + (high - low) * self.shape[k];
-        let number = |place: &str, key: &str, value: f64| Truth {
-            id: self.id.into(),
-            place: place.into(),
+        let number = |site: Site, key: &str, value: f64| Truth {
+            id: self.id,
+            place: site.into(),
             key: key.into(),
             value,
         };
         let i = self.which;
         let pick = |k: usize| if i == k { amount } else { 0.0 };
-        let accumulator = format!("accumulator-{}", i + 1);
-        let path = format!("path-{}", i + 1);
+        let branch = if i == 0 { Branch::First } else { Branch::Second };
+        let (accumulator, path) = (Site::Accumulator(branch), Site::Path(branch));
         match self.id {
-            "oil_compressibility" => {
+            EffectId::OilCompressibility => {
                 effects.oil_compressibility = Some(OilCompressibility {
                     bulk_modulus_pa: 1.0 / amount,
                     counted_at: OilCount::Chamber,
                 });
-                vec![number("main-chamber", "bulk_modulus_Pa", 1.0 / amount)]
+                vec![number(Site::MainChamber, "bulk_modulus_Pa", 1.0 / amount)]
             }
-            "entrained_air" => {
+            EffectId::EntrainedAir => {
                 let exponent = shape(0, 1.0, 1.4);
                 effects.entrained_air = Some(EntrainedAir {
                     volume_fraction: amount,
                     polytropic_exponent: exponent,
                 });
                 vec![
-                    number("main-chamber", "volume_fraction", amount),
-                    number("main-chamber", "polytropic_exponent", exponent),
+                    number(Site::MainChamber, "volume_fraction", amount),
+                    number(Site::MainChamber, "polytropic_exponent", exponent),
                 ]
             }
-            "gas_heat_transfer" => {
+            EffectId::GasHeatTransfer => {
                 let second = amount * shape(0, 1.4, 2.5);
                 effects.gas_heat_transfer = Some(GasHeatTransfer {
                     time_constant_1_s: amount,
                     time_constant_2_s: second,
                 });
                 vec![
-                    number("accumulator-1", "time_constant_1_s", amount),
-                    number("accumulator-2", "time_constant_2_s", second),
+                    number(Site::Accumulator(Branch::First), "time_constant_1_s", amount),
+                    number(Site::Accumulator(Branch::Second), "time_constant_2_s", second),
                 ]
             }
-            "real_gas" => {
+            EffectId::RealGas => {
                 effects.real_gas = Some(RealGas {
                     equation: GasEquation::Reference,
                 });
-                vec![number("both accumulators", "", 0.0)]
+                vec![number(Site::Accumulators, "", 0.0)]
             }
-            "gas_charge_error" => {
+            EffectId::GasChargeError => {
                 let error = self.sign * amount;
                 effects.gas_charge_error = Some(GasChargeError {
                     relative_error_1: self.sign * pick(0),
                     relative_error_2: self.sign * pick(1),
                 });
-                vec![number(&accumulator, &format!("relative_error_{}", i + 1), error)]
+                vec![number(accumulator, &format!("relative_error_{}", i + 1), error)]
             }
-            "seal_friction" => {
+            EffectId::SealFriction => {
                 let (ratio, speed) = (shape(0, 1.0, 1.5), shape(1, 0.01, 0.05));
                 effects.seal_friction = Some(SealFriction {
                     coulomb_force_n: amount,
@@ -173,19 +178,19 @@ impl Hidden {
                     presliding_stiffness_n_m: 2e6,
                 });
                 vec![
-                    number("main-seal", "coulomb_force_N", amount),
-                    number("main-seal", "breakaway_over_coulomb", ratio),
-                    number("main-seal", "stribeck_speed_m_s", speed),
+                    number(Site::MainSeal, "coulomb_force_N", amount),
+                    number(Site::MainSeal, "breakaway_over_coulomb", ratio),
+                    number(Site::MainSeal, "stribeck_speed_m_s", speed),
                 ]
             }
-            "side_load_friction" => {
+            EffectId::SideLoadFriction => {
                 effects.side_load_friction = Some(SideLoadFriction {
                     coefficient: amount,
                     overlap_growth_1_m: 0.0,
                 });
-                vec![number("main-seal", "coefficient", amount)]
+                vec![number(Site::MainSeal, "coefficient", amount)]
             }
-            "accumulator_piston_friction" => {
+            EffectId::AccumulatorPistonFriction => {
                 let volume = libm::exp(shape(0, libm::log(1e-7), libm::log(2e-6)));
                 effects.accumulator_piston_friction = Some(AccumulatorPistonFriction {
                     pressure_1_pa: pick(0),
@@ -193,55 +198,55 @@ impl Hidden {
                     presliding_volume_m3: volume,
                 });
                 vec![
-                    number(&accumulator, &format!("pressure_{}_Pa", i + 1), amount),
-                    number(&accumulator, "presliding_volume_m3", volume),
+                    number(accumulator.clone(), &format!("pressure_{}_Pa", i + 1), amount),
+                    number(accumulator, "presliding_volume_m3", volume),
                 ]
             }
-            "damper_leakage" => {
+            EffectId::DamperLeakage => {
                 effects.damper_leakage = Some(DamperLeakage {
                     flow_coefficient_1: pick(0),
                     flow_coefficient_2: pick(1),
                 });
-                vec![number(&path, &format!("flow_coefficient_{}", i + 1), amount)]
+                vec![number(path, &format!("flow_coefficient_{}", i + 1), amount)]
             }
-            "line_resistance" => {
+            EffectId::LineResistance => {
                 effects.line_resistance = Some(LineResistance {
                     resistance_1_pa_s_m3: pick(0),
                     resistance_2_pa_s_m3: pick(1),
                 });
-                vec![number(&path, &format!("resistance_{}_Pa_s_m3", i + 1), amount)]
+                vec![number(path, &format!("resistance_{}_Pa_s_m3", i + 1), amount)]
             }
-            "line_inertance" => {
+            EffectId::LineInertance => {
                 effects.line_inertance = Some(LineInertance {
                     inertance_2_kg_m4: amount,
                 });
-                vec![number("path-2", "inertance_2_kg_m4", amount)]
+                vec![number(Site::Path(Branch::Second), "inertance_2_kg_m4", amount)]
             }
-            "valve_delay" => {
+            EffectId::ValveDelay => {
                 let [constant, linear, square] = self.response;
                 let polynomial = [constant, amount * linear, amount * square];
                 effects.valve_delay = Some(ValveDelay {
                     response_polynomial_s: polynomial,
                 });
                 vec![
-                    number("valve-1..3", "c1_s_MPa", polynomial[1]),
-                    number("valve-1..3", "c0_s", polynomial[0]),
-                    number("valve-1..3", "c2_s_MPa2", polynomial[2]),
+                    number(Site::Valves, "c1_s_MPa", polynomial[1]),
+                    number(Site::Valves, "c0_s", polynomial[0]),
+                    number(Site::Valves, "c2_s_MPa2", polynomial[2]),
                 ]
             }
-            "valve_transition" => {
+            EffectId::ValveTransition => {
                 effects.valve_transition = Some(ValveTransition {
                     shape: TransitionShape::Linear,
                 });
-                vec![number("valve-1..3", "", 0.0)]
+                vec![number(Site::Valves, "", 0.0)]
             }
-            "valve3_leakage" => {
+            EffectId::Valve3Leakage => {
                 effects.valve3_leakage = Some(Valve3Leakage {
                     flow_coefficient: amount,
                 });
-                vec![number("valve-3", "flow_coefficient", amount)]
+                vec![number(Site::Valve(Valve::Spring), "flow_coefficient", amount)]
             }
-            "bump_stop" => {
+            EffectId::BumpStop => {
                 // At the jounce end, at the rebound end, or both; all within the travel of the moves.
                 let far = 1.0;
                 let bump = if i == 1 { far } else { shape(0, 0.05, 0.075) };
@@ -253,23 +258,23 @@ impl Hidden {
                     stiffness_n_m: amount,
                     progression_n_m3: progression,
                 });
-                let mut all = vec![number("end-stop", "stiffness_N_m", amount)];
+                let mut all = vec![number(Site::EndStop, "stiffness_N_m", amount)];
                 if i != 1 {
-                    all.push(number("end-stop", "bump_clearance_m", bump));
+                    all.push(number(Site::EndStop, "bump_clearance_m", bump));
                 }
                 if i != 0 {
-                    all.push(number("end-stop", "rebound_clearance_m", rebound));
+                    all.push(number(Site::EndStop, "rebound_clearance_m", rebound));
                 }
-                all.push(number("end-stop", "progression_N_m3", progression));
+                all.push(number(Site::EndStop, "progression_N_m3", progression));
                 all
             }
-            "mount_compliance" => {
+            EffectId::MountCompliance => {
                 effects.mount_compliance = Some(MountCompliance {
                     stiffness_n_m: 1.0 / amount,
                 });
-                vec![number("mount", "stiffness_N_m", 1.0 / amount)]
+                vec![number(Site::Mount, "stiffness_N_m", 1.0 / amount)]
             }
-            "damping_fade" => {
+            EffectId::DampingFade => {
                 let first = if i == 1 { 0.0 } else { amount };
                 let second = if i == 0 {
                     0.0
@@ -284,39 +289,46 @@ impl Hidden {
                 });
                 let mut all = Vec::new();
                 if i != 1 {
-                    all.push(number("path-1", "fade_1_per_J", first));
+                    all.push(number(Site::Path(Branch::First), "fade_1_per_J", first));
                 }
                 if i != 0 {
-                    all.push(number("path-2", "fade_2_per_J", second));
+                    all.push(number(Site::Path(Branch::Second), "fade_2_per_J", second));
                 }
                 all.push(number(
-                    if i == 1 { "path-2" } else { "path-1" },
+                    if i == 1 {
+                        Site::Path(Branch::Second)
+                    } else {
+                        Site::Path(Branch::First)
+                    },
                     "cooling_time_s",
                     cooling,
                 ));
                 all
             }
-            "unlisted" => {
-                let (place, law) = unlisted(i, self.sign, amount, &self.shape);
+            EffectId::Unlisted => {
+                let (site, law) = unlisted(i, self.sign, amount, &self.shape);
                 effects.unlisted.push(law);
-                vec![number(place, "", 0.0)]
+                vec![number(site, "", 0.0)]
             }
             _ => {
-                let column = COLUMNS[i];
-                let unit = column.rsplit_once('_').map_or("", |(_, unit)| unit);
+                let column = Column::known(COLUMNS[i]);
                 let (map, key, value) = match self.id {
-                    "sensor_lag" => (&mut effects.sensor_lag, "time_constant_s".to_owned(), amount),
-                    "sensor_skew" => (&mut effects.sensor_skew, "delay_s".to_owned(), self.sign * amount),
-                    "sensor_gain" => (
+                    EffectId::SensorLag => (&mut effects.sensor_lag, "time_constant_s".to_owned(), amount),
+                    EffectId::SensorSkew => (&mut effects.sensor_skew, "delay_s".to_owned(), self.sign * amount),
+                    EffectId::SensorGain => (
                         &mut effects.sensor_gain,
                         "relative_error".to_owned(),
                         self.sign * amount,
                     ),
-                    "sensor_drift" => (&mut effects.sensor_drift, format!("drift_{unit}_s"), self.sign * amount),
+                    EffectId::SensorDrift => (
+                        &mut effects.sensor_drift,
+                        format!("drift_{}_s", column.unit()),
+                        self.sign * amount,
+                    ),
                     _ => (&mut effects.sensor_sign, String::new(), -1.0),
                 };
-                map.get_or_insert_default().insert(column.into(), value);
-                vec![number(&format!("sensor:{column}"), &key, value)]
+                map.get_or_insert_default().insert(column.to_string(), value);
+                vec![number(Site::Sensor(column), &key, value)]
             }
         }
     }
@@ -334,16 +346,26 @@ const LAWS: [&str; 7] = [
 ];
 
 /// A law in a table of many points, not those that the search uses.
-fn unlisted(which: usize, sign: f64, amount: f64, shape: &[f64; 4]) -> (&'static str, UnlistedLaw) {
+fn unlisted(which: usize, sign: f64, amount: f64, shape: &[f64; 4]) -> (Site, UnlistedLaw) {
     const POINTS: usize = 61;
-    let (place, at, over, end): (_, _, _, f64) = match which {
-        0 => ("path-1", LawPlace::Path1, LawArgument::Flow, 2e-3),
-        1 => ("path-2", LawPlace::Path2, LawArgument::Flow, 2e-3),
-        2 => ("main-seal", LawPlace::MainSeal, LawArgument::Speed, 1.2),
-        4 => ("path-1", LawPlace::BesidePack1, LawArgument::Displacement, 0.11),
-        5 => ("path-2", LawPlace::BesidePack2, LawArgument::Displacement, 0.11),
-        6 => ("valve-1..3", LawPlace::Valves, LawArgument::PressureDrop, 1.3e7),
-        _ => ("main-seal", LawPlace::MainSeal, LawArgument::Displacement, 0.11),
+    let (site, at, over, end): (_, _, _, f64) = match which {
+        0 => (Site::Path(Branch::First), LawPlace::Path1, LawArgument::Flow, 2e-3),
+        1 => (Site::Path(Branch::Second), LawPlace::Path2, LawArgument::Flow, 2e-3),
+        2 => (Site::MainSeal, LawPlace::MainSeal, LawArgument::Speed, 1.2),
+        4 => (
+            Site::Path(Branch::First),
+            LawPlace::BesidePack1,
+            LawArgument::Displacement,
+            0.11,
+        ),
+        5 => (
+            Site::Path(Branch::Second),
+            LawPlace::BesidePack2,
+            LawArgument::Displacement,
+            0.11,
+        ),
+        6 => (Site::Valves, LawPlace::Valves, LawArgument::PressureDrop, 1.3e7),
+        _ => (Site::MainSeal, LawPlace::MainSeal, LawArgument::Displacement, 0.11),
     };
     let argument: Vec<f64> = (0..POINTS)
         .map(|k| end * (2.0 * k as f64 / (POINTS - 1) as f64 - 1.0))
@@ -370,5 +392,5 @@ fn unlisted(which: usize, sign: f64, amount: f64, shape: &[f64; 4]) -> (&'static
         argument,
         value,
     };
-    (place, law)
+    (site, law)
 }

@@ -10,16 +10,16 @@
 //! tables are the same on any number of threads, and an interrupted test goes on where it stopped.
 
 mod calibrate;
+pub mod csv_rows;
 mod draw;
 mod excitation;
 mod generate;
 mod hidden;
 mod ledger;
+mod nominal_strut;
 mod page;
 mod plan;
-pub mod records;
 mod save;
-mod specimen;
 mod summary;
 mod trial;
 
@@ -28,7 +28,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 pub use ledger::Ledger;
 pub use page::{page, tables};
-pub use plan::{Case, Plan, UnknownTerm};
+pub use plan::{Case, Plan, Subject, UnknownTerm};
 pub use save::save;
 pub use summary::Summary;
 pub use trial::Trial;

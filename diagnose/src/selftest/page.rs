@@ -5,6 +5,7 @@ use oleo_report::{Axis, Column, Curves, Field, FieldStyle, Page, Style, Table, V
 use super::hidden::TERMS;
 use super::plan::SIZES;
 use super::summary::{Rate, Summary};
+use crate::vocabulary::EffectId;
 
 /// The claim that is tested on complete models.
 const MOST_FALSE_ALARMS: f64 = 0.01;
@@ -79,7 +80,7 @@ fn power_table(s: &Summary) -> Table {
         if rows.is_empty() {
             continue;
         }
-        let mut cells = vec![term.to_owned()];
+        let mut cells = vec![term.to_string()];
         for size in SIZES {
             let cell = rows.iter().find(|p| p.size == size).map(|p| {
                 let (f, l, z) = (p.found.hits, p.placed.hits, p.sized.hits);
@@ -136,7 +137,7 @@ fn coverage_table(s: &Summary) -> Table {
     ]);
     for c in s.coverage.iter().filter(|c| !c.key.is_empty()) {
         table.row([
-            c.term.clone(),
+            c.term.to_string(),
             c.key.clone(),
             fraction(c.covered),
             with_interval(c.covered),
@@ -177,7 +178,7 @@ fn nameless_table(s: &Summary) -> Table {
     for n in &s.nameless {
         let places: Vec<String> = n.places.iter().map(|(p, count)| format!("{p} {count}")).collect();
         table.row([
-            n.term.clone(),
+            n.term.to_string(),
             fraction(n.unlisted),
             fraction(n.placed),
             fraction(n.misnamed),
@@ -241,11 +242,11 @@ pub fn page(s: &Summary, command: &str) -> Page {
 
 /// Part of the campaigns in which each term is found, by size.
 fn power_picture(s: &Summary) -> Field {
-    let part = |term: &str, size: f64| {
+    let part = |term: EffectId, size: f64| {
         (s.power.iter().find(|p| p.term == term && p.size == size)).map_or(f64::NAN, |p| p.placed.part())
     };
     let z: Vec<Vec<f64>> = TERMS
-        .iter()
+        .into_iter()
         .map(|t| SIZES.iter().map(|&size| part(t, size)).collect())
         .collect();
     let sizes: Vec<String> = SIZES.iter().map(f64::to_string).collect();
@@ -253,7 +254,7 @@ fn power_picture(s: &Summary) -> Field {
     let rows: Vec<f64> = (0..TERMS.len()).map(|k| k as f64).collect();
     let axes = [
         Axis::new("Size", "units of noise").ticks(columns.iter().copied().zip(sizes.iter().map(String::as_str))),
-        Axis::new("", "").ticks(rows.iter().copied().zip(TERMS)),
+        Axis::new("", "").ticks(rows.iter().copied().zip(TERMS.map(EffectId::as_str))),
         Axis::new("Part", ""),
     ];
     let mut field = Field::new("Found at its place", FieldStyle::HeatMap, axes, &columns, &rows, &z);
@@ -272,7 +273,12 @@ fn confusion_picture(s: &Summary) -> Field {
     reported.sort_unstable();
     reported.dedup();
     let total = |row: &str| {
-        let all: usize = s.power.iter().filter(|p| p.term == row).map(|p| p.found.of).sum();
+        let all: usize = s
+            .power
+            .iter()
+            .filter(|p| p.term.as_str() == row)
+            .map(|p| p.found.of)
+            .sum();
         if all > 0 { all } else { s.false_alarms.of.max(1) }
     };
     let z: Vec<Vec<f64>> = (hidden.iter())

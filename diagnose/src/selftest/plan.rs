@@ -1,8 +1,11 @@
 //! Which campaigns a self-test is made of, in which order: every term at every size, complete models, and pairs, dealt out
 //! in rounds, so that the first hundred are already a fair sample of the first thousand.
 
+use std::str::FromStr;
+
 use super::draw::Draw;
 use super::hidden::TERMS;
+use crate::vocabulary::EffectId;
 
 /// Sizes asked for, in units of noise (RMS over all channels and samples, after recalibration).
 pub const SIZES: [f64; 6] = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0];
@@ -24,8 +27,8 @@ pub struct Plan {
     pub seed: u64,
     /// Campaigns.
     pub campaigns: usize,
-    /// Terms of the vocabulary, `none` and `pair`; empty for all.
-    pub terms: Vec<String>,
+    /// What to conceal; everything where the list is empty.
+    pub subjects: Vec<Subject>,
     /// Leave each concealed term out of the search: what is found must be `unlisted`.
     pub without_names: bool,
 }
@@ -36,27 +39,46 @@ pub struct Case {
     /// Its name, which fixes everything drawn in it.
     pub name: String,
     /// Effects and wanted sizes.
-    pub hidden: Vec<(&'static str, f64)>,
+    pub hidden: Vec<(EffectId, f64)>,
     /// Term that the search may not use.
-    pub left_out: Option<&'static str>,
+    pub left_out: Option<EffectId>,
 }
 
-/// A term that is not in the vocabulary.
+/// What is concealed in a campaign.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Subject {
+    /// One effect.
+    Effect(EffectId),
+    /// Nothing.
+    Complete,
+    /// Two effects.
+    Pair,
+}
+
+/// A text that names no subject of a self-test.
 #[derive(Debug, thiserror::Error)]
-#[error("--terms {0}: not known; one or more of {known}, {COMPLETE}, {PAIR}, with commas between", known = TERMS.join(", "))]
+#[error("--terms {0}: not known; one or more of {known}, {COMPLETE}, {PAIR}, with commas between", known = TERMS.map(EffectId::as_str).join(", "))]
 pub struct UnknownTerm(String);
 
-impl Plan {
-    /// All cases, in order.
-    ///
-    /// # Errors
-    /// A term that is not known.
-    pub fn cases(&self) -> Result<Vec<Case>, UnknownTerm> {
-        let known = |t: &str| TERMS.contains(&t) || (!self.without_names && (t == COMPLETE || t == PAIR));
-        if let Some(unknown) = self.terms.iter().find(|t| !known(t)) {
-            return Err(UnknownTerm(unknown.clone()));
+impl FromStr for Subject {
+    type Err = UnknownTerm;
+
+    fn from_str(text: &str) -> Result<Self, UnknownTerm> {
+        match text {
+            COMPLETE => Ok(Self::Complete),
+            PAIR => Ok(Self::Pair),
+            _ => (TERMS.into_iter().find(|term| term.as_str() == text))
+                .map(Self::Effect)
+                .ok_or_else(|| UnknownTerm(text.to_owned())),
         }
-        let wanted = |t: &str| self.terms.is_empty() || self.terms.iter().any(|w| w == t);
+    }
+}
+
+impl Plan {
+    /// All cases, in order. Without names only effects are concealed.
+    #[must_use]
+    pub fn cases(&self) -> Vec<Case> {
+        let wanted = |s: Subject| self.subjects.is_empty() || self.subjects.contains(&s);
         let mut cases = Vec::with_capacity(self.campaigns);
         let mut round = 0;
         while cases.len() < self.campaigns {
@@ -72,10 +94,10 @@ impl Plan {
             round += 1;
         }
         cases.truncate(self.campaigns);
-        Ok(cases)
+        cases
     }
 
-    fn round(&self, round: usize, wanted: &dyn Fn(&str) -> bool, cases: &mut Vec<Case>) {
+    fn round(&self, round: usize, wanted: &dyn Fn(Subject) -> bool, cases: &mut Vec<Case>) {
         let seed = self.seed;
         // Three terms, then a complete model: an interrupted round holds a share of each kind.
         let mut complete = (0..COMPLETE_PER_ROUND).map(|k| Case {
@@ -83,8 +105,8 @@ impl Plan {
             hidden: vec![],
             left_out: None,
         });
-        for (k, term) in TERMS.iter().enumerate() {
-            if wanted(term) {
+        for (k, term) in TERMS.into_iter().enumerate() {
+            if wanted(Subject::Effect(term)) {
                 let size = SIZES[(round + k) % SIZES.len()];
                 cases.push(Case {
                     name: format!("{seed}:{term}:{round}:{size}"),
@@ -92,14 +114,14 @@ impl Plan {
                     left_out: None,
                 });
             }
-            if k % 3 == 2 && wanted(COMPLETE) {
+            if k % 3 == 2 && wanted(Subject::Complete) {
                 cases.extend(complete.next());
             }
         }
-        if wanted(COMPLETE) {
+        if wanted(Subject::Complete) {
             cases.extend(complete);
         }
-        if wanted(PAIR) {
+        if wanted(Subject::Pair) {
             for k in 0..PAIRS_PER_ROUND {
                 let name = format!("{seed}:{PAIR}:{round}.{k}");
                 let mut draw = Draw::named(&name);
@@ -116,8 +138,9 @@ impl Plan {
         }
     }
 
-    fn nameless(&self, round: usize, wanted: &dyn Fn(&str) -> bool, cases: &mut Vec<Case>) {
-        for (k, term) in TERMS.iter().enumerate().filter(|(_, t)| **t != "unlisted" && wanted(t)) {
+    fn nameless(&self, round: usize, wanted: &dyn Fn(Subject) -> bool, cases: &mut Vec<Case>) {
+        let nameable = |t: EffectId| t != EffectId::Unlisted && wanted(Subject::Effect(t));
+        for (k, term) in TERMS.into_iter().enumerate().filter(|(_, t)| nameable(*t)) {
             let size = NAMELESS_SIZES[(round + k) % NAMELESS_SIZES.len()];
             cases.push(Case {
                 name: format!("{}:without:{term}:{round}:{size}", self.seed),
@@ -136,28 +159,26 @@ mod tests {
         Plan {
             seed: 1,
             campaigns,
-            terms: terms.iter().map(|t| (*t).to_owned()).collect(),
+            subjects: terms.iter().map(|t| t.parse().expect("a term")).collect(),
             without_names: false,
         }
     }
 
     #[test]
     fn names_are_unique_and_a_part_holds_the_same_campaigns() {
-        let all = plan(500, &[]).cases().unwrap();
+        let all = plan(500, &[]).cases();
         let mut names: Vec<&str> = all.iter().map(|c| c.name.as_str()).collect();
         names.sort_unstable();
         names.dedup();
         assert_eq!(names.len(), 500);
-        for case in plan(12, &["seal_friction"]).cases().unwrap() {
+        for case in plan(12, &["seal_friction"]).cases() {
             assert!(all.contains(&case), "{case:?}");
         }
     }
 
     #[test]
     fn six_rounds_hold_every_term_at_every_size() {
-        let all = plan(6 * (TERMS.len() + COMPLETE_PER_ROUND + PAIRS_PER_ROUND), &[])
-            .cases()
-            .unwrap();
+        let all = plan(6 * (TERMS.len() + COMPLETE_PER_ROUND + PAIRS_PER_ROUND), &[]).cases();
         for term in TERMS {
             for size in SIZES {
                 assert!(all.iter().any(|c| c.hidden == [(term, size)]), "{term} {size}");
@@ -167,7 +188,7 @@ mod tests {
 
     #[test]
     fn an_unknown_term_is_refused_with_those_known() {
-        let error = plan(1, &["seal_fraction"]).cases().unwrap_err().to_string();
+        let error = "seal_fraction".parse::<Subject>().expect_err("no term").to_string();
         assert!(error.contains("seal_fraction") && error.contains("seal_friction"));
     }
 }

@@ -7,6 +7,7 @@ use super::plan::Case;
 use crate::error::DiagnoseError;
 use crate::recording::Recording;
 use crate::specimen::strut::columns;
+use crate::vocabulary::EffectId;
 
 /// Name of the folder of a case: its name, with what file systems dislike replaced.
 fn folder_name(case: &Case) -> String {
@@ -23,14 +24,14 @@ pub fn save(case: &Case, into: &Path) -> Result<(), DiagnoseError> {
     let unseen = folder.join("unseen");
     std::fs::create_dir_all(&unseen).map_err(|e| DiagnoseError::file(&unseen, e.to_string()))?;
     write(&folder.join("model.toml"), &campaign.given.to_toml())?;
-    let ids: Vec<&str> = case.hidden.iter().map(|(id, _)| *id).collect();
+    let ids: Vec<EffectId> = case.hidden.iter().map(|(id, _)| *id).collect();
     let answer = serde_json::json!({
         "name": case.name, "hidden": ids, "sizes": campaign.sizes, "truth": campaign.truth,
     });
     write(&folder.join("answer.json"), &format!("{answer:#}\n"))?;
     for (recordings, to) in [(&campaign.recordings, &folder), (&campaign.unseen, &unseen)] {
         for recording in recordings {
-            write(&to.join(format!("{}.csv", recording.name)), &table(recording))?;
+            write_table(&to.join(format!("{}.csv", recording.name)), recording)?;
         }
     }
     Ok(())
@@ -40,12 +41,15 @@ fn write(path: &Path, text: &str) -> Result<(), DiagnoseError> {
     std::fs::write(path, text).map_err(|e| DiagnoseError::file(path, e.to_string()))
 }
 
-fn table(recording: &Recording) -> String {
-    let mut text = String::from("time_s");
-    columns().iter().for_each(|c| text += &format!(",{}", c.name));
+fn write_table(path: &Path, recording: &Recording) -> Result<(), DiagnoseError> {
+    let fail = |e: csv::Error| DiagnoseError::file(path, e.to_string());
+    let mut table = csv::Writer::from_path(path).map_err(fail)?;
+    let names = columns();
+    let header = std::iter::once("time_s").chain(names.iter().map(|c| c.name.as_str()));
+    table.write_record(header).map_err(fail)?;
     for (k, time) in recording.time_s.iter().enumerate() {
-        text += &format!("\n{time}");
-        recording.columns.iter().for_each(|c| text += &format!(",{}", c[k]));
+        let row = std::iter::once(time).chain(recording.columns.iter().map(|c| &c[k]));
+        table.write_record(row.map(f64::to_string)).map_err(fail)?;
     }
-    text + "\n"
+    table.flush().map_err(|e| DiagnoseError::file(path, e.to_string()))
 }

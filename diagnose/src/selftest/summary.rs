@@ -8,6 +8,7 @@ use super::calibrate::{Calibration, calibrate};
 use super::hidden::TERMS;
 use super::plan::{COMPLETE, SIZES};
 use super::trial::{Trial, covers};
+use crate::vocabulary::{EffectId, Place};
 
 /// A part of a number of trials.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
@@ -56,7 +57,7 @@ impl Rate {
 #[derive(Debug, Clone, Serialize)]
 pub struct Power {
     /// Id of the vocabulary.
-    pub term: String,
+    pub term: EffectId,
     /// Size on the grid nearest to that reached, in units of noise.
     pub size: f64,
     /// Reported at all.
@@ -72,8 +73,8 @@ pub struct Power {
 /// How often intervals hold the truth.
 #[derive(Debug, Clone, Serialize)]
 pub struct Coverage {
-    /// Id.
-    pub term: String,
+    /// Id of the vocabulary.
+    pub term: EffectId,
     /// Parameter, its place left out.
     pub key: String,
     /// Bounded intervals that hold it.
@@ -96,10 +97,10 @@ pub struct Reliability {
 }
 
 /// What was said of a term that the search was not allowed.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Nameless {
     /// The term.
-    pub term: String,
+    pub term: EffectId,
     /// `unlisted` reported.
     pub unlisted: Rate,
     /// With a law at the place of the effect.
@@ -172,13 +173,13 @@ impl Summary {
                 1 => {}
                 _ => {
                     let mut ids = t.hidden_ids();
-                    let mut reported: Vec<&str> = t.reported.iter().map(|r| r.id.as_str()).collect();
+                    let mut reported: Vec<EffectId> = t.reported.iter().map(|r| r.id).collect();
                     for list in [&mut ids, &mut reported] {
                         list.sort_unstable();
                         list.dedup();
                     }
                     pairs_exact.count(ids == reported);
-                    ids.iter().for_each(|id| pairs_found.count(t.found(id)));
+                    ids.iter().for_each(|id| pairs_found.count(t.found(*id)));
                 }
             }
             if t.reported.iter().any(|r| r.gain.is_some()) {
@@ -220,7 +221,7 @@ fn power(trials: &[&Trial]) -> Vec<Power> {
     for term in TERMS {
         for size in SIZES {
             let mut row = Power {
-                term: term.to_owned(),
+                term,
                 size,
                 found: Rate::default(),
                 placed: Rate::default(),
@@ -263,7 +264,8 @@ fn confusion(trials: &[&Trial]) -> BTreeMap<String, BTreeMap<String, usize>> {
 }
 
 fn coverage(trials: &[&Trial]) -> (Vec<Coverage>, Rate) {
-    let mut all: BTreeMap<(String, String), Coverage> = BTreeMap::new();
+    // In the order of the texts, as a reader looks for them.
+    let mut all: BTreeMap<(&'static str, String), Coverage> = BTreeMap::new();
     let mut sizes = Rate::default();
     for t in trials {
         for (k, truth) in t.truth.iter().enumerate() {
@@ -273,8 +275,8 @@ fn coverage(trials: &[&Trial]) -> (Vec<Coverage>, Rate) {
                 .strip_suffix("_1")
                 .or(key.strip_suffix("_2"))
                 .map_or(key.clone(), |k| format!("{k}_i"));
-            let row = all.entry((truth.id.clone(), key.clone())).or_insert_with(|| Coverage {
-                term: truth.id.clone(),
+            let row = all.entry((truth.id.as_str(), key.clone())).or_insert_with(|| Coverage {
+                term: truth.id,
                 key,
                 covered: Rate::default(),
                 unbounded: 0,
@@ -321,26 +323,32 @@ fn nameless(trials: &[&Trial]) -> Vec<Nameless> {
         values.get(values.len() / 2).copied().unwrap_or(0.0)
     };
     TERMS
-        .iter()
+        .into_iter()
         .filter_map(|term| {
-            let own: Vec<&&Trial> = trials.iter().filter(|t| t.left_out.as_deref() == Some(*term)).collect();
+            let own: Vec<&&Trial> = trials.iter().filter(|t| t.left_out == Some(term)).collect();
             if own.is_empty() {
                 return None;
             }
             let mut row = Nameless {
-                term: (*term).to_owned(),
+                term,
+                unlisted: Rate::default(),
+                placed: Rate::default(),
+                misnamed: Rate::default(),
+                places: BTreeMap::new(),
                 before: median(own.iter().map(|t| t.unseen.0).collect()),
                 after: median(own.iter().map(|t| t.unseen.1).collect()),
-                ..Nameless::default()
             };
             for t in own {
-                let at = |place: &str| t.truth.iter().any(|truth| truth.place == place);
-                row.unlisted.count(t.found("unlisted"));
+                let at = |place: &Place| t.truth.iter().any(|truth| truth.place == *place);
+                row.unlisted.count(t.found(EffectId::Unlisted));
                 row.placed
-                    .count(t.reported.iter().any(|r| r.id == "unlisted" && at(&r.place)));
-                row.misnamed.count(t.reported.iter().any(|r| r.id != "unlisted"));
+                    .count(t.reported.iter().any(|r| r.id == EffectId::Unlisted && at(&r.place)));
+                row.misnamed
+                    .count(t.reported.iter().any(|r| r.id != EffectId::Unlisted));
                 for r in &t.reported {
-                    *row.places.entry(format!("{}@{}", r.id, r.place)).or_default() += 1;
+                    *row.places
+                        .entry(format!("{}@{}", r.id, r.place.as_reported()))
+                        .or_default() += 1;
                 }
             }
             Some(row)
@@ -353,22 +361,23 @@ mod tests {
     use super::super::hidden::Truth;
     use super::super::trial::{Number, Reported};
     use super::*;
+    use crate::vocabulary::Site;
 
-    fn trial(hidden: &str, value: f64, reported: &str, interval: (f64, f64)) -> Trial {
+    fn trial(hidden: EffectId, value: f64, reported: EffectId, interval: (f64, f64)) -> Trial {
         let truth = Truth {
-            id: hidden.into(),
-            place: "main-seal".into(),
+            id: hidden,
+            place: Site::MainSeal.into(),
             key: "coefficient".into(),
             value,
         };
         Trial {
             name: String::new(),
-            hidden: vec![(hidden.into(), 1.0, 1.1)],
+            hidden: vec![(hidden, 1.0, 1.1)],
             truth: vec![truth],
             left_out: None,
             reported: vec![Reported {
-                id: reported.into(),
-                place: "main-seal".into(),
+                id: reported,
+                place: Site::MainSeal.into(),
                 confidence: 0.95,
                 gain: Some((100.0, 10.0)),
                 lead: Some((50.0, 10.0)),
@@ -391,13 +400,13 @@ mod tests {
 
     #[test]
     fn a_hit_a_wrong_size_and_a_wrong_name_are_told_apart() {
-        let term = "side_load_friction";
+        let term = EffectId::SideLoadFriction;
         let s = Summary::of(
             1,
             &[
                 trial(term, 0.02, term, (0.019, 0.022)),
                 trial(term, 0.02, term, (0.03, 0.04)),
-                trial(term, 0.02, "seal_friction", (0.0, 1.0)),
+                trial(term, 0.02, EffectId::SealFriction, (0.0, 1.0)),
             ],
         );
         let row = &s.power[0];
@@ -405,7 +414,7 @@ mod tests {
             (row.found.hits, row.placed.hits, row.sized.hits, row.false_beside.hits),
             (2, 2, 1, 1)
         );
-        assert_eq!(s.confusion[term]["seal_friction"], 1);
+        assert_eq!(s.confusion[term.as_str()]["seal_friction"], 1);
         assert_eq!(s.size_coverage, Rate { hits: 1, of: 2 });
         assert_eq!(s.reliability[0].there, Rate { hits: 2, of: 3 });
     }

@@ -11,10 +11,11 @@ use super::plan::Case;
 use crate::campaign::Campaign;
 use crate::diagnosis::{Diagnosis, Effect};
 use crate::error::DiagnoseError;
-use crate::problem::Problem;
+use crate::estimation::LeastSquares;
 use crate::recording::Recording;
 use crate::specimen::strut::TwoStageStrut;
 use crate::specimen::{Hypothesis, Specimen};
+use crate::vocabulary::{EffectId, Place};
 
 /// A fitted number of a reported effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -33,9 +34,9 @@ pub struct Number {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reported {
     /// Id of the vocabulary or `unlisted`.
-    pub id: String,
-    /// Place.
-    pub place: String,
+    pub id: EffectId,
+    /// Where it is said to act.
+    pub place: Place,
     /// Confidence as reported.
     pub confidence: f64,
     /// Held-out gain in cost and its standard error; `None` for what is seen but not modelled.
@@ -56,11 +57,11 @@ pub struct Trial {
     /// Name of the case.
     pub name: String,
     /// Ids concealed, with the size wanted and the size reached, in units of noise.
-    pub hidden: Vec<(String, f64, f64)>,
+    pub hidden: Vec<(EffectId, f64, f64)>,
     /// The numbers concealed.
     pub truth: Vec<Truth>,
     /// Term that the search was not allowed.
-    pub left_out: Option<String>,
+    pub left_out: Option<EffectId>,
     /// What was reported.
     pub reported: Vec<Reported>,
     /// Number of residuals.
@@ -82,13 +83,9 @@ pub struct Trial {
 pub fn run(case: &Case, stop: &AtomicBool) -> Result<Trial, DiagnoseError> {
     let mut trial = Trial {
         name: case.name.clone(),
-        hidden: case
-            .hidden
-            .iter()
-            .map(|(id, size)| ((*id).to_owned(), *size, 0.0))
-            .collect(),
+        hidden: case.hidden.iter().map(|(id, size)| (*id, *size, 0.0)).collect(),
         truth: vec![],
-        left_out: case.left_out.map(str::to_owned),
+        left_out: case.left_out,
         reported: vec![],
         residuals: 0,
         noise_ratio: (0.0, 0.0),
@@ -121,13 +118,13 @@ fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), Dia
         specimen: Box::new(strut),
         notes: vec![],
     };
-    let problem = Problem::new(&*campaign.specimen, stop);
-    let diagnosis = Diagnosis::of(&campaign, &problem, &|_, _| {})?;
-    trial.residuals = problem.count();
-    trial.noise_ratio = diagnosis.selection.noise_ratio;
+    let problem = LeastSquares::new(&*campaign.specimen, stop);
+    let diagnosis = Diagnosis::of(&problem, &|_, _| {})?;
+    trial.residuals = problem.residuals();
+    trial.noise_ratio = (diagnosis.selection.calibrated_ratio, diagnosis.selection.improved_ratio);
     trial.incomplete = diagnosis.selection.incomplete;
     trial.reported = diagnosis.effects.iter().map(|e| reported(&campaign, e)).collect();
-    let calibrated = problem.hypothesis(&diagnosis.selection.calibrated.point);
+    let calibrated = diagnosis.selection.calibrated.point.hypothesis(problem.specimen());
     let before = campaign
         .specimen
         .model_toml(&calibrated)
@@ -141,17 +138,17 @@ fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), Dia
 
 fn reported(campaign: &Campaign, effect: &Effect) -> Reported {
     let all = campaign.specimen.candidates();
-    let chosen = effect.chosen.as_ref();
-    let rival = chosen.and_then(|c| c.rival);
+    let selected = effect.selected.as_ref();
+    let rival = selected.and_then(|s| s.rival);
     let bound = |v: f64| v.is_finite().then_some(v);
     Reported {
-        id: effect.id.clone(),
+        id: effect.id,
         place: effect.place.clone(),
         confidence: effect.confidence,
-        gain: chosen.map(|c| (c.gain, c.gain_error)),
-        lead: rival.map(|(_, lead, error)| (lead, error)),
-        rival: rival.map(|(k, ..)| all[k].name()),
-        ambiguous: chosen.is_some_and(|c| c.ambiguous),
+        gain: selected.map(|s| (s.gain.total, s.gain.standard_error)),
+        lead: rival.map(|r| (r.lead.total, r.lead.standard_error)),
+        rival: rival.map(|r| all[r.candidate].name()),
+        ambiguous: rival.is_some_and(|r| r.ambiguous),
         numbers: (effect.parameters.iter())
             .map(|p| Number {
                 key: p.key.clone(),
@@ -191,30 +188,23 @@ fn noise_ratio(model_toml: &str, recordings: &[Recording]) -> Result<f64, Diagno
 
 impl Trial {
     /// Ids concealed.
-    pub fn hidden_ids(&self) -> Vec<&str> {
-        self.hidden.iter().map(|(id, ..)| id.as_str()).collect()
+    pub fn hidden_ids(&self) -> Vec<EffectId> {
+        self.hidden.iter().map(|(id, ..)| *id).collect()
     }
 
     /// Whether an id is reported.
     #[must_use]
-    pub fn found(&self, id: &str) -> bool {
+    pub fn found(&self, id: EffectId) -> bool {
         self.reported.iter().any(|r| r.id == id)
     }
 
     /// Whether an id is reported at every one of its places and nowhere else.
     #[must_use]
-    pub fn placed(&self, id: &str) -> bool {
-        let mut true_places: Vec<&str> = self
-            .truth
-            .iter()
-            .filter(|t| t.id == id)
-            .map(|t| t.place.as_str())
-            .collect();
-        let mut places: Vec<&str> = self
-            .reported
-            .iter()
+    pub fn placed(&self, id: EffectId) -> bool {
+        let mut true_places: Vec<&Place> = self.truth.iter().filter(|t| t.id == id).map(|t| &t.place).collect();
+        let mut places: Vec<&Place> = (self.reported.iter())
             .filter(|r| r.id == id)
-            .map(|r| r.place.as_str())
+            .map(|r| &r.place)
             .collect();
         for list in [&mut true_places, &mut places] {
             list.sort_unstable();
@@ -235,7 +225,7 @@ impl Trial {
     /// Whether an id is placed and its size (the first number concealed) is within a fifth or within its interval; what
     /// has no numbers is sized where it is placed.
     #[must_use]
-    pub fn sized(&self, id: &str) -> bool {
+    pub fn sized(&self, id: EffectId) -> bool {
         let Some(size) = self.truth.iter().find(|t| t.id == id) else {
             return false;
         };

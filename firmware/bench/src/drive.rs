@@ -1,11 +1,11 @@
-//! A synthetic drive, the same to the bit on every machine: what the sensors say, tick by tick.
+//! A synthetic drive: what the sensors say in each tick, the same to the bit on every machine.
 //!
-//! Not a vehicle (that is plant-sim's, and needs f64 and std) but its shape, so that each part of the controller has work:
-//! four struts on a rough road, a slalom on a smooth one, sensor noise, and at the end readings that are missing or
-//! wrong. The gas follows the struts' valves as the report's isothermal law has it. Only integer arithmetic and
-//! +, -, *, / of f32, which have the same bits everywhere.
+//! It is not a model of a vehicle, which would need f64 and std, but it gives each part of the controller work: four struts on a
+//! rough road, a slalom on a smooth one, sensor noise, and at the end readings that are missing or wrong. The gas follows the
+//! struts' valves by the report's isothermal law. It uses only integer arithmetic and +, -, *, / of f32, which have the same bits
+//! everywhere.
 
-use oleo_controller::{Inputs, Reading, ValveCommand};
+use oleo_controller::{Absolute, Corner, Corners, Gauge, Inputs, Reading, Side, StrutPressures, Valve, ValveCommand};
 
 /// Ticks until the drive ends: 15 s.
 pub const TICKS: u16 = 3_000;
@@ -19,23 +19,22 @@ const PISTON_AREA_M2: f32 = 1.963_495_4e-3;
 const GAS_1_M3: f32 = 1.0e-4;
 const GAS_2_M3: f32 = 4.0e-4;
 const STATIC_PA: f32 = 2.0e6;
-const ATMOSPHERE_PA: f32 = 101_325.0;
 
 /// The generator of the drive.
 pub struct Drive {
     tick: u16,
     random: u32,
     /// Gas in the second accumulators, m3; kept while valve 3 is closed.
-    gas_2_m3: [f32; 4],
+    gas_2_m3: Corners<f32>,
 }
 
 impl Drive {
-    /// From the start; always the same.
+    /// A drive from its start. All drives are the same.
     pub fn new() -> Self {
         Drive {
             tick: 0,
             random: 0x2545_F491,
-            gas_2_m3: [GAS_2_M3; 4],
+            gas_2_m3: Corners::splat(GAS_2_M3),
         }
     }
 
@@ -50,12 +49,14 @@ impl Drive {
         self.tick = tick.wrapping_add(1);
         let slalom = SLALOM.contains(&tick);
         let lateral = if slalom { triangle(tick, SLALOM_PERIOD) } else { 0.0 };
-        let mut displacement_m = [0.0; 4];
-        let mut pressure_pa = [[0.0; 4]; 4];
-        for (corner, side) in [-1.0, 1.0, -1.0, 1.0].into_iter().enumerate() {
-            let phase = tick + 37 * corner as u16;
+        let mut displacement_m = Corners::<f32>::default();
+        let mut pressure = Corners::<StrutPressures<Gauge<f32>>>::default();
+        for corner in Corner::ALL {
+            let side = if corner.side() == Side::Left { -1.0 } else { 1.0 };
+            let number = corner.index() as u16;
+            let phase = tick + 37 * number;
             let body = triangle(phase, 154);
-            let wheel = triangle(phase, 25 + 2 * corner as u16);
+            let wheel = triangle(phase, 25 + 2 * number);
             let road_m = if slalom {
                 0.0005 * body
             } else {
@@ -63,25 +64,25 @@ impl Drive {
             };
             let x = road_m + 0.006 * side * lateral + 1.0e-5 * self.noise();
             displacement_m[corner] = x;
-            let mut p = self.pressures(corner, x, command.valve(corner, 2));
+            let mut p = self.pressures(corner, x, command.is_open(corner, Valve::Spring));
             // The dampers' share, and what the tyres' side force shifts from left to right.
-            p[0] += 0.06e6 * triangle(phase + 38, 154) + 0.75e6 * side * lateral;
-            pressure_pa[corner] = p.map(|p| p + 5.0e3 * self.noise());
+            p.p1 = p.p1 + (0.06e6 * triangle(phase + 38, 154) + 0.75e6 * side * lateral);
+            pressure[corner] = p.map(|p| p + 5.0e3 * self.noise());
         }
-        let mut inputs = Inputs::from_values(displacement_m, pressure_pa);
+        let mut inputs = Inputs::from_values(displacement_m, pressure);
         match tick {
             // A reading that comes and goes; a broken wire; a pressure that no strut can have.
-            2_300..2_320 if tick.is_multiple_of(3) => inputs.displacement[1] = Reading::INVALID,
-            2_500..2_510 => inputs.pressure[2][0] = Reading::new(f32::NAN),
-            2_800.. => inputs.pressure[3][1] = Reading::new(9.0e7),
+            2_300..2_320 if tick.is_multiple_of(3) => inputs.displacement[Corner::FrontRight] = Reading::INVALID,
+            2_500..2_510 => inputs.pressure[Corner::RearLeft].p1 = Reading::new(f32::NAN),
+            2_800.. => inputs.pressure[Corner::RearRight].p2 = Reading::new(9.0e7),
             _ => {}
         }
         inputs
     }
 
-    /// p1 to p4 of a strut without damping, gauge, Pa.
-    fn pressures(&mut self, corner: usize, displacement_m: f32, spring_open: bool) -> [f32; 4] {
-        let charge_pa = STATIC_PA + ATMOSPHERE_PA;
+    /// Pressures of a strut without damping.
+    fn pressures(&mut self, corner: Corner, displacement_m: f32, spring_open: bool) -> StrutPressures<Gauge<f32>> {
+        let charge_pa = Gauge(STATIC_PA).absolute().pa();
         let gas_m3 = GAS_1_M3 + GAS_2_M3 - PISTON_AREA_M2 * displacement_m;
         let gas_2_m3 = &mut self.gas_2_m3[corner];
         if spring_open {
@@ -89,7 +90,11 @@ impl Drive {
         }
         let p1 = charge_pa * GAS_1_M3 / (gas_m3 - *gas_2_m3);
         let p4 = charge_pa * GAS_2_M3 / *gas_2_m3;
-        [p1, p1, p1, p4].map(|p| p - ATMOSPHERE_PA)
+        StrutPressures {
+            p4,
+            ..StrutPressures::splat(p1)
+        }
+        .map(|p| Absolute(p).gauge())
     }
 
     /// White, -1..1 (xorshift32, Marsaglia 2003).

@@ -10,8 +10,10 @@ mod drive;
 #[cfg_attr(not(target_os = "none"), path = "host.rs")]
 mod machine;
 
+use core::hash::Hasher;
 use core::hint::black_box;
 use drive::{Drive, TICKS};
+use fnv::FnvHasher;
 use machine::{Counter, leave, say};
 use oleo_controller::can::{Frame, PlantEnd};
 use oleo_controller::{Configuration, Inputs, Node, Outputs, State, ValveCommand, tick};
@@ -27,7 +29,7 @@ fn main() -> ! {
     let mut plant = PlantEnd::new();
     let mut node = Node::new(configuration);
     let mut state = State::new();
-    let mut words = Fnv1a::new();
+    let mut words = FnvHasher::default();
     let mut costs = [[0_u32; TICKS as usize]; 3];
     let [tick_costs, node_costs, receive_costs] = &mut costs;
     let mut modes = [0_u16; 16];
@@ -45,7 +47,7 @@ fn main() -> ! {
         let mut outputs = Outputs::default();
         node_costs[index] = counter.instructions(|| outputs = node_tick(&mut node));
 
-        words.take(outputs.command.word());
+        words.write(&outputs.command.word().to_le_bytes());
         modes[outputs.mode as usize & 15] += 1;
         handling += u16::from(outputs.handling);
         changes += u16::from(outputs.command.word() != last);
@@ -53,7 +55,8 @@ fn main() -> ! {
     }
 
     say!("ticks {}", TICKS);
-    say!("valve words hash {:016x}", words.0);
+    // FNV-1a, 64 bit, over the words, low byte first.
+    say!("valve words hash {:016x}", words.finish());
     for (mode, ticks) in modes.iter().enumerate().filter(|(_, ticks)| **ticks > 0) {
         say!("mode {} for {} ticks", mode, ticks);
     }
@@ -92,20 +95,5 @@ fn node_tick(node: &mut Node) -> Outputs {
 fn node_receive(node: &mut Node, frames: &[Frame]) {
     for frame in black_box(frames) {
         black_box(node.receive(frame.id, &frame.data));
-    }
-}
-
-/// FNV-1a, 64 bit, over the words' bytes, low byte first (draft-eastlake-fnv).
-struct Fnv1a(u64);
-
-impl Fnv1a {
-    fn new() -> Self {
-        Fnv1a(0xcbf2_9ce4_8422_2325)
-    }
-
-    fn take(&mut self, word: u16) {
-        for byte in word.to_le_bytes() {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
-        }
     }
 }

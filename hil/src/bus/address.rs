@@ -1,14 +1,14 @@
-//! Which bus, as written on the command line and in scenarios: `inproc`, `socketcan:IFACE`, `slcan:PATH`.
+//! Addresses of buses as on the command line and in scenarios: `inproc`, `socketcan:IFACE`, `slcan:PATH`.
 
 use std::fmt;
 use std::str::FromStr;
 
 use super::{Bus, BusError, SerialLine, SocketCan};
 
-/// A bus by name; nothing is opened yet.
+/// Address of a bus. Nothing is open yet.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum BusAddress {
-    /// Queues in memory, within this process.
+    /// Queues in the memory of this process.
     #[default]
     InProcess,
     /// A Linux CAN interface.
@@ -17,7 +17,7 @@ pub enum BusAddress {
     SerialLine(String),
 }
 
-/// Text that is no bus address.
+/// A text that is not the address of a bus.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0:?} is not a bus: give inproc, socketcan:IFACE (socketcan:vcan0), slcan:DEVICE or slcan:tcp:HOST:PORT")]
 pub struct AddressError(String);

@@ -1,8 +1,8 @@
-//! A bus that misbehaves on purpose, the same way every time.
+//! A bus that disturbs frames on purpose, in the same way every time.
 //!
-//! Each [`Injection`] disturbs some messages during some ticks with some probability. Every injection has a random stream of its own
-//! (ChaCha8, seeded by the scenario), so adding one does not change what the others do. It acts on the messages of
-//! the vehicle's database only: strangers' frames and the loop's own pass.
+//! Each [`Injection`] disturbs some messages during some ticks with some probability. Every injection has a random stream of its
+//! own (ChaCha8, seeded by the scenario), so that adding one does not change what the others do. Only messages of the vehicle's
+//! database are disturbed; all other frames pass.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -17,32 +17,32 @@ use crate::Frame;
 /// What happens to a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Disturbance {
-    /// It vanishes.
+    /// The frame is dropped.
     Drop,
-    /// This many of its bits, 1 or more, are inverted at random places of the data.
+    /// Some bits of its data, at random places, are inverted.
     Corrupt {
-        /// How many; a bit drawn twice is inverted twice.
+        /// How many bits, 1 or more. A bit that is drawn twice is inverted twice.
         bits: u8,
     },
-    /// It arrives this many ticks later, after that tick's other frames were sent.
+    /// The frame arrives later, after the other frames of that tick.
     Delay {
-        /// How much later.
+        /// By how many ticks.
         ticks: u16,
     },
-    /// It arrives twice.
+    /// The frame arrives twice.
     Duplicate,
 }
 
-/// Which frames: by identifier.
+/// Which frames are disturbed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// Every message of the database.
     All,
     /// The six sensor messages.
     Sensors,
-    /// What the controller sends.
+    /// Command and status, which the controller sends.
     Controller,
-    /// One message.
+    /// The message with this identifier.
     Id(u16),
 }
 
@@ -58,35 +58,35 @@ impl Target {
     }
 }
 
-/// One kind of disturbance during one stretch of time.
+/// One kind of disturbance during one interval of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Injection {
-    /// Which messages.
+    /// Messages that are disturbed.
     pub target: Target,
-    /// First tick concerned.
+    /// First tick of the interval.
     pub from_tick: u32,
-    /// First tick no longer concerned.
+    /// First tick after the interval.
     pub until_tick: u32,
-    /// Share of those frames that is disturbed, 0 to 1.
+    /// Fraction of those frames that is disturbed, 0 to 1.
     pub probability: f64,
-    /// How.
+    /// What happens to them.
     pub disturbance: Disturbance,
 }
 
 /// What was done to frames so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct InjectionCounts {
-    /// Frames that vanished.
+    /// Number of dropped frames.
     pub dropped: u64,
-    /// Frames altered.
+    /// Number of altered frames.
     pub corrupted: u64,
-    /// Frames delivered late.
+    /// Number of frames that were delivered late.
     pub delayed: u64,
-    /// Frames delivered twice.
+    /// Number of frames that were delivered twice.
     pub duplicated: u64,
 }
 
-/// Decorator that disturbs frames in both directions.
+/// A decorator that disturbs frames in both directions.
 #[derive(Debug)]
 pub struct FaultInjector<B> {
     inner: B,
@@ -98,7 +98,7 @@ pub struct FaultInjector<B> {
     counts: InjectionCounts,
 }
 
-/// How often a frame goes on, and what it then is.
+/// What becomes of a frame: how often it goes on, or how many ticks later, and its content.
 enum Fate {
     Copies(u8, Frame),
     Late(u16, Frame),
@@ -123,17 +123,17 @@ impl<B: Bus> FaultInjector<B> {
         }
     }
 
-    /// What has been done so far.
+    /// What was done to frames so far.
     pub fn counts(&self) -> InjectionCounts {
         self.counts
     }
 
-    /// The bus behind.
+    /// The wrapped bus.
     pub fn inner(&self) -> &B {
         &self.inner
     }
 
-    /// The bus behind.
+    /// The wrapped bus, to change it.
     pub fn inner_mut(&mut self) -> &mut B {
         &mut self.inner
     }
@@ -159,7 +159,7 @@ impl<B: Bus> FaultInjector<B> {
                 Disturbance::Corrupt { bits } => {
                     self.counts.corrupted += 1;
                     for _ in 0..bits {
-                        // 64 divides 2^32: no bias.
+                        // 64 divides 2^32, so no bit is preferred.
                         frame = frame.with_flipped_bit((rng.next_u32() % 64) as usize);
                     }
                 }
@@ -182,7 +182,7 @@ fn happens(rng: &mut ChaCha8Rng, probability: f64) -> bool {
     probability >= 1.0 || (probability > 0.0 && f64::from(rng.next_u32()) < probability * 4_294_967_296.0)
 }
 
-/// Takes the frames that are due out of a queue in which all were delayed at different times.
+/// Takes a frame that is due out of a queue of delayed frames, which need not be in the order of their times.
 fn due(queue: &mut VecDeque<(u32, Frame)>, tick: u32) -> Option<Frame> {
     let position = queue.iter().position(|(due, _)| *due <= tick)?;
     queue.remove(position).map(|(_, frame)| frame)
@@ -198,7 +198,7 @@ impl<B: Bus> Bus for FaultInjector<B> {
     }
 
     fn send(&mut self, frame: &Frame) -> Result<(), BusError> {
-        // The sync frame that ends a tick comes last, so what is late goes out before it.
+        // The frame that ends a tick must come last, so delayed frames are sent before it.
         if crate::sync::is_sync(frame) {
             while let Some(late) = due(&mut self.late_sent, self.tick) {
                 self.inner.send(&late)?;
@@ -304,7 +304,7 @@ mod tests {
         assert_eq!(
             bus.receive(Duration::ZERO).unwrap().unwrap().raw_id(),
             0x7DF,
-            "a stranger's frame passes"
+            "a frame with another identifier passes"
         );
         assert_eq!(bus.receive(Duration::ZERO).unwrap(), None);
         assert_eq!(bus.counts().dropped, 1);

@@ -1,7 +1,7 @@
-//! A bus that is two queues in memory: the default, and the reference for all others.
+//! A bus of two queues in memory. It is the default, and the reference for all others.
 //!
-//! It keeps order, loses nothing while its queues have room and costs some 30 ns a frame. Both ends may live in one
-//! thread (the loop takes turns) or in two.
+//! It keeps the order of frames, loses none while its queues have room, and costs some 30 ns a frame. Both ends may be used in one
+//! thread, in turns, or in two.
 
 use std::time::Duration;
 
@@ -10,10 +10,10 @@ use crossbeam_channel::{Receiver, RecvTimeoutError, Sender, TryRecvError, TrySen
 use super::{Bus, BusCounters, BusError};
 use crate::Frame;
 
-/// Frames a queue holds: 20 ticks, more than any fault scenario delays.
+/// Number of frames that a queue holds: those of 20 ticks, which is more than any fault scenario delays.
 const QUEUE_FRAMES: usize = 256;
 
-/// One of the two ends.
+/// One of the two ends of a bus in memory.
 #[derive(Debug)]
 pub struct InProcess {
     to_other: Sender<Frame>,
@@ -21,7 +21,7 @@ pub struct InProcess {
     counters: BusCounters,
 }
 
-/// A bus with two ends.
+/// The two ends of a new bus in memory.
 pub fn in_process_pair() -> (InProcess, InProcess) {
     let (to_b, from_a) = bounded(QUEUE_FRAMES);
     let (to_a, from_b) = bounded(QUEUE_FRAMES);

@@ -1,15 +1,14 @@
 //! Something that carries CAN frames between two nodes.
 //!
-//! Nodes know the [`Bus`] trait and nothing else, so the same plant and the same controller run over memory, a kernel
-//! socket or a serial line. Decorators wrap any bus and are buses themselves:
+//! Nodes know only the trait [`Bus`], so that the same plant and the same controller run over memory, a kernel socket or a serial
+//! line. Decorators wrap any bus and are buses themselves:
 //!
 //! ```text
 //!   plant  -> FaultInjector -> Trace -> InProcess | SocketCan | SerialLine  <- controller
 //! ```
 //!
-//! The injector is nearest to the plant: it acts on what the plant sends and on what it receives, so the trace (and any
-//! other listener) sees the wire. Frames of [`crate::sync`], which keep two nodes in step and would not exist in a
-//! vehicle, pass through both untouched.
+//! The injector is next to the plant and acts on what the plant sends and receives. So the trace, like any other listener, sees what is on
+//! the wire. Frames of [`crate::sync`], which keep two nodes in step and would not exist in a vehicle, pass through both unchanged.
 
 mod address;
 mod faults;
@@ -31,21 +30,21 @@ pub use trace::{Direction, Trace, TraceEntry};
 
 use crate::Frame;
 
-/// What a bus could not do. One line: what, where, what to do.
+/// What a bus could not do, in one line: what, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum BusError {
     /// The bus does not exist or may not be used.
     #[error("{bus}: {reason}")]
     Open {
-        /// Address as given.
+        /// Address of the bus, as given.
         bus: String,
         /// What is wrong, and what to do.
         reason: String,
     },
-    /// It worked once and does not any more.
+    /// The bus worked before and fails now.
     #[error("{bus}: {action} failed: {source}; check the cable or interface and start again")]
     Io {
-        /// Address.
+        /// Address of the bus.
         bus: String,
         /// What was attempted.
         action: &'static str,
@@ -55,7 +54,7 @@ pub enum BusError {
     /// The other end is gone for good.
     #[error("{bus}: the other end has closed the connection")]
     Closed {
-        /// Address.
+        /// Address of the bus.
         bus: String,
     },
 }
@@ -63,35 +62,35 @@ pub enum BusError {
 /// What a bus saw since it was opened.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct BusCounters {
-    /// Frames handed over by this end.
+    /// Number of frames that this end has sent.
     pub sent: u64,
-    /// Frames given to this end.
+    /// Number of frames that this end has received.
     pub received: u64,
-    /// Frames this end wanted to send and could not (queue full after back-off).
+    /// Number of frames that this end could not send, because the queue was still full after a wait.
     pub send_lost: u64,
-    /// Frames the kernel or the queue threw away before this end read them.
+    /// Number of frames that the kernel or the queue dropped before this end read them.
     pub receive_lost: u64,
-    /// Times a full queue made a sender wait.
+    /// Number of waits for a full queue.
     pub back_offs: u64,
-    /// What was received and is no classic frame (bus error frames, unreadable lines).
+    /// Number of things received that are no classic frame, such as bus error frames and unreadable lines.
     pub unreadable: u64,
 }
 
 /// One end of a CAN bus.
 pub trait Bus: Send {
-    /// A new tick begins. Only decorators care.
+    /// Says that a tick begins. Only decorators use it.
     fn begin_tick(&mut self, _tick: u32) {}
 
-    /// Queues a frame for sending. A full queue is waited for briefly and then counted as lost, never an error.
+    /// Queues a frame for sending. If the queue is full, it waits briefly and then counts the frame as lost; that is no error.
     ///
     /// # Errors
-    /// The bus is gone.
+    /// The bus fails or is closed.
     fn send(&mut self, frame: &Frame) -> Result<(), BusError>;
 
-    /// The next frame, waiting for it at most `wait` (zero: not at all).
+    /// The next frame, or `None` if none comes within `wait`.
     ///
     /// # Errors
-    /// The bus is gone.
+    /// The bus fails or is closed.
     fn receive(&mut self, wait: Duration) -> Result<Option<Frame>, BusError>;
 
     /// Counters since the start.

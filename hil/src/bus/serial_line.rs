@@ -19,9 +19,9 @@ use super::slcan::{Decoder, encode};
 use super::{Bus, BusCounters, BusError};
 use crate::Frame;
 
-/// Seven frames each 5 ms are 0.3 Mbit/s of text; USB adapters ignore the rate, a UART needs it.
+/// Rate of the line. Seven frames each 5 ms are 0.3 Mbit/s of text. USB adapters ignore the rate, a UART needs it.
 const BAUD: BaudRate = BaudRate::B1000000;
-/// How long a full line is waited for before a frame counts as lost.
+/// Longest wait for a full line before a frame counts as lost.
 const PATIENCE: Duration = Duration::from_millis(100);
 const OPEN_CHANNEL: &[u8] = b"\rC\rS6\rO\r";
 const CLOSE_CHANNEL: &[u8] = b"C\r";
@@ -52,7 +52,7 @@ impl SerialLine {
         let line: OwnedFd = if let Some(address) = path.strip_prefix("tcp:") {
             let stream = TcpStream::connect(address)
                 .map_err(|e| refused(format!("cannot connect: {e}; is the other end listening at {address}?")))?;
-            // Frames are small and awaited: no batching.
+            // Frames are small and the other end waits for them, so they are not collected.
             let _ = stream.set_nodelay(true);
             stream.set_nonblocking(true).map_err(|e| refused(e.to_string()))?;
             stream.into()
@@ -112,7 +112,7 @@ impl SerialLine {
         }
     }
 
-    /// Writes a whole line or nothing of it; `false` if there was no room for too long.
+    /// Writes a whole line or nothing of it. Returns `false` if there was no room for too long.
     fn write(&mut self, text: &[u8]) -> Result<bool, BusError> {
         let started = Instant::now();
         let mut rest = text;
@@ -125,7 +125,7 @@ impl SerialLine {
                     if started.elapsed() > PATIENCE && rest.len() == text.len() {
                         return Ok(false);
                     }
-                    // Half a line is no use to anybody: once begun it is finished, unless the other end is gone.
+                    // Half a line is useless, so a line that was begun is finished, unless the other end is gone.
                     if started.elapsed() > 50 * PATIENCE {
                         return Err(BusError::Closed { bus: self.name.clone() });
                     }
@@ -137,7 +137,7 @@ impl SerialLine {
         Ok(true)
     }
 
-    /// A frame from what has been read, reading once more when that is used up.
+    /// A frame from what has been read. When that is used up, it reads once more.
     fn try_receive(&mut self) -> Result<Option<Frame>, BusError> {
         loop {
             while self.next < self.filled {
@@ -175,7 +175,7 @@ impl Bus for SerialLine {
             if let Some(frame) = self.try_receive()? {
                 return Ok(Some(frame));
             }
-            // Part of a line may be all that has come.
+            // What came may be only part of a line.
             let left = deadline.saturating_duration_since(Instant::now());
             if left.is_zero() || !self.ready(left, PollFlags::POLLIN)? {
                 return Ok(None);

@@ -1,4 +1,4 @@
-//! The Lawicel ASCII protocol ("slcan"): one line a frame.
+//! The Lawicel ASCII protocol ("slcan"): one line for each frame.
 //!
 //! ```text
 //!   t 110 8 0011223344556677 \r      data, 11-bit identifier      (spaces only here)
@@ -7,16 +7,16 @@
 //!   z \r  Z \r  \r  BEL              an adapter's answers: sent, sent, ok, error
 //! ```
 //!
-//! Source: Lawicel "CANUSB manual" (2011), commands t, T, r, R, O, C, S, Z; the Linux driver `slcan.c` reads the same. A decoder
-//! is fed bytes as they come, in any pieces; whatever is not a frame is skipped to the next line end and counted.
+//! Source: Lawicel "CANUSB manual" (2011), commands t, T, r, R, O, C, S, Z; the Linux driver `slcan.c` reads the same. A decoder takes
+//! bytes as they come, in pieces of any size. What is not a frame is skipped to the end of its line, and counted.
 
 use crate::Frame;
 use crate::frame::{extended, standard};
 
-/// Longest line with a frame: `T`, 8 + 1 + 16 digits, time stamp of 4 digits.
+/// Longest line with a frame: `T`, 8 + 1 + 16 digits, and a time stamp of 4 digits.
 const LONGEST: usize = 1 + 8 + 1 + 16 + 4;
 
-/// Room for an encoded frame and its carriage return.
+/// Length of the longest encoded frame with its carriage return.
 pub const ENCODED_BYTES: usize = 1 + 8 + 1 + 16 + 1;
 
 /// The line of a frame, carriage return included.
@@ -45,7 +45,7 @@ pub fn encode(frame: &Frame) -> String {
     line
 }
 
-/// Without the machinery of `format!`: an encoder that keeps pace with a serial line on a small machine.
+/// Writes hexadecimal digits without `format!`, so that a small machine keeps pace with a serial line.
 fn push_hex(line: &mut String, value: u32, digits: u32) {
     for place in (0..digits).rev() {
         line.push(
@@ -65,7 +65,7 @@ pub struct Decoder {
 }
 
 impl Decoder {
-    /// Takes one byte; a frame when the byte ends one.
+    /// Takes one byte; returns a frame if the byte ends one.
     pub fn push(&mut self, byte: u8) -> Option<Frame> {
         if !matches!(byte, b'\r' | b'\n' | 0x07) {
             if self.line.len() < LONGEST {
@@ -77,28 +77,28 @@ impl Decoder {
         }
         let overlong = std::mem::take(&mut self.overlong);
         let frame = (!overlong).then(|| parse(&self.line)).flatten();
-        if overlong || (frame.is_none() && !is_small_talk(&self.line)) {
+        if overlong || (frame.is_none() && !is_adapter_traffic(&self.line)) {
             self.unreadable += 1;
         }
         self.line.clear();
         frame
     }
 
-    /// Lines that were neither a frame nor an adapter's answer or command.
+    /// Number of lines that were neither a frame nor an adapter's answer or command.
     pub fn unreadable(&self) -> u64 {
         self.unreadable
     }
 }
 
-/// Answers of an adapter, and the commands that another host on the line sends to what it takes for an adapter.
-fn is_small_talk(line: &[u8]) -> bool {
+/// Whether a line is an answer of an adapter, or a command to one from another host on the line.
+fn is_adapter_traffic(line: &[u8]) -> bool {
     matches!(
         line.first(),
         None | Some(b'z' | b'Z' | b'V' | b'N' | b'F' | b'O' | b'C' | b'S' | b'L' | b'A')
     )
 }
 
-/// A line without its end; a trailing time stamp is allowed.
+/// Reads a line without its end. A time stamp may follow the frame.
 fn parse(line: &[u8]) -> Option<Frame> {
     let (&kind, rest) = line.split_first()?;
     let (id_digits, remote) = match kind {

@@ -1,9 +1,9 @@
 //! A Linux CAN interface: `vcan0`, `can0`.
 //!
-//! Three facts of SocketCAN shape this file. A slow reader loses frames *silently*: the receive buffer is enlarged and the
-//! kernel's drop counter (`SO_RXQ_OVFL`) is read with every frame. A full transmit queue is `ENOBUFS`, a hard error in
-//! most libraries: here the sender backs off, and what still does not fit is counted as lost. A socket does not hear
-//! itself but does hear every other socket of the machine, so two nodes in one process work like two processes.
+//! Three facts of SocketCAN determine this file. A slow reader loses frames *silently*, so the receive buffer is enlarged and the
+//! kernel's drop counter (`SO_RXQ_OVFL`) is read with every frame. A full transmit queue is `ENOBUFS`, a hard error in most
+//! libraries; here the sender waits, and a frame that still does not fit is counted as lost. A socket does not receive its own
+//! frames but those of every other socket of the machine, so that two nodes in one process work like two processes.
 
 use std::io::IoSliceMut;
 use std::os::fd::{AsFd, AsRawFd};
@@ -18,9 +18,10 @@ use super::{Bus, BusCounters, BusError};
 use crate::Frame;
 use crate::frame::{extended, standard};
 
-/// Receive buffer asked for, bytes: some 10,000 frames. Without the right to exceed it, the kernel gives `rmem_max`.
+/// Size of the receive buffer that is asked for, bytes: some 10,000 frames. Without the right to exceed it the kernel gives
+/// `rmem_max`.
 const RECEIVE_BUFFER: usize = 8 << 20;
-/// How long a full transmit queue is waited for before a frame counts as lost.
+/// Longest wait for a full transmit queue before a frame counts as lost.
 const PATIENCE: Duration = Duration::from_millis(100);
 const BACK_OFF: Duration = Duration::from_micros(100);
 
@@ -43,7 +44,7 @@ impl SocketCan {
     /// Opens an interface.
     ///
     /// # Errors
-    /// No such interface, one that is down or not CAN, a kernel without CAN: each with the commands that help.
+    /// There is no such interface, it is down or not CAN, or the kernel has no CAN. The message names the commands that help.
     pub fn open(interface: &str) -> Result<Self, BusError> {
         let bus = format!("socketcan:{interface}");
         let refused = |reason: String| BusError::Open {
@@ -63,7 +64,7 @@ impl SocketCan {
             source,
         };
         socket.set_nonblocking(true).map_err(io)?;
-        // Forced where allowed, else as much as the system grants; losses are counted either way.
+        // The full size is forced if that is allowed; otherwise the system grants less. Losses are counted either way.
         if setsockopt(&socket, sockopt::RcvBufForce, &RECEIVE_BUFFER).is_err() {
             let _ = setsockopt(&socket, sockopt::RcvBuf, &RECEIVE_BUFFER);
         }
@@ -85,7 +86,7 @@ impl SocketCan {
     }
 
     fn ready(&self, wait: Duration, events: PollFlags) -> Result<bool, BusError> {
-        // Rounded up: a wait below a millisecond must not become a busy loop.
+        // Rounded up, so that a wait below a millisecond does not become a busy loop.
         let millis = wait.as_micros().div_ceil(1000);
         let timeout = PollTimeout::try_from(millis).unwrap_or(PollTimeout::MAX);
         match poll(&mut [PollFd::new(self.socket.as_fd(), events)], timeout) {
@@ -95,7 +96,7 @@ impl SocketCan {
         }
     }
 
-    /// A frame that is already there.
+    /// A frame that has already arrived, if there is one.
     fn try_receive(&mut self) -> Result<Option<Frame>, BusError> {
         loop {
             let mut bytes = [0u8; CAN_FRAME_BYTES];
@@ -196,7 +197,7 @@ fn parse(bytes: &[u8; CAN_FRAME_BYTES]) -> Option<Frame> {
     }
 }
 
-/// The flag IFF_UP of the interface, as sysfs shows it; an unreadable sysfs says nothing.
+/// Whether the interface lacks the flag IFF_UP in sysfs; `false` if sysfs cannot be read.
 fn interface_is_down(interface: &str) -> bool {
     std::fs::read_to_string(format!("/sys/class/net/{interface}/flags"))
         .ok()

@@ -1,9 +1,8 @@
-//! Counts every frame that passes and, if wanted, writes it down: the memory of a run, from which logs, bus load and
-//! modes are worked out later.
+//! Counts every frame that passes and, if wanted, keeps it. Logs, bus load and modes are computed from the trace later.
 //!
-//! In the loop an entry costs a copy of some 32 bytes. Frames of [`crate::sync`] are left out: they would not be on a
-//! vehicle's bus. Messages of the vehicle's database and frames of third parties are counted apart, so that two
-//! ends can compare what was sent with what arrived.
+//! In the loop an entry costs a copy of some 32 bytes. Frames of [`crate::sync`] are left out, because they would not be on a vehicle's
+//! bus. Messages of the vehicle's database and other frames are counted separately, so that two ends can compare what was sent with
+//! what arrived.
 
 use std::time::{Duration, Instant};
 
@@ -12,7 +11,7 @@ use oleo_controller::can::MESSAGES;
 use super::{Bus, BusCounters, BusError};
 use crate::{Frame, sync};
 
-/// Which way a frame went, seen from the end that keeps the trace.
+/// Direction of a frame, seen from the end that keeps the trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// Sent by this end.
@@ -24,17 +23,17 @@ pub enum Direction {
 /// One frame on the wire.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TraceEntry {
-    /// Tick during which it passed.
+    /// Tick during which the frame passed.
     pub tick: u32,
-    /// Microseconds since the start, where the run has a wall clock (real time); 0 in lockstep.
+    /// Time since the start in a run in real time, microseconds; 0 in lockstep.
     pub wall_us: u32,
-    /// Which way.
+    /// Direction of the frame.
     pub direction: Direction,
-    /// What.
+    /// The frame.
     pub frame: Frame,
 }
 
-/// Decorator that keeps [`TraceEntry`]s.
+/// A decorator that keeps [`TraceEntry`]s.
 #[derive(Debug)]
 pub struct Trace<B> {
     inner: B,
@@ -47,7 +46,7 @@ pub struct Trace<B> {
 }
 
 impl<B: Bus> Trace<B> {
-    /// Wraps `inner`. `capacity` frames fit without allocation; with `wall_clock` entries carry the time since now.
+    /// Wraps `inner`, with memory for `capacity` frames. With `wall_clock` the entries carry the time since this call.
     pub fn new(inner: B, capacity: usize, wall_clock: bool) -> Self {
         let started = wall_clock.then(Instant::now);
         Self {
@@ -70,27 +69,27 @@ impl<B: Bus> Trace<B> {
         }
     }
 
-    /// Messages of the database that this end sent.
+    /// Number of messages of the database that this end sent.
     pub fn messages_sent(&self) -> u64 {
         self.sent
     }
 
-    /// Messages of the database that arrived here.
+    /// Number of messages of the database that arrived at this end.
     pub fn messages_received(&self) -> u64 {
         self.received
     }
 
-    /// Other frames that arrived here.
+    /// Number of frames with other identifiers that passed.
     pub fn foreign(&self) -> u64 {
         self.foreign
     }
 
-    /// What passed so far, in order.
+    /// The frames that have passed so far, in order.
     pub fn entries(&self) -> &[TraceEntry] {
         self.entries.as_deref().unwrap_or(&[])
     }
 
-    /// Takes the entries out.
+    /// Takes the entries out of the trace.
     pub fn take_entries(&mut self) -> Vec<TraceEntry> {
         self.entries.take().unwrap_or_default()
     }

@@ -1,26 +1,27 @@
-//! The controller's half of a run: answers ticks until the plant says that it is over, or is gone.
+//! The controller's half of a run: it answers ticks until the plant says that the run is over, or is gone.
 
 use std::time::{Duration, Instant};
 
 use oleo_controller::Mode;
+use oleo_interface::tick::TICK_S;
 
-use super::{TICK, guard};
+use super::waiting::{TICK, partner_timeout};
 use crate::bus::{Bus, BusError};
 use crate::clock::{Lateness, RealTime};
 use crate::controller_node::{ControllerNode, Heard};
-use crate::scenario::{Scenario, TICK_S};
+use crate::scenario::Scenario;
 
-/// Ticks that a controller without a plant may take to reach a safe mode before it gives up counting.
+/// Most ticks for which a controller without a plant is watched until it reaches a safe mode.
 const RUN_DOWN_TICKS: u32 = 1000;
 
-/// The plant's last tick, and how long the mode machine took from there to a safe mode.
+/// The plant's last tick, and the number of ticks from there to a safe mode; `None` if the mode machine did not reach one.
 pub(super) type PlantLost = (u32, Option<u32>);
 
 pub(super) fn in_lockstep<B: Bus>(
     controller: &mut ControllerNode<B>,
     scenario: &Scenario,
 ) -> Result<Option<PlantLost>, BusError> {
-    let wait = guard(scenario);
+    let wait = partner_timeout(scenario);
     loop {
         match controller.listen(wait) {
             Ok(Heard::Tick) => {

@@ -1,15 +1,22 @@
-//! The plant's half of a run: ticks in lockstep or against the clock, with or without a controller.
+//! The plant's half of a run, in lockstep or in real time.
 
 use std::time::{Duration, Instant};
 
-use super::{Outcome, RunError, TICK, Watch, guard};
+use oleo_interface::tick::TICK_S;
+
+use super::error::RunError;
+use super::outcome::Outcome;
+use super::waiting::{TICK, partner_timeout};
 use crate::bus::{Bus, BusError};
 use crate::clock::{Lateness, RealTime};
 use crate::plant_node::{Answer, PlantNode};
-use crate::scenario::{OnControllerLoss, Scenario, TICK_S};
+use crate::scenario::{OnControllerLoss, Scenario};
 use crate::sync::Role;
 
-/// Ticks between two calls of [`Watch`].
+/// Is called every few ticks with the number of ticks done. It returns `false` to end the run early.
+pub type Watch<'a> = &'a mut dyn FnMut(u32) -> bool;
+
+/// Number of ticks between two calls of [`Watch`].
 pub(super) const WATCH_TICKS: u32 = 50;
 
 /// How the plant's loop ended.
@@ -29,7 +36,7 @@ impl PlantEnd {
     ) -> Outcome {
         lateness.extend(self.lateness.map(|late| (Role::Plant, late)));
         Outcome {
-            remains: plant.into_remains(),
+            plant: plant.into_result(),
             wall_s: (self.stopped - started).as_secs_f64(),
             lateness,
             controller_lost_at: self.controller_lost_at,
@@ -38,17 +45,17 @@ impl PlantEnd {
     }
 }
 
-/// `partner` is what the other node does in this thread, if it is here.
+/// `partner` is what the other node does in a tick, if it runs in this thread.
 pub(super) fn in_lockstep<B: Bus>(
     plant: &mut PlantNode<B>,
     scenario: &Scenario,
     partner: &mut dyn FnMut() -> Result<(), BusError>,
     watch: Watch,
 ) -> Result<PlantEnd, RunError> {
-    let wait = guard(scenario);
+    let wait = partner_timeout(scenario);
     let (mut controller_lost_at, mut interrupted) = (None, false);
     while plant.tick() < scenario.ticks {
-        // A bus whose other end was closed has no controller on it either.
+        // If the other end of the bus was closed, the controller is gone too.
         let exchange = |plant: &mut PlantNode<B>, partner: &mut dyn FnMut() -> Result<(), BusError>| {
             plant.send_sensors()?;
             plant.send_done()?;
@@ -98,7 +105,7 @@ pub(super) fn in_real_time<B: Bus>(
     let (mut controller_lost_at, mut interrupted) = (None, false);
     while plant.tick() < scenario.ticks {
         clock.wait(plant.tick());
-        // What was commanded in answer to the last tick holds from here: a tick of latency, as on a real bus.
+        // The command that answered the last tick holds from here on: one tick of latency, as on a real bus.
         match plant.listen(Duration::ZERO).and_then(|_| plant.send_sensors()) {
             Ok(()) => {}
             Err(BusError::Closed { .. }) => controller_lost_at = controller_lost_at.or(Some(plant.tick())),
@@ -119,7 +126,7 @@ pub(super) fn in_real_time<B: Bus>(
     let stopped = Instant::now();
     if controller_lost_at.is_none() {
         plant.send_end()?;
-        plant.listen(guard(scenario))?;
+        plant.listen(partner_timeout(scenario))?;
     }
     Ok(PlantEnd {
         stopped,

@@ -4,24 +4,52 @@
 //! solenoids happen inside the plant. All of them live on the plant's side, so that a run in one process and one in two
 //! suffer the same.
 
-use oleo_controller::valves::{CORNERS, VALVES};
+use oleo_interface::{Corner, PressurePoint, Valve};
 
 use crate::bus::{Disturbance, Injection, Target};
 use crate::sync::Role;
 
 /// Names of the corners, in order.
-pub const CORNER_NAMES: [&str; CORNERS] = ["front-left", "front-right", "rear-left", "rear-right"];
+pub const CORNER_NAMES: [&str; 4] = [
+    Corner::FrontLeft.name(),
+    Corner::FrontRight.name(),
+    Corner::RearLeft.name(),
+    Corner::RearRight.name(),
+];
 
 /// Names of a strut's sensors, in order.
 pub const SENSOR_NAMES: [&str; 5] = ["displacement", "p1", "p2", "p3", "p4"];
 
+fn corner_from_name(name: &str) -> Option<Corner> {
+    Corner::ALL.into_iter().find(|corner| corner.name() == name)
+}
+
+/// A sensor of a strut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sensor {
+    /// Strut displacement.
+    Displacement,
+    /// One of the four pressures.
+    Pressure(PressurePoint),
+}
+
+impl Sensor {
+    /// From `displacement` or `p1` to `p4`.
+    pub fn from_name(name: &str) -> Option<Self> {
+        match name {
+            "displacement" => Some(Self::Displacement),
+            point => Some(Self::Pressure(point.parse().ok()?)),
+        }
+    }
+}
+
 /// One sensor of one strut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SensorPlace {
-    /// 0 front left to 3 rear right.
-    pub corner: usize,
-    /// 0 displacement, 1 to 4 pressures.
-    pub sensor: usize,
+    /// Which strut.
+    pub corner: Corner,
+    /// Which of its sensors.
+    pub sensor: Sensor,
 }
 
 impl SensorPlace {
@@ -29,8 +57,8 @@ impl SensorPlace {
     pub fn from_name(text: &str) -> Option<Self> {
         let (corner, sensor) = text.split_once('.')?;
         Some(Self {
-            corner: CORNER_NAMES.iter().position(|name| *name == corner)?,
-            sensor: SENSOR_NAMES.iter().position(|name| *name == sensor)?,
+            corner: corner_from_name(corner)?,
+            sensor: Sensor::from_name(sensor)?,
         })
     }
 }
@@ -38,21 +66,19 @@ impl SensorPlace {
 /// One valve of one strut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ValvePlace {
-    /// 0 front left to 3 rear right.
-    pub corner: usize,
-    /// 0 and 1 bypass valves, 2 spring valve.
-    pub valve: usize,
+    /// Which strut.
+    pub corner: Corner,
+    /// Which of its valves.
+    pub valve: Valve,
 }
 
 impl ValvePlace {
     /// From `front-left.3`; valves are counted 1 to 3 as in the report.
     pub fn from_name(text: &str) -> Option<Self> {
         let (corner, valve) = text.split_once('.')?;
-        let corner = CORNER_NAMES.iter().position(|name| *name == corner)?;
-        let number: usize = valve.parse().ok()?;
-        (1..=VALVES).contains(&number).then(|| Self {
-            corner,
-            valve: number - 1,
+        Some(Self {
+            corner: corner_from_name(corner)?,
+            valve: Valve::from_number(valve.parse().ok()?)?,
         })
     }
 }
@@ -148,15 +174,24 @@ mod tests {
     fn places_have_names() {
         assert_eq!(
             SensorPlace::from_name("rear-right.p4"),
-            Some(SensorPlace { corner: 3, sensor: 4 })
+            Some(SensorPlace {
+                corner: Corner::RearRight,
+                sensor: Sensor::Pressure(PressurePoint::P4),
+            })
         );
         assert_eq!(
             SensorPlace::from_name("front-left.displacement"),
-            Some(SensorPlace { corner: 0, sensor: 0 })
+            Some(SensorPlace {
+                corner: Corner::FrontLeft,
+                sensor: Sensor::Displacement,
+            })
         );
         assert_eq!(
             ValvePlace::from_name("rear-left.3"),
-            Some(ValvePlace { corner: 2, valve: 2 })
+            Some(ValvePlace {
+                corner: Corner::RearLeft,
+                valve: Valve::Spring,
+            })
         );
         for nonsense in ["", "front-left", "front-left.p5", "middle.p1", "front-left.p1.p1"] {
             assert_eq!(SensorPlace::from_name(nonsense), None);

@@ -34,7 +34,8 @@
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use oleo_interface::{Axle, Axles, Corners};
 
-use super::axle::{AxleCoordinates, AxleGeometry, AxlePlace};
+use super::axle::AxleGeometry;
+use super::axle_place::{AxleCoordinates, AxlePlace};
 use super::guide::Guide;
 
 /// Inertia of the body and what the axles are.

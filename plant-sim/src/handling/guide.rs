@@ -17,7 +17,7 @@
 
 use nalgebra::Vector3;
 
-use super::axle::{AxleCoordinates, AxlePlace};
+use super::axle_place::{AxleCoordinates, AxlePlace};
 
 /// Linkage of an axle. All in body axes (x ahead, y left, z up) from the body's centre of mass.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -25,135 +25,146 @@
 use libm::{atan, cos, exp, sin};
 use serde::{Deserialize, Serialize};
 
+use crate::model_file::{Checked, Limit, Range};
+
 /// Camber and load beyond which the coefficients are held: the source's file is fitted to 15 degrees.
 const CAMBER_LIMIT_RAD: f64 = 0.2618;
 const LOAD_EXCESS_LIMIT: f64 = 2.0;
 /// Relaxation lengths do not fall below this, m.
 const SHORTEST_RELAXATION_M: f64 = 0.03;
 
+/// A coefficient of either sign.
+const ANY: Range = Range::FromTo(-1000.0, 1000.0);
+/// A coefficient that the formula divides by or takes the sign of the force from.
+const POSITIVE: Range = Range::FromTo(1e-3, 1000.0);
+/// The same for the one that is negative in these axes.
+const NEGATIVE: Range = Range::FromTo(-1000.0, -1e-3);
+/// Nominal load, N.
+const LOAD_N: Range = Range::FromTo(100.0, 1e5);
+/// Factor on friction.
+const SCALE: Range = Range::FromTo(0.0, 3.0);
+
 macro_rules! coefficients {
-    ($($(#[$doc:meta])* $name:ident),* $(,)?) => {
+    ($($(#[$doc:meta])* $name:ident: $range:ident $unit:literal),* $(,)?) => {
         /// Coefficients of the formula, named as in the field's property files (in lower case).
         #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
         #[serde(deny_unknown_fields)]
         pub struct MagicFormula { $($(#[$doc])* pub $name: f64),* }
 
-        impl MagicFormula {
-            /// Dimensionless coefficients by name.
-            pub(super) fn named(&self) -> impl Iterator<Item = (&'static str, f64)> {
-                [$((stringify!($name), self.$name)),*].into_iter().filter(|(name, _)| *name != "nominal_load_n")
-            }
+        impl Checked for MagicFormula {
+            const LIMITS: &'static [Limit<Self>] =
+                &[$(Limit::one(stringify!($name), $range, $unit, |formula| formula.$name)),*];
         }
     };
 }
 
 coefficients! {
     /// Fz0, N.
-    nominal_load_n,
+    nominal_load_n: LOAD_N "N",
     /// Factor on both friction coefficients (LMUX, LMUY): 1 dry asphalt.
-    friction_scale,
+    friction_scale: SCALE "",
     /// Longitudinal: shape.
-    pcx1,
+    pcx1: POSITIVE "",
     /// Friction at nominal load.
-    pdx1,
+    pdx1: POSITIVE "",
     /// Change with load.
-    pdx2,
+    pdx2: ANY "",
     /// Curvature.
-    pex1,
+    pex1: ANY "",
     /// Curvature, load.
-    pex2,
+    pex2: ANY "",
     /// Curvature, load squared.
-    pex3,
+    pex3: ANY "",
     /// Slip stiffness over load.
-    pkx1,
+    pkx1: POSITIVE "",
     /// Slip stiffness, load.
-    pkx2,
+    pkx2: ANY "",
     /// Slip stiffness, exponent.
-    pkx3,
+    pkx3: ANY "",
     /// Lateral: shape.
-    pcy1,
+    pcy1: POSITIVE "",
     /// Friction at nominal load.
-    pdy1,
+    pdy1: POSITIVE "",
     /// Change with load.
-    pdy2,
+    pdy2: ANY "",
     /// Change with camber squared.
-    pdy3,
+    pdy3: ANY "",
     /// Curvature.
-    pey1,
+    pey1: ANY "",
     /// Curvature, load.
-    pey2,
+    pey2: ANY "",
     /// Curvature, camber.
-    pey4,
+    pey4: ANY "",
     /// Largest cornering stiffness over nominal load; negative in ISO-W axes.
-    pky1,
+    pky1: NEGATIVE "",
     /// Load of that over nominal load.
-    pky2,
+    pky2: POSITIVE "",
     /// Change with camber.
-    pky3,
+    pky3: ANY "",
     /// Camber thrust: slip shift.
-    phy3,
+    phy3: ANY "",
     /// Camber thrust: force shift.
-    pvy3,
+    pvy3: ANY "",
     /// Camber thrust: force shift, load.
-    pvy4,
+    pvy4: ANY "",
     /// Combined slip: slope of Fx.
-    rbx1,
+    rbx1: ANY "",
     /// Slope of Fx, kappa.
-    rbx2,
+    rbx2: ANY "",
     /// Shape of Fx.
-    rcx1,
+    rcx1: ANY "",
     /// Curvature of Fx.
-    rex1,
+    rex1: ANY "",
     /// Curvature of Fx, load.
-    rex2,
+    rex2: ANY "",
     /// Slope of Fy.
-    rby1,
+    rby1: ANY "",
     /// Slope of Fy, alpha.
-    rby2,
+    rby2: ANY "",
     /// Shape of Fy.
-    rcy1,
+    rcy1: ANY "",
     /// Curvature of Fy.
-    rey1,
+    rey1: ANY "",
     /// Curvature of Fy, load.
-    rey2,
+    rey2: ANY "",
     /// Trail: slope.
-    qbz1,
+    qbz1: ANY "",
     /// Slope, load.
-    qbz2,
+    qbz2: ANY "",
     /// Slope, load squared.
-    qbz3,
+    qbz3: ANY "",
     /// Slope, absolute camber.
-    qbz5,
+    qbz5: ANY "",
     /// Shape.
-    qcz1,
+    qcz1: ANY "",
     /// Peak.
-    qdz1,
+    qdz1: ANY "",
     /// Peak, load.
-    qdz2,
+    qdz2: ANY "",
     /// Peak, camber squared.
-    qdz4,
+    qdz4: ANY "",
     /// Curvature.
-    qez1,
+    qez1: ANY "",
     /// Curvature, load.
-    qez2,
+    qez2: ANY "",
     /// Longitudinal relaxation.
-    ptx1,
+    ptx1: POSITIVE "",
     /// Longitudinal relaxation, load.
-    ptx2,
+    ptx2: ANY "",
     /// Longitudinal relaxation, exponent.
-    ptx3,
+    ptx3: ANY "",
     /// Lateral relaxation: largest over radius.
-    pty1,
+    pty1: POSITIVE "",
     /// Load of that over nominal load.
-    pty2,
+    pty2: POSITIVE "",
     /// Rolling resistance.
-    qsy1,
+    qsy1: ANY "",
     /// Effective radius at low load.
-    breff,
+    breff: ANY "",
     /// Effective radius, peak.
-    dreff,
+    dreff: ANY "",
     /// Effective radius at high load.
-    freff,
+    freff: ANY "",
 }
 
 /// What the road does to a wheel in its plane.

@@ -14,6 +14,7 @@
 mod assembly;
 mod attitude;
 mod axle;
+mod axle_place;
 mod dynamics;
 mod ground;
 mod guide;
@@ -24,7 +25,7 @@ mod parameters;
 mod steering;
 mod wheel;
 
-pub use axle::AxleCoordinates;
+pub use axle_place::AxleCoordinates;
 pub use magic_formula::{LoadedTyre, MagicFormula, TyreForces};
 pub use model::{HandlingModel, HandlingVehicle};
 pub use motion::{Controls, HandlingMotion};

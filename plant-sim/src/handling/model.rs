@@ -14,7 +14,7 @@ use oleo_interface::{Axle, Axles, Corner, Corners, Side};
 
 use super::assembly::masses;
 use super::attitude::Attitude;
-use super::axle::{AxleCoordinates, AxlePlace};
+use super::axle_place::{AxleCoordinates, AxlePlace};
 use super::dynamics::{Accelerations, Loads, Masses, Velocities};
 use super::ground::Probe;
 use super::motion::Controls;

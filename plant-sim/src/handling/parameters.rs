@@ -8,8 +8,7 @@ use oleo_interface::Axle;
 use serde::{Deserialize, Serialize};
 
 use super::magic_formula::MagicFormula;
-use crate::vehicle::ParameterError;
-use crate::vehicle::parameter_file::{Limits, describe, line_at, line_of, within};
+use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
 
 /// Handling parameters of a vehicle. All values SI.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,6 +50,22 @@ pub struct Steering {
     pub castor_trail_m: f64,
 }
 
+impl Checked for Steering {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("max_angle_rad", Range::FromTo(0.01, 1.4), "rad", |p| p.max_angle_rad),
+        Limit::one("max_rate_rad_s", Range::FromTo(0.01, 100.0), "rad/s", |p| {
+            p.max_rate_rad_s
+        }),
+        Limit::one("linkage_stiffness_n_m_rad", Range::FromTo(1e3, 1e9), "N m/rad", |p| {
+            p.linkage_stiffness_n_m_rad
+        }),
+        Limit::one("linkage_time_constant_s", Range::FromTo(0.0, 1.0), "s", |p| {
+            p.linkage_time_constant_s
+        }),
+        Limit::one("castor_trail_m", Range::FromTo(-0.5, 0.5), "m", |p| p.castor_trail_m),
+    ];
+}
+
 /// A live axle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -69,6 +84,33 @@ pub struct HandlingAxle {
     pub roll_understeer: f64,
 }
 
+/// Inertia of an axle's part, kg m2.
+const INERTIA_KG_M2: Range = Range::FromTo(0.01, 1e4);
+
+impl Checked for HandlingAxle {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("roll_centre_height_m", Range::FromTo(-1.0, 3.0), "m", |p| {
+            p.roll_centre_height_m
+        }),
+        Limit::one("housing_pitch_inertia_kg_m2", INERTIA_KG_M2, "kg m2", |p| {
+            p.housing_pitch_inertia_kg_m2
+        }),
+        Limit::one("wheel_spin_inertia_kg_m2", INERTIA_KG_M2, "kg m2", |p| {
+            p.wheel_spin_inertia_kg_m2
+        }),
+        Limit::one("side_view_swing_arm_m", Range::FromTo(0.2, 1e6), "m", |p| {
+            p.side_view_swing_arm_m
+        }),
+        Limit::one(
+            "side_view_instant_centre_height_m",
+            Range::FromTo(-2.0, 1e6),
+            "m",
+            |p| p.side_view_instant_centre_height_m,
+        ),
+        Limit::one("roll_understeer", Range::FromTo(-0.5, 0.5), "", |p| p.roll_understeer),
+    ];
+}
+
 /// Torsion of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -77,6 +119,17 @@ pub struct Frame {
     pub torsional_stiffness_n_m_rad: f64,
     /// Damping of the torsional mode over critical.
     pub torsional_damping_ratio: f64,
+}
+
+impl Checked for Frame {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("torsional_stiffness_n_m_rad", Range::FromTo(1e3, 1e8), "N m/rad", |p| {
+            p.torsional_stiffness_n_m_rad
+        }),
+        Limit::one("torsional_damping_ratio", Range::FromTo(0.0, 2.0), "", |p| {
+            p.torsional_damping_ratio
+        }),
+    ];
 }
 
 /// Drive, brakes and speed control; forces are those of all four wheels together.
@@ -99,6 +152,30 @@ pub struct Drive {
     pub max_brake_force_n: f64,
 }
 
+impl Checked for Drive {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("front_share", Range::FromTo(0.0, 1.0), "", |p| p.front_share),
+        Limit::one("speed_gain_n_s_m", Range::FromTo(0.0, 1e6), "N s/m", |p| {
+            p.speed_gain_n_s_m
+        }),
+        Limit::one("speed_integral_n_m", Range::FromTo(0.0, 1e6), "N/m", |p| {
+            p.speed_integral_n_m
+        }),
+        Limit::one("brake_front_share", Range::FromTo(0.0, 1.0), "", |p| {
+            p.brake_front_share
+        }),
+        Limit::one("max_drive_force_n", Range::FromTo(0.0, 1e6), "N", |p| {
+            p.max_drive_force_n
+        }),
+        Limit::one("max_drive_power_w", Range::FromTo(0.0, 1e7), "W", |p| {
+            p.max_drive_power_w
+        }),
+        Limit::one("max_brake_force_n", Range::FromTo(0.0, 1e6), "N", |p| {
+            p.max_brake_force_n
+        }),
+    ];
+}
+
 /// The report's preview driver, and the one who steers by optimal preview control.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -115,6 +192,18 @@ pub struct DriverParameters {
     pub optimal_preview_time_s: f64,
 }
 
+impl Checked for DriverParameters {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("preview_time_s", Range::FromTo(0.05, 10.0), "s", |p| p.preview_time_s),
+        Limit::one("gain", Range::FromTo(0.0, 100.0), "", |p| p.gain),
+        Limit::one("integral_per_s", Range::FromTo(0.0, 100.0), "1/s", |p| p.integral_per_s),
+        Limit::one("lag_s", Range::FromTo(0.0, 5.0), "s", |p| p.lag_s),
+        Limit::one("optimal_preview_time_s", Range::FromTo(0.05, 10.0), "s", |p| {
+            p.optimal_preview_time_s
+        }),
+    ];
+}
+
 /// Base of the plane through an uneven road below a tyre.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -123,6 +212,13 @@ pub struct Ground {
     pub plane_length_m: f64,
     /// Across, m.
     pub plane_width_m: f64,
+}
+
+impl Checked for Ground {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("plane_length_m", Range::FromTo(0.01, 2.0), "m", |p| p.plane_length_m),
+        Limit::one("plane_width_m", Range::FromTo(0.01, 2.0), "m", |p| p.plane_width_m),
+    ];
 }
 
 /// Outline of the body beyond the axles.
@@ -135,6 +231,15 @@ pub struct Outline {
     pub rear_overhang_m: f64,
 }
 
+impl Checked for Outline {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("front_overhang_m", Range::FromTo(0.0, 10.0), "m", |p| {
+            p.front_overhang_m
+        }),
+        Limit::one("rear_overhang_m", Range::FromTo(0.0, 10.0), "m", |p| p.rear_overhang_m),
+    ];
+}
+
 impl Drive {
     /// Largest drive force at a speed, N: the limit of the force, and of the power.
     pub fn most_n(&self, speed_m_s: f64) -> f64 {
@@ -144,7 +249,6 @@ impl Drive {
 }
 
 const PRESET: &str = include_str!("../../presets/defender110-handling.toml");
-const COEFFICIENT: Limits = (-1000.0, 1000.0);
 
 impl HandlingParameters {
     /// The shipped Defender 110.
@@ -160,145 +264,40 @@ impl HandlingParameters {
         }
     }
 
-    /// Parses and checks a file. `source_name` appears in errors.
+    /// Read and check a file. `file` is the name that appears in errors.
     ///
     /// # Errors
     /// Unknown, missing or mistyped keys and values outside their physical range, each with its line.
-    pub fn from_toml(text: &str, source_name: &str) -> Result<Self, ParameterError> {
-        let parameters: Self = toml::from_str(text).map_err(|error| ParameterError {
-            source_name: source_name.to_owned(),
-            line: error.span().map_or(1, |span| line_at(text, span.start)),
-            problem: describe(text, &error),
-        })?;
-        parameters.check().map_err(|(table, key, why)| ParameterError {
-            source_name: source_name.to_owned(),
-            line: line_of(text, table, key),
-            problem: format!("[{table}] {key}: {why}"),
-        })?;
-        Ok(parameters)
+    pub fn from_toml(text: &str, file: &str) -> Result<Self, ModelFileError> {
+        read(text, file)
     }
 
     /// The parameters as a file that `from_toml` reads back to the same bits.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).unwrap_or_default()
     }
+}
 
-    /// First impossible value as (table, key, reason).
-    fn check(&self) -> Result<(), (&'static str, &'static str, String)> {
-        within("steering", "max_angle_rad", self.steering.max_angle_rad, (0.01, 1.4))?;
-        within(
-            "steering",
-            "max_rate_rad_s",
-            self.steering.max_rate_rad_s,
-            (0.01, 100.0),
-        )?;
-        within(
-            "steering",
-            "linkage_stiffness_n_m_rad",
-            self.steering.linkage_stiffness_n_m_rad,
-            (1e3, 1e9),
-        )?;
-        within(
-            "steering",
-            "linkage_time_constant_s",
-            self.steering.linkage_time_constant_s,
-            (0.0, 1.0),
-        )?;
-        within("steering", "castor_trail_m", self.steering.castor_trail_m, (-0.5, 0.5))?;
-        for (table, axle) in [("front_axle", &self.front_axle), ("rear_axle", &self.rear_axle)] {
-            within(table, "roll_centre_height_m", axle.roll_centre_height_m, (-1.0, 3.0))?;
-            let inertia: Limits = (0.01, 1e4);
-            within(
-                table,
-                "housing_pitch_inertia_kg_m2",
-                axle.housing_pitch_inertia_kg_m2,
-                inertia,
-            )?;
-            within(
-                table,
-                "wheel_spin_inertia_kg_m2",
-                axle.wheel_spin_inertia_kg_m2,
-                inertia,
-            )?;
-        }
-        for (table, axle) in [("front_axle", &self.front_axle), ("rear_axle", &self.rear_axle)] {
-            within(table, "side_view_swing_arm_m", axle.side_view_swing_arm_m, (0.2, 1e6))?;
-            within(
-                table,
-                "side_view_instant_centre_height_m",
-                axle.side_view_instant_centre_height_m,
-                (-2.0, 1e6),
-            )?;
-            within(table, "roll_understeer", axle.roll_understeer, (-0.5, 0.5))?;
-        }
-        let frame = &self.frame;
-        within(
-            "frame",
-            "torsional_stiffness_n_m_rad",
-            frame.torsional_stiffness_n_m_rad,
-            (1e3, 1e8),
-        )?;
-        within(
-            "frame",
-            "torsional_damping_ratio",
-            frame.torsional_damping_ratio,
-            (0.0, 2.0),
-        )?;
-        let drive = &self.drive;
-        within("drive", "front_share", drive.front_share, (0.0, 1.0))?;
-        within("drive", "speed_gain_n_s_m", drive.speed_gain_n_s_m, (0.0, 1e6))?;
-        within("drive", "speed_integral_n_m", drive.speed_integral_n_m, (0.0, 1e6))?;
-        within("drive", "brake_front_share", drive.brake_front_share, (0.0, 1.0))?;
-        within("drive", "max_drive_force_n", drive.max_drive_force_n, (0.0, 1e6))?;
-        within("drive", "max_drive_power_w", drive.max_drive_power_w, (0.0, 1e7))?;
-        within("drive", "max_brake_force_n", drive.max_brake_force_n, (0.0, 1e6))?;
-        let driver = &self.driver;
-        within("driver", "preview_time_s", driver.preview_time_s, (0.05, 10.0))?;
-        within("driver", "gain", driver.gain, (0.0, 100.0))?;
-        within("driver", "integral_per_s", driver.integral_per_s, (0.0, 100.0))?;
-        within("driver", "lag_s", driver.lag_s, (0.0, 5.0))?;
-        within(
-            "driver",
-            "optimal_preview_time_s",
-            driver.optimal_preview_time_s,
-            (0.05, 10.0),
-        )?;
-        within("ground", "plane_length_m", self.ground.plane_length_m, (0.01, 2.0))?;
-        within("ground", "plane_width_m", self.ground.plane_width_m, (0.01, 2.0))?;
-        within(
-            "outline",
-            "front_overhang_m",
-            self.outline.front_overhang_m,
-            (0.0, 10.0),
-        )?;
-        within("outline", "rear_overhang_m", self.outline.rear_overhang_m, (0.0, 10.0))?;
-        within("tyre", "nominal_load_n", self.tyre.nominal_load_n, (100.0, 1e5))?;
-        within("tyre", "friction_scale", self.tyre.friction_scale, (0.0, 3.0))?;
-        let positive: Limits = (1e-3, 1000.0);
-        for (key, value) in [
-            ("pcx1", self.tyre.pcx1),
-            ("pdx1", self.tyre.pdx1),
-            ("pkx1", self.tyre.pkx1),
-            ("pcy1", self.tyre.pcy1),
-            ("pdy1", self.tyre.pdy1),
-            ("pky1", -self.tyre.pky1),
-            ("pky2", self.tyre.pky2),
-            ("ptx1", self.tyre.ptx1),
-            ("pty1", self.tyre.pty1),
-            ("pty2", self.tyre.pty2),
-        ] {
-            within("tyre", key, value, positive)?;
-        }
-        for (key, value) in self.tyre.named() {
-            within("tyre", key, value, COEFFICIENT)?;
-        }
-        Ok(())
+impl Checked for HandlingParameters {
+    const LIMITS: &'static [Limit<Self>] = &[];
+
+    fn check_together(&self) -> Result<(), InvalidValue> {
+        checked(&self.steering, "steering")?;
+        checked(&self.front_axle, "front_axle")?;
+        checked(&self.rear_axle, "rear_axle")?;
+        checked(&self.frame, "frame")?;
+        checked(&self.drive, "drive")?;
+        checked(&self.driver, "driver")?;
+        checked(&self.ground, "ground")?;
+        checked(&self.outline, "outline")?;
+        checked(&self.tyre, "tyre")
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model_file::limits::forgotten_keys;
 
     #[test]
     fn preset_is_read_labelled_and_survives_the_round_trip() {
@@ -315,6 +314,22 @@ mod tests {
             let known = ["report", "source", "recalled", "assumed", "computed"];
             assert!(known.iter().any(|known| label.starts_with(known)), "no origin: {line}");
         }
+    }
+
+    #[test]
+    fn every_number_has_a_limit() {
+        let p = HandlingParameters::defender110();
+        let forgotten = [
+            forgotten_keys(&p.steering),
+            forgotten_keys(&p.front_axle),
+            forgotten_keys(&p.frame),
+            forgotten_keys(&p.drive),
+            forgotten_keys(&p.driver),
+            forgotten_keys(&p.ground),
+            forgotten_keys(&p.outline),
+            forgotten_keys(&p.tyre),
+        ];
+        assert!(forgotten.concat().is_empty(), "{forgotten:?}");
     }
 
     #[test]

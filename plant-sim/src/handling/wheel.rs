@@ -20,7 +20,7 @@ use core::f64::consts::PI;
 use libm::{atan, cos};
 use nalgebra::{Matrix3, Vector3};
 
-use super::axle::AxlePlace;
+use super::axle_place::AxlePlace;
 use super::dynamics::Wrench;
 use super::ground::Plane;
 use super::guide::Guide;
@@ -218,7 +218,7 @@ mod tests {
     use super::*;
     use crate::handling::HandlingParameters;
     use crate::handling::assembly::masses;
-    use crate::handling::axle::AxleCoordinates;
+    use crate::handling::axle_place::AxleCoordinates;
     use crate::vehicle::VehicleParameters;
 
     /// A wheel under its static load at `speed` with `spin`, on an axle that turns by `turn`; its state after the slip has

@@ -4,7 +4,10 @@
 //! Closed form: `dp = beta A dx / (V_oil - A x)`, thus `p - p0 = beta ln(V_oil / (V_oil - A x))`, nearly a straight line of
 //! slope `beta A^2 / V_oil` in force.
 
-use crate::strut::{ModelError, OilCompressibility, OilCount, StrutModel};
+use oleo_interface::StrutValves;
+
+use crate::model_file::InvalidValue;
+use crate::strut::{OilCompressibility, OilCount, StrutModel};
 
 use super::programme::{Programme, Record, play};
 use super::spring::REPORT_BULK_MODULUS_PA;
@@ -40,7 +43,7 @@ pub struct OilCompression {
 ///
 /// # Errors
 /// Impossible values in the model.
-pub fn compress_oil(model: &StrutModel, highest_pa: f64) -> Result<OilCompression, ModelError> {
+pub fn compress_oil(model: &StrutModel, highest_pa: f64) -> Result<OilCompression, InvalidValue> {
     let mut solid = model.clone();
     solid
         .accumulator
@@ -62,7 +65,12 @@ pub fn compress_oil(model: &StrutModel, highest_pa: f64) -> Result<OilCompressio
     let (area, oil) = (solid.piston_area_m2(), solid.cylinder.oil_volume_m3);
     // All valves closed: the packs keep what gas there is out of the oil's reckoning.
     let stroke_m = oil / area * (1.0 - libm::exp(-(highest_pa - FILLING_PA) / bulk_modulus_pa));
-    let programme = Programme::sawtooth(&[0.0, stroke_m, 0.0], 2.0 * stroke_m / 1.2e-3, 0.01, [false; 3]);
+    let programme = Programme::sawtooth(
+        &[0.0, stroke_m, 0.0],
+        2.0 * stroke_m / 1.2e-3,
+        0.01,
+        StrutValves::default(),
+    );
     let record = play(&solid, &programme)?;
 
     let strain = |x: f64| libm::log(oil / (oil - area * x));

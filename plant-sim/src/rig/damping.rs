@@ -6,7 +6,10 @@
 //! with valve 3 closed accumulator 2 is not connected and p2 stands alone. This is also the force that dissipates what both paths
 //! dissipate while the flows divide as the volumes do.
 
-use crate::strut::{ModelError, StrutModel};
+use oleo_interface::StrutValves;
+
+use crate::model_file::InvalidValue;
+use crate::strut::StrutModel;
 use crate::strut_first::Damping;
 
 use super::programme::{Programme, play};
@@ -46,13 +49,13 @@ impl DampingState {
         }
     }
 
-    /// Switching signals.
+    /// Switching signals, true for open.
     #[must_use]
-    pub fn signals(self) -> [bool; 3] {
+    pub fn signals(self) -> StrutValves<bool> {
         match self.damping {
-            Damping::Low => [true, true, true],
-            Damping::HighSoft => [false, false, true],
-            Damping::HighStiff => [false, false, false],
+            Damping::Low => StrutValves::new(true, true, true),
+            Damping::HighSoft => StrutValves::new(false, false, true),
+            Damping::HighStiff => StrutValves::new(false, false, false),
         }
     }
 }
@@ -80,7 +83,7 @@ pub fn measure_damping(
     model: &StrutModel,
     state: DampingState,
     speeds_m_s: &[f64],
-) -> Result<Vec<DampingPoint>, ModelError> {
+) -> Result<Vec<DampingPoint>, InvalidValue> {
     let area_m2 = model.piston_area_m2();
     let volumes = [
         model.accumulator[0].static_gas_volume_m3,

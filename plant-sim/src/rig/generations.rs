@@ -1,7 +1,10 @@
 //! The report's first-generation model beside the strut that stands for its test rig: the illustrative run of figures 31 to
 //! 33, and the comparison of spring forces of figure 34.
 
-use crate::strut::{ModelError, StrutModel};
+use oleo_interface::{StrutValves, Valve};
+
+use crate::model_file::InvalidValue;
+use crate::strut::StrutModel;
 use crate::strut_first::FirstGenerationStrut;
 
 use super::programme::Programme;
@@ -14,7 +17,7 @@ pub struct FirstGenerationRun {
     /// The spring's part, N.
     pub spring_force_n: Vec<f64>,
     /// The delayed signals that acted.
-    pub acting: Vec<[bool; 3]>,
+    pub acting: Vec<StrutValves<bool>>,
 }
 
 /// Runs the first-generation model on inputs: time s, displacement m, speed m/s and signals of equal length.
@@ -26,8 +29,8 @@ pub fn run_first_generation(
     time_s: &[f64],
     displacement_m: &[f64],
     speed_m_s: &[f64],
-    signals: &[[bool; 3]],
-) -> Result<FirstGenerationRun, ModelError> {
+    signals: &[StrutValves<bool>],
+) -> Result<FirstGenerationRun, InvalidValue> {
     let first = signals.first().copied().unwrap_or_default();
     let mut strut = FirstGenerationStrut::at_rest(model, first)?;
     let mut run = FirstGenerationRun {
@@ -55,16 +58,16 @@ pub fn demonstration() -> Programme {
             amplitude_m * rate * libm::cos(rate * t),
         )
     };
-    Programme::from_law(law, 8.0, 2e-3, [false; 3])
-        .switched(0, true, 1.1)
-        .switched(0, false, 2.1)
-        .switched(2, true, 3.15)
-        .switched(0, true, 4.1)
-        .switched(1, true, 4.1)
-        .switched(1, false, 5.1)
-        .switched(0, false, 5.1)
-        .switched(2, false, 6.35)
-        .switched(0, true, 7.1)
+    Programme::from_law(law, 8.0, 2e-3, StrutValves::default())
+        .switched(Valve::Bypass1, true, 1.1)
+        .switched(Valve::Bypass1, false, 2.1)
+        .switched(Valve::Spring, true, 3.15)
+        .switched(Valve::Bypass1, true, 4.1)
+        .switched(Valve::Bypass2, true, 4.1)
+        .switched(Valve::Bypass2, false, 5.1)
+        .switched(Valve::Bypass1, false, 5.1)
+        .switched(Valve::Spring, false, 6.35)
+        .switched(Valve::Bypass1, true, 7.1)
 }
 
 /// Figure 34: a slow (2 mm/s) compression history with the stiff spring, towards its end valve 3 opened at the reference position and
@@ -75,7 +78,11 @@ pub fn spring_comparison() -> Programme {
     let path_m: f64 = corners.windows(2).map(|leg| (leg[1] - leg[0]).abs()).sum();
     let stiff_m: f64 = corners[..6].windows(2).map(|leg| (leg[1] - leg[0]).abs()).sum();
     let speed_m_s = 0.002;
-    Programme::sawtooth(&corners, path_m / speed_m_s, 0.05, [true, true, false]).switched(2, true, stiff_m / speed_m_s)
+    Programme::sawtooth(&corners, path_m / speed_m_s, 0.05, StrutValves::new(true, true, false)).switched(
+        Valve::Spring,
+        true,
+        stiff_m / speed_m_s,
+    )
 }
 
 #[cfg(test)]
@@ -92,8 +99,8 @@ mod tests {
     fn every_switch_acts_late_by_40_to_120_ms() {
         let programme = demonstration();
         let run = first(&StrutModel::defender110(8000.0), &programme);
-        for valve in 0..3 {
-            let edges = |states: &[[bool; 3]]| -> Vec<f64> {
+        for valve in Valve::ALL {
+            let edges = |states: &[StrutValves<bool>]| -> Vec<f64> {
                 let times = programme.time_s();
                 (1..states.len())
                     .filter(|&i| states[i][valve] != states[i - 1][valve])
@@ -101,11 +108,11 @@ mod tests {
                     .collect()
             };
             let (signals, acts) = (edges(programme.signals()), edges(&run.acting));
-            assert_eq!(signals.len(), acts.len(), "valve {valve}");
+            assert_eq!(signals.len(), acts.len(), "{valve:?}");
             for (signal, act) in signals.iter().zip(&acts) {
                 assert!(
                     (0.039..0.12).contains(&(act - signal)),
-                    "valve {valve}: {signal} s acts at {act} s"
+                    "{valve:?}: {signal} s acts at {act} s"
                 );
             }
         }

@@ -5,7 +5,9 @@
 //! incompressible oil Boyle's law in closed form, else an ordinary differential equation in pressure, integrated with the classical
 //! Runge-Kutta method in steps of 0.2 % of the pressure.
 
-use crate::strut::{ATMOSPHERE_PA, Gas, Nitrogen, StrutModel};
+use oleo_interface::Absolute;
+
+use crate::strut::{Gas, Nitrogen, StrutModel};
 use crate::strut_first::Spring;
 
 /// Whether the oil gives way.
@@ -32,7 +34,7 @@ impl Isothermal {
     /// Boyle's law.
     #[must_use]
     pub fn predict(model: &StrutModel, spring: Spring, oil: Oil, real_gas: bool, from_m: f64, to_m: f64) -> Self {
-        let static_pa = model.cylinder.static_pressure_pa + ATMOSPHERE_PA;
+        let at_rest = model.static_pressure().absolute();
         let area_m2 = model.piston_area_m2();
         let volume_m3 = model.accumulator[0].static_gas_volume_m3
             + if spring == Spring::Soft {
@@ -41,17 +43,18 @@ impl Isothermal {
                 0.0
             };
         let real = real_gas.then(Nitrogen::reference);
-        let gas = Gas::charged(static_pa, volume_m3, model.gas.temperature_k, None, real);
+        let gas = Gas::charged(at_rest, volume_m3, model.gas.temperature_k, None, real);
         let oil_m3 = model.cylinder.oil_volume_m3;
         let per_bulk = match oil {
             Oil::Incompressible => 0.0,
             Oil::BulkModulus(bulk_pa) => 1.0 / bulk_pa,
         };
-        // Volume the piston has displaced: by the gas in closed form, by the oil integrated.
-        let by_gas = |pressure: f64| volume_m3 - gas.volume_at(pressure);
+        // Volume the piston has displaced at an absolute pressure: by the gas in closed form, by the oil integrated.
+        let by_gas = |pressure: f64| volume_m3 - gas.volume_at(Absolute(pressure));
+        let force_n = |pressure: f64| Absolute(pressure).gauge().pa() * area_m2;
         let by_oil_rate = |pressure: f64, by_oil: f64| (oil_m3 - by_gas(pressure) - by_oil) * per_bulk;
         let walk = |ratio: f64, end_m: f64| {
-            let (mut pressure, mut by_oil) = (static_pa, 0.0);
+            let (mut pressure, mut by_oil) = (at_rest.pa(), 0.0);
             let mut points = Vec::new();
             // Ends by displacement; the bound on pressure is for displacements no pressure reaches.
             while pressure > 1e3 && pressure < 1e9 {
@@ -64,7 +67,7 @@ impl Isothermal {
                 by_oil += step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
                 pressure = next;
                 let x = (by_gas(pressure) + by_oil) / area_m2;
-                points.push((x, (pressure - ATMOSPHERE_PA) * area_m2));
+                points.push((x, force_n(pressure)));
                 if (x - end_m) * (ratio - 1.0) > 0.0 {
                     break;
                 }
@@ -73,7 +76,7 @@ impl Isothermal {
         };
         let mut points = walk(1.0 / STEP, from_m);
         points.reverse();
-        points.push((0.0, (static_pa - ATMOSPHERE_PA) * area_m2));
+        points.push((0.0, force_n(at_rest.pa())));
         points.extend(walk(STEP, to_m));
         let (displacement_m, force_n) = points.into_iter().unzip();
         Self {
@@ -125,7 +128,7 @@ mod tests {
         // Rates at static: the gas's p A^2 / V, the oil's beta A^2 / V.
         let model = StrutModel::defender110(8000.0);
         let area = model.piston_area_m2();
-        let gas = (model.cylinder.static_pressure_pa + ATMOSPHERE_PA) * area * area / 1e-4;
+        let gas = model.static_pressure().absolute().pa() * area * area / 1e-4;
         let oil = 1.5e9 * area * area / model.cylinder.oil_volume_m3;
         let curve = Isothermal::predict(&model, Spring::Stiff, Oil::BulkModulus(1.5e9), false, -0.01, 0.01);
         let rate = (curve.force_n(1e-3) - curve.force_n(-1e-3)) / 2e-3;

@@ -1,6 +1,9 @@
 //! The design specifications i to vii of the report's section 3.3, each checked on the simulated strut.
 
-use crate::strut::{ATMOSPHERE_PA, ModelError, StrutModel};
+use oleo_interface::StrutValves;
+
+use crate::model_file::InvalidValue;
+use crate::strut::{ATMOSPHERE_PA, StrutModel};
 use crate::strut_first::{Characteristics, Damping, Spring};
 
 use super::isothermal::{Isothermal, Oil};
@@ -44,7 +47,7 @@ const SLOW_M_S: f64 = 1.2e-3;
 ///
 /// # Errors
 /// Impossible values in the model.
-pub fn check_limits(model: &StrutModel) -> Result<Vec<Limit>, ModelError> {
+pub fn check_limits(model: &StrutModel) -> Result<Vec<Limit>, InvalidValue> {
     let [full_bump, force] = pressure_and_force(model)?;
     Ok(vec![
         travel(model)?,
@@ -58,7 +61,7 @@ pub fn check_limits(model: &StrutModel) -> Result<Vec<Limit>, ModelError> {
 }
 
 /// Slow stroke; highest and lowest p1 (gauge, Pa) and highest load-cell force (N).
-fn stroke(model: &StrutModel, corners_m: &[f64], signals: [bool; 3]) -> Result<(f64, f64, f64), ModelError> {
+fn stroke(model: &StrutModel, corners_m: &[f64], signals: StrutValves<bool>) -> Result<(f64, f64, f64), InvalidValue> {
     let path_m: f64 = corners_m.windows(2).map(|leg| (leg[1] - leg[0]).abs()).sum();
     let record = play(model, &Programme::sawtooth(corners_m, path_m / SLOW_M_S, 0.05, signals))?;
     let extreme = |values: &[f64]| {
@@ -72,8 +75,12 @@ fn stroke(model: &StrutModel, corners_m: &[f64], signals: [bool; 3]) -> Result<(
     Ok((high, low, extreme(&record.force_n).1))
 }
 
-fn travel(model: &StrutModel) -> Result<Limit, ModelError> {
-    let (high, low, force) = stroke(model, &[0.0, JOUNCE_M, -REBOUND_M, 0.0], [true; 3])?;
+fn travel(model: &StrutModel) -> Result<Limit, InvalidValue> {
+    let (high, low, force) = stroke(
+        model,
+        &[0.0, JOUNCE_M, -REBOUND_M, 0.0],
+        StrutValves::from_array([true; 3]),
+    )?;
     let found = if low > 0.0 && high <= HIGHEST_PA {
         1e3 * (JOUNCE_M + REBOUND_M)
     } else {
@@ -95,9 +102,10 @@ fn travel(model: &StrutModel) -> Result<Limit, ModelError> {
 }
 
 /// Gas volume from the rate about the static position: `dV/dp = A dx/dp` is the gas's `V / p` and the oil's `V_oil / beta`.
-fn gas_volume(model: &StrutModel, spring: Spring) -> Result<Limit, ModelError> {
+fn gas_volume(model: &StrutModel, spring: Spring) -> Result<Limit, InvalidValue> {
     let corners = [0.0, 2e-3, -2e-3, 2e-3, -2e-3, 0.0];
-    let programme = Programme::sawtooth(&corners, VOLUME_TEST_S, 0.1, [true, true, spring == Spring::Soft]);
+    let signals = StrutValves::new(true, true, spring == Spring::Soft);
+    let programme = Programme::sawtooth(&corners, VOLUME_TEST_S, 0.1, signals);
     let record = play(model, &programme)?;
     let (mut xy, mut xx) = (0.0, 0.0);
     for (x, p) in record.displacement_m.iter().zip(&record.pressure_pa[0]) {
@@ -107,7 +115,7 @@ fn gas_volume(model: &StrutModel, spring: Spring) -> Result<Limit, ModelError> {
     let oil = model.effects.oil_compressibility.as_ref();
     let by_oil = oil.map_or(0.0, |oil| model.cylinder.oil_volume_m3 / oil.bulk_modulus_pa);
     let by_gas = model.piston_area_m2() * xx / xy - by_oil;
-    let litres = 1e3 * by_gas * (model.cylinder.static_pressure_pa + ATMOSPHERE_PA);
+    let litres = 1e3 * by_gas * model.static_pressure().absolute().pa();
     let (number, specification, wanted) = match spring {
         Spring::Soft => ("ii", "soft static gas volume of 0.5 l", 0.5),
         Spring::Stiff => ("iii", "hard static gas volume of 0.1 l", 0.1),
@@ -126,8 +134,8 @@ fn gas_volume(model: &StrutModel, spring: Spring) -> Result<Limit, ModelError> {
     })
 }
 
-fn pressure_and_force(model: &StrutModel) -> Result<[Limit; 2], ModelError> {
-    let (high, _, force) = stroke(model, &[0.0, STIFF_BUMP_M, 0.0], [true, true, false])?;
+fn pressure_and_force(model: &StrutModel) -> Result<[Limit; 2], InvalidValue> {
+    let (high, _, force) = stroke(model, &[0.0, STIFF_BUMP_M, 0.0], StrutValves::new(true, true, false))?;
     let oil = model.effects.oil_compressibility.as_ref();
     let oil = Oil::BulkModulus(oil.map_or(REPORT_BULK_MODULUS_PA, |oil| oil.bulk_modulus_pa));
     let area_m2 = model.piston_area_m2();
@@ -165,7 +173,7 @@ fn pressure_and_force(model: &StrutModel) -> Result<[Limit; 2], ModelError> {
     ])
 }
 
-fn flow(model: &StrutModel) -> Result<Limit, ModelError> {
+fn flow(model: &StrutModel) -> Result<Limit, InvalidValue> {
     let tables = Characteristics::of(model)?;
     let area_m2 = model.piston_area_m2();
     let drop = |level, speed: f64| 1e-6 * tables.damping(level).at(speed) / area_m2;
@@ -192,7 +200,7 @@ fn flow(model: &StrutModel) -> Result<Limit, ModelError> {
     })
 }
 
-fn valve_response(model: &StrutModel) -> Result<Limit, ModelError> {
+fn valve_response(model: &StrutModel) -> Result<Limit, InvalidValue> {
     let responses = measure_valve_responses(model, &[1e6, 4e6, 7e6, 10e6, 13e6])?;
     let times: Vec<f64> = responses.iter().map(|response| 1e3 * response.total_s).collect();
     let (low, high) = times

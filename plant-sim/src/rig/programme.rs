@@ -1,21 +1,24 @@
 //! What the actuator plays and what the instruments would read: displacement and switching signals in, force and
 //! pressures out, in the columns of a recording.
 
-use crate::strut::{Inputs, ModelError, Motion, Segment, StrutModel, replay};
+use oleo_interface::{StrutValves, Valve};
+
+use crate::model_file::InvalidValue;
+use crate::strut::{Inputs, Motion, Segment, StrutModel, replay};
 
 /// A displacement history with its switching signals. Compression positive, m from the static position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Programme {
     time_s: Vec<f64>,
     motion: Motion,
-    signals: Vec<[bool; 3]>,
+    signals: Vec<StrutValves<bool>>,
 }
 
 impl Programme {
     /// Straight moves through `corners_m` at one speed, lasting `duration_s` in all, sampled about every `interval_s`; each corner
     /// falls on a sample. The first corner is where it starts.
     #[must_use]
-    pub fn sawtooth(corners_m: &[f64], duration_s: f64, interval_s: f64, signals: [bool; 3]) -> Self {
+    pub fn sawtooth(corners_m: &[f64], duration_s: f64, interval_s: f64, signals: StrutValves<bool>) -> Self {
         let path_m: f64 = corners_m.windows(2).map(|leg| (leg[1] - leg[0]).abs()).sum();
         let speed = path_m / duration_s;
         let start_m = corners_m.first().copied().unwrap_or(0.0);
@@ -41,7 +44,13 @@ impl Programme {
 
     /// `cycles` of `amplitude_m sin(2 pi f t)` with `per_cycle` samples each, from the static position.
     #[must_use]
-    pub fn sine(amplitude_m: f64, frequency_hz: f64, cycles: usize, per_cycle: usize, signals: [bool; 3]) -> Self {
+    pub fn sine(
+        amplitude_m: f64,
+        frequency_hz: f64,
+        cycles: usize,
+        per_cycle: usize,
+        signals: StrutValves<bool>,
+    ) -> Self {
         let step = 1.0 / (frequency_hz * per_cycle as f64);
         let turn = std::f64::consts::TAU / per_cycle as f64;
         let speed_m_s = amplitude_m * std::f64::consts::TAU * frequency_hz;
@@ -63,7 +72,12 @@ impl Programme {
 
     /// Any displacement `law(time_s) -> (m, m/s)` for `duration_s`, sampled every `interval_s`.
     #[must_use]
-    pub fn from_law(law: impl Fn(f64) -> (f64, f64), duration_s: f64, interval_s: f64, signals: [bool; 3]) -> Self {
+    pub fn from_law(
+        law: impl Fn(f64) -> (f64, f64),
+        duration_s: f64,
+        interval_s: f64,
+        signals: StrutValves<bool>,
+    ) -> Self {
         let count = (duration_s / interval_s).round() as usize;
         let time_s: Vec<f64> = (0..=count).map(|i| interval_s * i as f64).collect();
         let segments = time_s.windows(2).map(|pair| {
@@ -77,18 +91,18 @@ impl Programme {
         Self::new(time_s, motion, signals)
     }
 
-    /// Switches one valve (0, 1, 2) at a time, from there to the end; the edge falls on the next sample.
+    /// Switches one valve at a time (s), from there to the end; the edge falls on the next sample.
     #[must_use]
-    pub fn switched(mut self, valve: usize, open: bool, at_s: f64) -> Self {
+    pub fn switched(mut self, valve: Valve, open: bool, at_s: f64) -> Self {
         for (time_s, signals) in self.time_s.iter().zip(&mut self.signals) {
-            if let Some(signal) = signals.get_mut(valve).filter(|_| *time_s >= at_s - 1e-9) {
-                *signal = open;
+            if *time_s >= at_s - 1e-9 {
+                signals[valve] = open;
             }
         }
         self
     }
 
-    fn new(time_s: Vec<f64>, motion: Motion, signals: [bool; 3]) -> Self {
+    fn new(time_s: Vec<f64>, motion: Motion, signals: StrutValves<bool>) -> Self {
         let signals = vec![signals; time_s.len()];
         Self {
             time_s,
@@ -103,9 +117,9 @@ impl Programme {
         &self.time_s
     }
 
-    /// Switching signals at each sample.
+    /// Switching signals at each sample, true for open.
     #[must_use]
-    pub fn signals(&self) -> &[[bool; 3]] {
+    pub fn signals(&self) -> &[StrutValves<bool>] {
         &self.signals
     }
 
@@ -140,19 +154,21 @@ pub struct Record {
     pub force_n: Vec<f64>,
     /// Gauge pressures p1 to p4, Pa.
     pub pressure_pa: [Vec<f64>; 4],
-    /// Switching signals.
-    pub signals: Vec<[bool; 3]>,
+    /// Switching signals at each sample, true for open.
+    pub signals: Vec<StrutValves<bool>>,
 }
 
 impl Record {
     /// The columns of a recording, in its order and with its names.
     #[must_use]
     pub fn columns(&self) -> Vec<(&'static str, Vec<f64>)> {
-        let signal = |valve: usize| {
-            self.signals
+        let signal = |valve: Valve| {
+            let signal: Vec<f64> = self
+                .signals
                 .iter()
                 .map(|signals| f64::from(u8::from(signals[valve])))
-                .collect()
+                .collect();
+            (valve.column(), signal)
         };
         let [p1, p2, p3, p4] = self.pressure_pa.clone();
         vec![
@@ -163,9 +179,9 @@ impl Record {
             ("p2_Pa", p2),
             ("p3_Pa", p3),
             ("p4_Pa", p4),
-            ("valve1", signal(0)),
-            ("valve2", signal(1)),
-            ("valve3", signal(2)),
+            signal(Valve::Bypass1),
+            signal(Valve::Bypass2),
+            signal(Valve::Spring),
         ]
     }
 }
@@ -174,7 +190,7 @@ impl Record {
 ///
 /// # Errors
 /// Impossible values in the model.
-pub fn play(model: &StrutModel, programme: &Programme) -> Result<Record, ModelError> {
+pub fn play(model: &StrutModel, programme: &Programme) -> Result<Record, InvalidValue> {
     let inputs = Inputs {
         time_s: programme.time_s.clone(),
         motion: programme.motion.clone(),
@@ -197,7 +213,12 @@ mod tests {
 
     #[test]
     fn a_sawtooth_has_its_corners_on_samples_and_one_speed() {
-        let saw = Programme::sawtooth(&[0.0, 0.04, -0.1, 0.04, 0.0], 300.0, 0.05, [true; 3]);
+        let saw = Programme::sawtooth(
+            &[0.0, 0.04, -0.1, 0.04, 0.0],
+            300.0,
+            0.05,
+            StrutValves::from_array([true; 3]),
+        );
         let x = saw.displacement_m();
         for corner in [0.04, -0.1] {
             assert!(x.contains(&corner), "{corner}");
@@ -213,7 +234,7 @@ mod tests {
 
     #[test]
     fn cycles_of_a_sine_are_the_same_samples() {
-        let sine = Programme::sine(0.025, 1.3, 3, 40, [true; 3]);
+        let sine = Programme::sine(0.025, 1.3, 3, 40, StrutValves::from_array([true; 3]));
         let x = sine.displacement_m();
         assert_eq!(x[..40], x[40..80]);
         assert!((x[10] - 0.025).abs() < 1e-15 && x[20].abs() < 1e-15);
@@ -222,8 +243,10 @@ mod tests {
 
     #[test]
     fn an_edge_acts_from_its_sample_on() {
-        let still = Programme::from_law(|_| (0.0, 0.0), 1.0, 0.1, [false; 3]).switched(2, true, 0.5);
-        assert!(!still.signals()[4][2] && still.signals()[5][2] && still.signals()[10][2]);
-        assert!(still.signals().iter().all(|signals| !signals[0]));
+        let closed = StrutValves::default();
+        let still = Programme::from_law(|_| (0.0, 0.0), 1.0, 0.1, closed).switched(Valve::Spring, true, 0.5);
+        let spring = |sample: usize| still.signals()[sample][Valve::Spring];
+        assert!(!spring(4) && spring(5) && spring(10));
+        assert!(still.signals().iter().all(|signals| !signals[Valve::Bypass1]));
     }
 }

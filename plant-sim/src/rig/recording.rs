@@ -2,6 +2,8 @@
 
 use std::io::Read;
 
+use oleo_interface::StrutValves;
+
 use crate::strut::Inputs;
 
 /// Why a recording cannot be replayed; one line: file, line, what, what to do.
@@ -151,8 +153,8 @@ pub struct RecordedStrut {
     pub time_s: Vec<f64>,
     /// Measured displacement, m, compression positive.
     pub displacement_m: Vec<f64>,
-    /// Switching signals.
-    pub signals: Vec<[bool; 3]>,
+    /// Switching signals at each sample, true for open.
+    pub signals: Vec<StrutValves<bool>>,
     /// Load cell, N, where recorded.
     pub force_n: Option<Vec<f64>>,
     /// p1 to p4, Pa gauge, where recorded.
@@ -171,7 +173,7 @@ impl RecordedStrut {
         let of = |name: &str| columns.column(name).map(<[f64]>::to_vec);
         let valves = VALVES.map(|name| of(name).unwrap_or_default());
         let signals = (0..columns.time_s().len())
-            .map(|at| [0, 1, 2].map(|valve| valves[valve][at] == 1.0))
+            .map(|at| StrutValves::from_fn(|valve| valves[valve.index()][at] == 1.0))
             .collect();
         Ok(Self {
             time_s: columns.time_s().to_vec(),
@@ -200,7 +202,7 @@ mod tests {
     fn reads_inputs_and_what_else_was_recorded() {
         let recording = RecordedStrut::read(GOOD.as_bytes(), "r.csv").expect("good");
         assert_eq!(recording.displacement_m, [0.0, 1e-3]);
-        assert_eq!(recording.signals[0], [false, true, true]);
+        assert_eq!(recording.signals[0], StrutValves::new(false, true, true));
         assert_eq!(recording.pressure_pa[0].as_deref(), Some(&[4e6, 4.1e6][..]));
         assert!(recording.force_n.is_none() && recording.pressure_pa[1].is_none());
     }

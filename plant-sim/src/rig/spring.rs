@@ -3,7 +3,10 @@
 //! The report takes force from the pressure, `p1 A`, because the load cell also feels the friction of a side-loaded strut
 //! (figure 18); so does this.
 
-use crate::strut::{ModelError, SideLoadFriction, StrutModel};
+use oleo_interface::StrutValves;
+
+use crate::model_file::InvalidValue;
+use crate::strut::{SideLoadFriction, StrutModel};
 use crate::strut_first::Spring;
 
 use super::isothermal::{Isothermal, Oil};
@@ -66,9 +69,9 @@ pub(crate) const REPORT_BULK_MODULUS_PA: f64 = 1.5e9;
 ///
 /// # Errors
 /// Impossible values in the model.
-pub fn test_spring(model: &StrutModel, spring: Spring, test: SpringTest) -> Result<SpringCharacteristic, ModelError> {
+pub fn test_spring(model: &StrutModel, spring: Spring, test: SpringTest) -> Result<SpringCharacteristic, InvalidValue> {
     let corners = [0.0, test.bump_m, -test.rebound_m, test.bump_m, 0.0];
-    let signals = [true, true, spring == Spring::Soft];
+    let signals = StrutValves::new(true, true, spring == Spring::Soft);
     let programme = Programme::sawtooth(&corners, test.duration_s, INTERVAL_S, signals);
     let record = play(model, &programme)?;
     let area_m2 = model.piston_area_m2();

@@ -5,7 +5,10 @@
 //! The opening of the simulated valve is known too, which no rig can see: its own 5 % and 95 % points are given beside those of
 //! the pressure.
 
-use crate::strut::{ModelError, Strut, StrutModel};
+use oleo_interface::{StrutValves, Valve};
+
+use crate::model_file::InvalidValue;
+use crate::strut::{Strut, StrutModel};
 use crate::strut_first::Spring;
 
 use super::isothermal::{Isothermal, Oil};
@@ -55,7 +58,7 @@ impl ValveResponse {
 ///
 /// # Errors
 /// Impossible values in the model.
-pub fn measure_valve_response(model: &StrutModel, difference_pa: f64) -> Result<ValveResponse, ModelError> {
+pub fn measure_valve_response(model: &StrutModel, difference_pa: f64) -> Result<ValveResponse, InvalidValue> {
     let bulk_pa = model
         .effects
         .oil_compressibility
@@ -70,7 +73,7 @@ pub fn measure_valve_response(model: &StrutModel, difference_pa: f64) -> Result<
     let wanted_n = (model.cylinder.static_pressure_pa + difference_pa) * model.piston_area_m2();
     let displacement_m = stiff.displacement_m(wanted_n);
 
-    let closed = [true, true, false];
+    let closed = StrutValves::new(true, true, false);
     let mut strut = Strut::at_rest(model, closed)?;
     let moves = (COMPRESSION_S / 0.02) as usize;
     for i in 1..=moves {
@@ -86,8 +89,8 @@ pub fn measure_valve_response(model: &StrutModel, difference_pa: f64) -> Result<
         let pressure = strut.output().pressure_pa;
         time_s.push((i as f64 - before as f64) * INTERVAL_S);
         difference.push(pressure[2] - pressure[3]);
-        opening.push(strut.openings()[2]);
-        strut.advance(displacement_m, INTERVAL_S, [true, true, i >= before]);
+        opening.push(strut.openings()[Valve::Spring]);
+        strut.advance(displacement_m, INTERVAL_S, StrutValves::new(true, true, i >= before));
     }
     let (initial_pa, final_pa) = (difference[before], difference[before + after]);
     let share: Vec<f64> = difference
@@ -111,7 +114,7 @@ pub fn measure_valve_response(model: &StrutModel, difference_pa: f64) -> Result<
 ///
 /// # Errors
 /// Impossible values in the model.
-pub fn measure_valve_responses(model: &StrutModel, differences_pa: &[f64]) -> Result<Vec<ValveResponse>, ModelError> {
+pub fn measure_valve_responses(model: &StrutModel, differences_pa: &[f64]) -> Result<Vec<ValveResponse>, InvalidValue> {
     differences_pa
         .iter()
         .map(|&difference_pa| measure_valve_response(model, difference_pa))

@@ -6,8 +6,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{SpecimenName, instruments, toml_message, within};
-use crate::strut::{Effects, SealFriction, SensorEffect, SideLoadFriction, advance_friction, record_column};
+use super::name::SpecimenName;
+use crate::model_file::instruments::{check_noise, check_tolerance};
+use crate::model_file::limits::each_checked;
+use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
+use crate::strut::{
+    Effects, PRESLIDING_STIFFNESS_N_M, SensorEffect, SideLoadFriction, TermId, advance_friction, check_columns,
+    record_column,
+};
 
 /// A pressure acting on an area.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -19,6 +25,24 @@ pub struct CylinderChamber {
     pub area_m2: f64,
 }
 
+impl Checked for CylinderChamber {
+    const LIMITS: &'static [Limit<Self>] = &[Limit::one("area_m2", Range::FromTo(-10.0, 10.0), "m2", |c| c.area_m2)];
+
+    fn check_together(&self) -> Result<(), InvalidValue> {
+        if self.area_m2.abs() < LEAST_AREA_M2 {
+            let what = format!(
+                "is {}: must be at least {LEAST_AREA_M2:e} m2 on either side",
+                self.area_m2
+            );
+            return Err(InvalidValue::new("area_m2", what));
+        }
+        Ok(())
+    }
+}
+
+/// A hundredth of a square millimetre: a smaller area is a slip of the unit.
+const LEAST_AREA_M2: f64 = 1e-8;
+
 /// Friction of the cylinder's seal. Where only the part that grows with pressure is present the Coulomb force is zero.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -29,6 +53,15 @@ pub struct CylinderSeal {
     /// Presliding stiffness, N/m.
     #[serde(rename = "presliding_stiffness_N_m")]
     pub presliding_stiffness_n_m: f64,
+}
+
+impl Checked for CylinderSeal {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("coulomb_force_N", Range::FromTo(0.0, 1e9), "N", |s| s.coulomb_force_n),
+        Limit::one("presliding_stiffness_N_m", Range::FromTo(1e-3, 1e15), "N/m", |s| {
+            s.presliding_stiffness_n_m
+        }),
+    ];
 }
 
 /// Terms a cylinder may have.
@@ -67,6 +100,32 @@ pub struct CylinderEffects {
     pub sensor_offset: Option<SensorEffect>,
 }
 
+/// A part of the force beside pressure and friction: a mass, a viscous friction or a stiffness, of either sign so that a
+/// fit may cross zero.
+const FORCE_PART: Range = Range::FromTo(-1e12, 1e12);
+
+impl Checked for CylinderEffects {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::optional("moving_mass_kg", FORCE_PART, "kg", |e| e.moving_mass_kg),
+        Limit::optional("viscous_friction_N_s_m", FORCE_PART, "N s/m", |e| {
+            e.viscous_friction_n_s_m
+        }),
+        Limit::optional("parallel_stiffness_N_m", FORCE_PART, "N/m", |e| {
+            e.parallel_stiffness_n_m
+        }),
+    ];
+
+    fn check_together(&self) -> Result<(), InvalidValue> {
+        if let Some(seal) = &self.seal_friction {
+            checked(seal, "seal_friction")?;
+        }
+        if let Some(side) = &self.side_load_friction {
+            checked(side, "side_load_friction")?;
+        }
+        Ok(())
+    }
+}
+
 /// The `model.toml` of a cylinder.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -86,14 +145,14 @@ pub struct CylinderModel {
     pub noise: SensorEffect,
 }
 
-/// Displacement freed of noise, with its derivatives.
+/// Displacement freed of noise, with its derivatives; one value a sample.
 #[derive(Debug, Clone, Default)]
 pub struct SmoothedMotion {
-    /// m.
+    /// Displacement, m, compression positive.
     pub displacement_m: Vec<f64>,
-    /// m/s.
+    /// Speed, m/s.
     pub speed_m_s: Vec<f64>,
-    /// m/s2.
+    /// Acceleration, m/s2.
     pub acceleration_m_s2: Vec<f64>,
 }
 
@@ -133,56 +192,53 @@ pub fn smooth_motion(time_s: &[f64], displacement_m: &[f64], half_window_s: f64)
     motion
 }
 
+impl Checked for CylinderModel {
+    const LIMITS: &'static [Limit<Self>] = &[];
+
+    fn check_together(&self) -> Result<(), InvalidValue> {
+        checked(&self.specimen, "specimen")?;
+        if self.chamber.is_empty() {
+            return Err(InvalidValue::new("chamber", "has no entry: must have one or more"));
+        }
+        each_checked(&self.chamber, "chamber")?;
+        checked(&self.effects, "effects")?;
+        let chambers: Vec<&str> = self.chamber.iter().map(|chamber| chamber.column.as_str()).collect();
+        let measured: Vec<&str> = std::iter::once(FORCE).chain(chambers.iter().copied()).collect();
+        let e = &self.effects;
+        for (id, fault) in [
+            (TermId::SensorGain, &e.sensor_gain),
+            (TermId::SensorDrift, &e.sensor_drift),
+            (TermId::SensorSkew, &e.sensor_skew),
+            (TermId::SensorOffset, &e.sensor_offset),
+        ] {
+            check_columns(id, fault.as_ref(), &measured).map_err(|invalid| invalid.inside("effects"))?;
+        }
+        // The lag of a pressure cannot be undone without amplifying its noise.
+        check_columns(TermId::SensorLag, e.sensor_lag.as_ref(), &[FORCE])
+            .map_err(|invalid| invalid.inside("effects"))?;
+        check_tolerance(&self.tolerance, &["area", "force_offset_N", "pressure_offset_Pa"])?;
+        let channels: Vec<&str> = ["displacement_m", FORCE].into_iter().chain(chambers).collect();
+        check_noise(&self.noise, &channels)
+    }
+}
+
+/// Column of the load cell.
+const FORCE: &str = "force_N";
+
 impl CylinderModel {
-    /// Reads and checks a model file.
+    /// Read and check a model. `file` is the name that appears in errors.
+    ///
+    /// ```
+    /// use oleo_plant_sim::specimen::CylinderModel;
+    /// let text = "[specimen]\nname = \"a\"\nkind = \"cylinder\"\n[[chamber]]\ncolumn = \"p_Pa\"\narea_m2 = 4.9e-4\n";
+    /// let model = CylinderModel::from_toml(text, "model.toml").unwrap();
+    /// assert_eq!(model.chamber[0].area_m2, 4.9e-4);
+    /// ```
     ///
     /// # Errors
-    /// One line: source, line or key, what.
-    pub fn from_toml(text: &str, source: &str) -> Result<Self, String> {
-        let model: Self = toml::from_str(text).map_err(|e| toml_message(text, source, &e))?;
-        if model.chamber.is_empty() {
-            return Err(format!("{source}, key chamber: at least one is needed"));
-        }
-        for chamber in &model.chamber {
-            within(source, "chamber.area_m2", chamber.area_m2.abs(), 1e-8, 10.0)?;
-        }
-        let e = &model.effects;
-        if let Some(seal) = &e.seal_friction {
-            let (force, stiffness) = (seal.coulomb_force_n, seal.presliding_stiffness_n_m);
-            within(source, "effects.seal_friction.coulomb_force_N", force, 0.0, 1e9)?;
-            within(
-                source,
-                "effects.seal_friction.presliding_stiffness_N_m",
-                stiffness,
-                1e-3,
-                1e15,
-            )?;
-        }
-        if let Some(side) = &e.side_load_friction {
-            within(
-                source,
-                "effects.side_load_friction.coefficient",
-                side.coefficient,
-                0.0,
-                10.0,
-            )?;
-        }
-        for (key, value) in [
-            ("effects.moving_mass_kg", e.moving_mass_kg),
-            ("effects.viscous_friction_N_s_m", e.viscous_friction_n_s_m),
-            ("effects.parallel_stiffness_N_m", e.parallel_stiffness_n_m),
-        ] {
-            within(source, key, value.unwrap_or(0.0), -1e12, 1e12)?;
-        }
-        let faults = [
-            ("sensor_lag", &e.sensor_lag),
-            ("sensor_gain", &e.sensor_gain),
-            ("sensor_drift", &e.sensor_drift),
-            ("sensor_skew", &e.sensor_skew),
-            ("sensor_offset", &e.sensor_offset),
-        ];
-        instruments(source, &model.tolerance, &model.noise, &faults)?;
-        Ok(model)
+    /// Unknown, missing or impossible entries, with file and line.
+    pub fn from_toml(text: &str, file: &str) -> Result<Self, ModelFileError> {
+        read(text, file)
     }
 
     /// The model as a file.
@@ -203,12 +259,8 @@ impl CylinderModel {
             .zip(pressures)
             .map(|(c, p)| self.corrected(time_s, &c.column, p))
             .collect();
-        let seal = effects.seal_friction.as_ref().map(|s| SealFriction {
-            coulomb_force_n: s.coulomb_force_n,
-            breakaway_force_n: s.coulomb_force_n,
-            stribeck_speed_m_s: 1.0,
-            presliding_stiffness_n_m: s.presliding_stiffness_n_m,
-        });
+        let stiffness =
+            (effects.seal_friction.as_ref()).map_or(PRESLIDING_STIFFNESS_N_M, |seal| seal.presliding_stiffness_n_m);
         let mut friction = 0.0;
         (0..time_s.len())
             .map(|k| {
@@ -219,13 +271,11 @@ impl CylinderModel {
                 }
                 if k > 0 {
                     let stroke = motion.displacement_m[k] - motion.displacement_m[k - 1];
-                    let mut level = seal
-                        .as_ref()
-                        .map_or(0.0, |s| s.level_n(stroke / (time_s[k] - time_s[k - 1])));
+                    let mut level = effects.seal_friction.as_ref().map_or(0.0, |seal| seal.coulomb_force_n);
                     if let Some(side) = &effects.side_load_friction {
                         level += side.level_n(pressing, motion.displacement_m[k]);
                     }
-                    friction = advance_friction(friction, stroke, level, seal.as_ref());
+                    friction = advance_friction(friction, stroke, level, stiffness);
                 }
                 net + friction
                     + effects.moving_mass_kg.unwrap_or(0.0) * motion.acceleration_m_s2[k]
@@ -272,7 +322,7 @@ impl CylinderModel {
             sensor_offset: e.sensor_offset.clone(),
             ..Effects::default()
         };
-        record_column(&instruments, "force_N", time_s, &mut force_n);
+        record_column(&instruments, FORCE, time_s, &mut force_n);
         force_n
     }
 }

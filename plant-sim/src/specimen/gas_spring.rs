@@ -7,8 +7,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{SpecimenName, instruments, toml_message, within};
-use crate::strut::{Effects, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K, SensorEffect, record_column};
+use super::name::SpecimenName;
+use crate::model_file::instruments::{check_noise, check_tolerance};
+use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
+use crate::strut::{
+    Effects, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K, SensorEffect, TermId, check_columns, record_column,
+};
 
 /// The chamber.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -18,6 +22,15 @@ pub struct SpringChamber {
     pub area_m2: f64,
     /// Gas volume at displacement zero, m3.
     pub volume_at_zero_m3: f64,
+}
+
+impl Checked for SpringChamber {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("area_m2", Range::FromTo(1e-6, 1.0), "m2", |c| c.area_m2),
+        Limit::one("volume_at_zero_m3", Range::FromTo(1e-7, 10.0), "m3", |c| {
+            c.volume_at_zero_m3
+        }),
+    ];
 }
 
 /// What the gas is taken to do where no heat transfer is modelled.
@@ -53,6 +66,29 @@ pub struct GasSpringGas {
     pub initial_pressure_error: f64,
 }
 
+impl Checked for GasSpringGas {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("temperature_K", Range::FromTo(200.0, 400.0), "K", |g| g.temperature_k),
+        Limit::one(
+            "initial_temperature_difference_K",
+            Range::FromTo(-150.0, 150.0),
+            "K",
+            |g| g.initial_temperature_difference_k,
+        ),
+        Limit::one("initial_pressure_error", Range::FromTo(-0.9, 0.9), "", |g| {
+            g.initial_pressure_error
+        }),
+    ];
+
+    fn check_together(&self) -> Result<(), InvalidValue> {
+        if self.species == "nitrogen" {
+            return Ok(());
+        }
+        let what = format!("is {:?}: must be \"nitrogen\", the only gas known", self.species);
+        Err(InvalidValue::new("species", what))
+    }
+}
+
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature serde wants")]
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
@@ -64,6 +100,12 @@ fn is_zero(value: &f64) -> bool {
 pub struct GasHeatTransferTerm {
     /// Thermal time constant, s.
     pub time_constant_s: f64,
+}
+
+impl Checked for GasHeatTransferTerm {
+    const LIMITS: &'static [Limit<Self>] = &[Limit::one("time_constant_s", Range::FromTo(1e-3, 1e6), "s", |h| {
+        h.time_constant_s
+    })];
 }
 
 /// Terms a gas spring may have.
@@ -93,6 +135,35 @@ pub struct GasSpringEffects {
     pub sensor_skew: Option<SensorEffect>,
 }
 
+impl Checked for GasSpringEffects {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::optional("gas_leak_rate_1_s", Range::FromTo(-1e3, 1e3), "1/s", |e| {
+            e.gas_leak_rate_1_s
+        }),
+        Limit::optional("polytropic_exponent", Range::FromTo(0.5, 3.0), "", |e| {
+            e.polytropic_exponent
+        }),
+    ];
+
+    fn check_together(&self) -> Result<(), InvalidValue> {
+        if let Some(heat) = &self.gas_heat_transfer {
+            checked(heat, "gas_heat_transfer")?;
+        }
+        for (id, fault) in [
+            (TermId::SensorLag, &self.sensor_lag),
+            (TermId::SensorGain, &self.sensor_gain),
+            (TermId::SensorDrift, &self.sensor_drift),
+            (TermId::SensorSkew, &self.sensor_skew),
+        ] {
+            check_columns(id, fault.as_ref(), &[PRESSURE])?;
+        }
+        Ok(())
+    }
+}
+
+/// Column of the pressure sensor.
+const PRESSURE: &str = "p_Pa";
+
 /// The `model.toml` of a gas spring.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -114,60 +185,39 @@ pub struct GasSpringModel {
     pub noise: SensorEffect,
 }
 
+impl Checked for GasSpringModel {
+    const LIMITS: &'static [Limit<Self>] = &[];
+
+    fn check_together(&self) -> Result<(), InvalidValue> {
+        checked(&self.specimen, "specimen")?;
+        checked(&self.chamber, "chamber")?;
+        checked(&self.gas, "gas")?;
+        checked(&self.effects, "effects")?;
+        check_tolerance(
+            &self.tolerance,
+            &["volume_at_zero", "initial_pressure", "temperature_K", "time_constant"],
+        )?;
+        check_noise(&self.noise, &["displacement_m", PRESSURE])
+    }
+}
+
 impl GasSpringModel {
-    /// Reads and checks a model file.
+    /// Read and check a model. `file` is the name that appears in errors.
+    ///
+    /// ```
+    /// use oleo_plant_sim::specimen::GasSpringModel;
+    /// let text = "[specimen]\nname = \"a\"\nkind = \"gas spring\"\n[chamber]\narea_m2 = 0.01\nvolume_at_zero_m3 = 0.05\n\
+    ///             [gas]\nspecies = \"nitrogen\"\nprocess = \"adiabatic\"\ntemperature_K = 293.15\n";
+    /// let model = GasSpringModel::from_toml(text, "model.toml").unwrap();
+    /// // Half of a stroke of 1 m, within a second, from 1 MPa (absolute).
+    /// let pressure_pa = model.pressure_pa(&[0.0, 1.0], &[0.0, 0.5], 1.0e6).unwrap();
+    /// assert!(pressure_pa[1] > 1.15e6 && pressure_pa[1] < 1.17e6);
+    /// ```
     ///
     /// # Errors
-    /// One line: source, line or key, what.
-    pub fn from_toml(text: &str, source: &str) -> Result<Self, String> {
-        let model: Self = toml::from_str(text).map_err(|e| toml_message(text, source, &e))?;
-        within(source, "chamber.area_m2", model.chamber.area_m2, 1e-6, 1.0)?;
-        within(
-            source,
-            "chamber.volume_at_zero_m3",
-            model.chamber.volume_at_zero_m3,
-            1e-7,
-            10.0,
-        )?;
-        within(source, "gas.temperature_K", model.gas.temperature_k, 200.0, 400.0)?;
-        if model.gas.species != "nitrogen" {
-            return Err(format!(
-                "{source}, key gas.species: '{}' is not known; nitrogen is",
-                model.gas.species
-            ));
-        }
-        if let Some(heat) = &model.effects.gas_heat_transfer {
-            within(
-                source,
-                "effects.gas_heat_transfer.time_constant_s",
-                heat.time_constant_s,
-                1e-3,
-                1e6,
-            )?;
-        }
-        let (gas, e) = (&model.gas, &model.effects);
-        for (key, value, most) in [
-            (
-                "gas.initial_temperature_difference_K",
-                gas.initial_temperature_difference_k,
-                150.0,
-            ),
-            ("gas.initial_pressure_error", gas.initial_pressure_error, 0.9),
-            ("effects.gas_leak_rate_1_s", e.gas_leak_rate_1_s.unwrap_or(0.0), 1e3),
-        ] {
-            within(source, key, value, -most, most)?;
-        }
-        if let Some(n) = e.polytropic_exponent {
-            within(source, "effects.polytropic_exponent", n, 0.5, 3.0)?;
-        }
-        let faults = [
-            ("sensor_lag", &e.sensor_lag),
-            ("sensor_gain", &e.sensor_gain),
-            ("sensor_drift", &e.sensor_drift),
-            ("sensor_skew", &e.sensor_skew),
-        ];
-        instruments(source, &model.tolerance, &model.noise, &faults)?;
-        Ok(model)
+    /// Unknown, missing or impossible entries, with file and line.
+    pub fn from_toml(text: &str, file: &str) -> Result<Self, ModelFileError> {
+        read(text, file)
     }
 
     /// The model as a file.
@@ -243,7 +293,7 @@ impl GasSpringModel {
             sensor_skew: e.sensor_skew.clone(),
             ..Effects::default()
         };
-        record_column(&instruments, "p_Pa", time_s, &mut pressure_pa);
+        record_column(&instruments, PRESSURE, time_s, &mut pressure_pa);
         pressure_pa
     }
 }

@@ -1,6 +1,14 @@
 //! Tables as the solver reads them: a quantity over another, with its derivative.
 
 /// A quantity over another, linear between points and beyond the ends.
+///
+/// ```
+/// use oleo_plant_sim::strut::Characteristic;
+/// let table = Characteristic::through(&[0.0, 1.0, 3.0], &[0.0, 10.0, 20.0]);
+/// assert_eq!((table.value(2.0), table.value(5.0)), (15.0, 30.0));
+/// // Value and derivative; the segment is remembered for the next call nearby.
+/// assert_eq!(table.at(0.5, &mut 0), (5.0, 10.0));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Characteristic {
     lines: Box<[Line]>,

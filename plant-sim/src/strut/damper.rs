@@ -6,8 +6,20 @@
 use serde::{Deserialize, Serialize};
 
 use super::characteristic::Characteristic;
+use crate::model_file::limits::{as_many, increasing};
+use crate::model_file::{Checked, InvalidValue, Limit, Range};
 
 /// Points of a damper's characteristic as they stand in `model.toml`, both columns strictly increasing.
+///
+/// ```
+/// use oleo_plant_sim::strut::DamperTable;
+/// let damper = DamperTable {
+///     flow_m3_s: vec![-1.0e-3, 0.0, 1.0e-3],
+///     pressure_drop_pa: vec![-2.0e6, 0.0, 1.0e6],
+/// };
+/// assert!((damper.characteristic().value(0.5e6) - 0.5e-3).abs() < 1e-15);
+/// assert_eq!(damper.scaled(2.0).pressure_drop_pa, [-4.0e6, 0.0, 2.0e6]);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DamperTable {
@@ -16,6 +28,19 @@ pub struct DamperTable {
     /// Pressure drop in the direction of that flow, Pa.
     #[serde(rename = "pressure_drop_Pa")]
     pub pressure_drop_pa: Vec<f64>,
+}
+
+impl Checked for DamperTable {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::list("flow_m3_s", Range::Finite, "m3/s", |d| &d.flow_m3_s),
+        Limit::list("pressure_drop_Pa", Range::Finite, "Pa", |d| &d.pressure_drop_pa),
+    ];
+
+    fn check_together(&self) -> Result<(), InvalidValue> {
+        increasing("flow_m3_s", &self.flow_m3_s)?;
+        increasing("pressure_drop_Pa", &self.pressure_drop_pa)?;
+        as_many("pressure_drop_Pa", &self.pressure_drop_pa, "flow_m3_s", &self.flow_m3_s)
+    }
 }
 
 impl DamperTable {

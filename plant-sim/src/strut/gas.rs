@@ -1,12 +1,13 @@
-//! The gas of an accumulator: state equation and energy equation, advanced implicitly with the flow.
+//! The gas of an accumulator: equation of state and energy equation, advanced implicitly with the flow.
 //!
-//! `dV/dt = -Q`; `p V = m R T` or the real gas's equation of state;
-//! `m c_v dT/dt = -T (dp/dT)_V dV/dt - m c_v (T - T_ambient) / tau`
-//! (Els & Grobbelaar, "Investigation of the time- and temperature dependency of hydropneumatic suspension systems",
-//! SAE 930265, 1993; Otis & Pourmovahed, J. Dyn. Sys. Meas. Control 107, 1985, for the time constant). Without the
-//! thermal time constant the gas stays at ambient temperature.
+//! `dV/dt = -Q` with `p V = m R T` or the real gas's equation of state ([`Nitrogen`]). The temperature follows from the
+//! energy equation with a thermal time constant (the term `gas_heat_transfer`); without one the gas stays at ambient
+//! temperature.
+
+use oleo_interface::Absolute;
 
 use super::nitrogen::Nitrogen;
+use super::terms::EnergyStep;
 
 /// Specific gas constant of nitrogen, J/kg/K (recordings README).
 pub const NITROGEN_R_J_KG_K: f64 = 296.8;
@@ -23,6 +24,16 @@ pub struct GasState {
 }
 
 /// A gas charge: what does not change while the strut works.
+///
+/// ```
+/// use oleo_interface::Absolute;
+/// use oleo_plant_sim::strut::{Gas, GasState};
+/// // 0.1 l of ideal nitrogen at 4 MPa and 20 degrees Celsius, without a thermal time constant: Boyle's law.
+/// let gas = Gas::charged(Absolute(4.0e6), 1.0e-4, 293.15, None, None);
+/// assert!((gas.volume_at(Absolute(8.0e6)) - 0.5e-4).abs() < 1e-18);
+/// let half = GasState { volume_m3: 0.5e-4, temperature_k: 293.15 };
+/// assert!((gas.pressure(half).pa() - 8.0e6).abs() < 1e-6);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Gas {
     mass_kg: f64,
@@ -37,18 +48,19 @@ pub struct Gas {
 }
 
 impl Gas {
-    /// The charge that has `volume_m3` at absolute pressure `pressure_pa` and temperature `ambient_k`.
+    /// The charge that has a volume (m3) at a pressure and the ambient temperature (K). Without a thermal time constant
+    /// (s) it stays at that temperature; without an equation of state of the real gas it is ideal.
     #[must_use]
     pub fn charged(
-        pressure_pa: f64,
+        pressure: Absolute<f64>,
         volume_m3: f64,
         ambient_k: f64,
         time_constant_s: Option<f64>,
         real: Option<Nitrogen>,
     ) -> Self {
         let density = match &real {
-            None => pressure_pa / (NITROGEN_R_J_KG_K * ambient_k),
-            Some(gas) => gas.density(pressure_pa, ambient_k),
+            None => pressure.pa() / (NITROGEN_R_J_KG_K * ambient_k),
+            Some(gas) => gas.density(pressure, ambient_k),
         };
         let mass_kg = density * volume_m3;
         Self {
@@ -68,31 +80,28 @@ impl Gas {
         self.mass_kg
     }
 
-    /// Volume in equilibrium with ambient temperature at an absolute pressure, m3.
+    /// Volume at a pressure and ambient temperature, m3.
     #[must_use]
-    pub fn volume_at(&self, pressure_pa: f64) -> f64 {
+    pub fn volume_at(&self, pressure: Absolute<f64>) -> f64 {
         let density = match &self.real {
-            None => pressure_pa / (NITROGEN_R_J_KG_K * self.ambient_k),
-            Some(gas) => gas.density(pressure_pa, self.ambient_k),
+            None => pressure.pa() / (NITROGEN_R_J_KG_K * self.ambient_k),
+            Some(gas) => gas.density(pressure, self.ambient_k),
         };
         self.mass_kg / density
     }
 
-    /// Absolute pressure of a state, Pa.
+    /// Pressure of a state.
     #[must_use]
-    pub fn pressure_pa(&self, state: GasState) -> f64 {
+    pub fn pressure(&self, state: GasState) -> Absolute<f64> {
         match &self.real {
-            None => self.mass_kg * NITROGEN_R_J_KG_K * state.temperature_k / state.volume_m3,
-            Some(gas) => {
-                gas.state(self.mass_kg / state.volume_m3, state.temperature_k)
-                    .pressure_pa
-            }
+            None => Absolute(self.mass_kg * NITROGEN_R_J_KG_K * state.temperature_k / state.volume_m3),
+            Some(gas) => gas.state(self.mass_kg / state.volume_m3, state.temperature_k).pressure,
         }
     }
 
-    /// Make `real` fit for a step of `duration_s` from `base` with about `flow`: looked up anew when the gas has moved two
-    /// per cent or four kelvin from where it was looked up last (what is left of the real gas's curvature there is below 1e-5
-    /// of the pressure).
+    /// Make `real` fit for a step of `duration_s` (s) from `base` with about `flow` (m3/s). It is looked up anew where the
+    /// gas has moved by two per cent or four kelvin since the last time: within that, the real gas's curvature is below 1e-5
+    /// of the pressure.
     #[inline(always)]
     pub fn refresh(&self, real: &mut Departure, base: GasState, duration_s: f64, flow: f64) {
         if self.real.is_some() {
@@ -126,15 +135,13 @@ impl Gas {
         }
     }
 
-    /// One implicit step of `duration_s` with flow `flow` (m3/s, into the accumulator) from `base`.
-    ///
-    /// The energy equation is linear in the new temperature, so it is solved in closed form.
+    /// One implicit step of `duration_s` with a flow of oil into the accumulator, `flow` (m3/s), from `base`.
     #[inline(always)]
     #[must_use]
     pub fn implicit(&self, base: GasState, duration_s: f64, flow: f64, real: &Departure) -> GasStep {
         let free = base.volume_m3 - duration_s * flow;
-        // Below the least volume the pressure goes on rising linearly, so that a hopeless state (everything squeezed
-        // out) still has a solution instead of a division by zero. Comparisons, not `f64::max`, which costs four times
+        // Below the least volume the pressure goes on rising linearly, so that a hopeless trial (more oil than the
+        // accumulator holds) still has a solution instead of a division by zero. Comparisons, not `f64::max`, which costs four times
         // as much for its care of NaN.
         let volume_m3 = if free > self.least_volume_m3 {
             free
@@ -146,15 +153,20 @@ impl Gas {
         let density = self.mass_kg * inverse_volume;
         // (dp/dT) at constant volume, Pa/K.
         let heating = density * (self.gas_constant + density * real.by_temperature);
-        let (temperature_k, warming) = match self.cooling_rate_1_s {
+        let (temperature_k, temperature_by_flow) = match self.cooling_rate_1_s {
             None => (self.ambient_k, 0.0),
             Some(rate) => {
-                let k = duration_s * heating * self.inverse_heat_capacity;
-                let s = duration_s * rate;
-                let divisor = 1.0 + s - k * flow;
-                let inverse = 1.0 / if divisor > 0.05 { divisor } else { 0.05 };
-                let t = (base.temperature_k + s * self.ambient_k) * inverse;
-                (t, t * k * base.volume_m3 * inverse_volume * inverse)
+                let step = EnergyStep {
+                    duration_s,
+                    flow_m3_s: flow,
+                    heating_pa_k: heating,
+                    inverse_heat_capacity_k_j: self.inverse_heat_capacity,
+                    volume_before_m3: base.volume_m3,
+                    inverse_volume_1_m3: inverse_volume,
+                    temperature_before_k: base.temperature_k,
+                    ambient_k: self.ambient_k,
+                };
+                step.temperature(rate)
             }
         };
         let f = real.excess
@@ -168,9 +180,9 @@ impl Gas {
                 volume_m3,
                 temperature_k,
             },
-            pressure_pa: p * (1.0 + excess_volume * inverse_volume),
-            pressure_by_flow: heating * warming + stiffening * density * duration_s * inverse_volume,
-            temperature_by_flow: warming,
+            pressure: Absolute(p * (1.0 + excess_volume * inverse_volume)),
+            pressure_by_flow: heating * temperature_by_flow + stiffening * density * duration_s * inverse_volume,
+            temperature_by_flow,
         }
     }
 }
@@ -180,8 +192,8 @@ impl Gas {
 pub struct GasStep {
     /// State at its end.
     pub state: GasState,
-    /// Absolute pressure, Pa.
-    pub pressure_pa: f64,
+    /// Pressure at its end.
+    pub pressure: Absolute<f64>,
     /// Its derivative by the flow, Pa s/m3.
     pub pressure_by_flow: f64,
     /// Derivative of the temperature by the flow, K s/m3.
@@ -215,20 +227,20 @@ mod tests {
             let flow = (from - to) / total_s;
             let real = gas.departure(gas.mass_kg() / s.volume_m3, s.temperature_k);
             let step = gas.implicit(s, h, flow, &real);
-            (s, p) = (step.state, step.pressure_pa);
+            (s, p) = (step.state, step.pressure.pa());
         }
         p
     }
 
     #[test]
     fn isothermal_limit_is_boyle() {
-        let gas = Gas::charged(4e6, 1e-4, 293.15, None, None);
+        let gas = Gas::charged(Absolute(4e6), 1e-4, 293.15, None, None);
         assert!((compress(&gas, 1e-4, 5e-5, 1.0, 10) / 8e6 - 1.0).abs() < 1e-12);
     }
 
     #[test]
     fn adiabatic_limit_is_poisson() {
-        let gas = Gas::charged(4e6, 1e-4, 293.15, Some(1e9), None);
+        let gas = Gas::charged(Absolute(4e6), 1e-4, 293.15, Some(1e9), None);
         let kappa = 1.0 + NITROGEN_R_J_KG_K / NITROGEN_CV_J_KG_K;
         let exact = 4e6 * libm::pow(2.0, kappa);
         assert!((compress(&gas, 1e-4, 5e-5, 1.0, 40_000) / exact - 1.0).abs() < 1e-4);
@@ -236,7 +248,7 @@ mod tests {
 
     #[test]
     fn relaxes_with_the_time_constant() {
-        let gas = Gas::charged(4e6, 1e-4, 293.15, Some(3.0), None);
+        let gas = Gas::charged(Absolute(4e6), 1e-4, 293.15, Some(3.0), None);
         let mut s = GasState {
             volume_m3: 1e-4,
             temperature_k: 350.0,
@@ -252,14 +264,14 @@ mod tests {
     fn derivative_by_flow_is_the_difference_quotient() {
         for real in [None, Some(Nitrogen::reference())] {
             for tau in [None, Some(2.0)] {
-                let gas = Gas::charged(4e6, 1e-4, 293.15, tau, real.clone());
+                let gas = Gas::charged(Absolute(4e6), 1e-4, 293.15, tau, real.clone());
                 let base = GasState {
                     volume_m3: 0.8e-4,
                     temperature_k: if tau.is_some() { 300.0 } else { 293.15 },
                 };
                 let at = |q: f64| gas.implicit(base, 1e-3, q, &gas.departure(gas.mass_kg() / base.volume_m3, 300.0));
                 let slope = at(1e-3).pressure_by_flow;
-                let quotient = (at(1.001e-3).pressure_pa - at(0.999e-3).pressure_pa) / 2e-6;
+                let quotient = (at(1.001e-3).pressure - at(0.999e-3).pressure) / 2e-6;
                 assert!((slope / quotient - 1.0).abs() < 0.02, "{slope} {quotient}");
             }
         }

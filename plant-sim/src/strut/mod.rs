@@ -9,38 +9,67 @@
 //!                                      p1 ----[ pack2 ]------ p3 ------[orifice]----- p4 (0.4 l)
 //! ```
 //!
-//! Compression is positive. Every physical effect is a *term* that a [`StrutModel`] has or has not
-//! ([`Effects`]); [`Strut`] solves whatever the model holds. One file a law, `network` puts them together,
-//! `replay` drives the network with a recording's inputs.
+//! Compression is positive. Every physical effect is a *term* that a [`StrutModel`] has or has not ([`Effects`]);
+//! [`Strut`] solves whatever the model holds. Data flows one way:
+//!
+//! ```text
+//!   model (model.toml) --> terms ----------------+
+//!                            |                   v
+//!   recording --> smoothing --> motion --> integrator --> replay --> predicted columns
+//!                                          |    |    |
+//!                              network (stages) valve rod_forces
+//!                              |    |    |
+//!                      characteristic gas orifice
+//! ```
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `model` | the tables of `model.toml`, their limits |
+//! | `terms` | the vocabulary of effects: one file for each, with struct, limits, equation, source, tests |
+//! | `network` | the hydraulic network and its solver: one implicit stage |
+//! | `integrator` | the strut in time: steps, valves' edges, the rod |
+//! | `valve`, `rod_forces`, `friction` | movement of a valve; forces between rod and cylinder |
+//! | `gas`, `nitrogen`, `orifice`, `damper`, `characteristic` | laws of the elements |
+//! | `instruments` | what faulty instruments make of the columns |
+//! | `motion`, `smoothing` | a motion from sample to sample, and how a recorded displacement becomes one |
+//! | `replay` | a recording's inputs through a model |
 
 mod characteristic;
 mod damper;
-mod effects;
+mod flow_path;
 mod friction;
 mod gas;
-mod input;
-mod laws;
+mod instruments;
+mod integrator;
 mod model;
+mod motion;
 mod network;
 mod nitrogen;
 mod orifice;
+mod pressure;
 mod replay;
-mod sensor;
-mod solve;
-mod stops;
+mod rod_forces;
+mod smoothing;
+mod terms;
 mod valve;
 
 pub use characteristic::Characteristic;
 pub use damper::DamperTable;
-pub use effects::*;
-pub use friction::advance_friction;
+pub use flow_path::FlowPath;
+pub use friction::{PRESLIDING_STIFFNESS_N_M, advance_friction};
 pub use gas::{Gas, GasState, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K};
-pub use input::{Motion, Segment, smooth_displacement};
-pub use model::{
-    ATMOSPHERE_PA, Accumulator, Cylinder, GasCharge, ModelError, Orifice, Specimen, StrutModel, Valve, ValveTiming,
-};
-pub use network::{Strut, StrutOutput};
+pub use instruments::record_column;
+pub use integrator::{Strut, StrutOutput};
+pub use model::{Accumulator, Cylinder, GasCharge, Orifice, Specimen, StrutModel, Valve, ValveTiming};
+pub use motion::{Motion, Segment};
 pub use nitrogen::Nitrogen;
+pub use pressure::ATMOSPHERE_PA;
 pub use replay::{Inputs, Prediction, replay};
-pub use sensor::{COLUMNS, record as record_column};
+pub use smoothing::smooth_displacement;
+pub use terms::{
+    AccumulatorPistonFriction, BumpStop, COLUMNS, DamperLeakage, DampingFade, Effects, EntrainedAir, GasChargeError,
+    GasEquation, GasHeatTransfer, LaminarLine, LawArgument, LawForm, LawPlace, LineInertance, LineResistance, Mount,
+    MountCompliance, OilCompressibility, OilCount, PackFade, PistonSeal, RealGas, SealFriction, SensorEffect,
+    SideLoadFriction, TermId, TransitionShape, UnlistedLaw, Valve3Leakage, ValveDelay, ValveTransition, check_columns,
+};
 pub use valve::ValveMotion;

@@ -1,9 +1,15 @@
 //! A recording's inputs through a model: what the instruments should have read.
 
-use super::input::{Motion, smooth_displacement};
-use super::model::{ModelError, StrutModel};
-use super::network::Strut;
-use super::sensor;
+use oleo_interface::StrutValves;
+
+use crate::model_file::InvalidValue;
+
+use super::instruments::{record_column, true_motion};
+use super::integrator::{Strut, StrutOutput};
+use super::model::StrutModel;
+use super::motion::Motion;
+use super::smoothing::smooth_displacement;
+use super::terms::COLUMNS;
 
 /// Inputs of a recording: time, actuator motion, switching signals.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,14 +18,15 @@ pub struct Inputs {
     pub time_s: Vec<f64>,
     /// Motion between the samples.
     pub motion: Motion,
-    /// Switching signals at each sample; an edge acts from its sample on.
-    pub signals: Vec<[bool; 3]>,
+    /// Switching signals at each sample, true for open; an edge acts from its sample on.
+    pub signals: Vec<StrutValves<bool>>,
 }
 
 impl Inputs {
-    /// Inputs from recorded columns of equal length; the displacement is smoothed by its stated noise, m.
+    /// Inputs from recorded columns of equal length. The displacement (m) is smoothed by the standard deviation of its
+    /// noise (m); 0 leaves it nearly as it is.
     #[must_use]
-    pub fn from_recording(time_s: &[f64], displacement_m: &[f64], signals: &[[bool; 3]], noise_m: f64) -> Self {
+    pub fn from_recording(time_s: &[f64], displacement_m: &[f64], signals: &[StrutValves<bool>], noise_m: f64) -> Self {
         let intervals = time_s.len().saturating_sub(1).max(1) as f64;
         let interval = match (time_s.first(), time_s.last()) {
             (Some(a), Some(b)) if b > a => (b - a) / intervals,
@@ -42,57 +49,71 @@ pub struct Prediction {
     pub pressure_pa: [Vec<f64>; 4],
 }
 
+impl Prediction {
+    fn with_capacity(samples: usize) -> Self {
+        Self {
+            force_n: Vec::with_capacity(samples),
+            pressure_pa: std::array::from_fn(|_| Vec::with_capacity(samples)),
+        }
+    }
+
+    fn push(&mut self, output: StrutOutput) {
+        self.force_n.push(output.force_n);
+        for (column, pressure) in self.pressure_pa.iter_mut().zip(output.pressure_pa) {
+            column.push(pressure);
+        }
+    }
+}
+
 /// Simulate a recording's inputs with a model. O(samples); the same bits every time.
+///
+/// ```
+/// use oleo_interface::StrutValves;
+/// use oleo_plant_sim::strut::{Inputs, StrutModel, replay};
+/// // 20 mm of jounce within 2 s, at 100 Hz, on the stiff spring with low damping.
+/// let time_s: Vec<f64> = (0..=200).map(|k| 0.01 * f64::from(k)).collect();
+/// let displacement_m: Vec<f64> = time_s.iter().map(|t| 0.01 * t).collect();
+/// let signals = vec![StrutValves::new(true, true, false); 201];
+/// let inputs = Inputs::from_recording(&time_s, &displacement_m, &signals, 5.0e-6);
+/// let predicted = replay(&StrutModel::defender110(8000.0), &inputs)?;
+/// assert_eq!(predicted.force_n.len(), 201);
+/// assert!(predicted.force_n[200] > 11_000.0 && predicted.pressure_pa[0][200] > 5.5e6);
+/// # Ok::<(), oleo_plant_sim::model_file::InvalidValue>(())
+/// ```
 ///
 /// # Errors
 /// Impossible values in the model.
-pub fn replay(model: &StrutModel, inputs: &Inputs) -> Result<Prediction, ModelError> {
-    let n = inputs.time_s.len();
-    let first = inputs.signals.first().copied().unwrap_or_default();
+pub fn replay(model: &StrutModel, inputs: &Inputs) -> Result<Prediction, InvalidValue> {
     let effects = &model.effects;
-    let faulty = [
-        &effects.sensor_lag,
-        &effects.sensor_gain,
-        &effects.sensor_drift,
-        &effects.sensor_skew,
-        &effects.sensor_sign,
-        &effects.sensor_offset,
-    ]
-    .iter()
-    .any(|m| m.as_ref().is_some_and(|m| m.contains_key("displacement_m")));
-    let undone = faulty.then(|| sensor::undo(effects, &inputs.time_s, &inputs.motion));
-    let motion = undone.as_ref().unwrap_or(&inputs.motion);
-    let mut strut = Strut::at_rest_at(model, first, motion.start_m)?;
-    let mut out = Prediction {
-        force_n: Vec::with_capacity(n),
-        pressure_pa: std::array::from_fn(|_| Vec::with_capacity(n)),
-    };
-    let mut keep = |o: super::network::StrutOutput| {
-        out.force_n.push(o.force_n);
-        out.pressure_pa
-            .iter_mut()
-            .zip(o.pressure_pa)
-            .for_each(|(to, p)| to.push(p));
-    };
-    if n > 0 {
-        keep(strut.output());
+    let truth = true_motion(effects, &inputs.time_s, &inputs.motion);
+    let motion = truth.as_ref().unwrap_or(&inputs.motion);
+    let signals = inputs.signals.first().copied().unwrap_or_default();
+    let mut strut = Strut::at_rest_at(model, signals, motion.start_m)?;
+    let mut out = Prediction::with_capacity(inputs.time_s.len());
+    if !inputs.time_s.is_empty() {
+        out.push(strut.output());
     }
-    for (i, s) in motion.segments.iter().enumerate() {
-        let dt = inputs.time_s[i + 1] - inputs.time_s[i];
-        let (signals, at) = (inputs.signals[i], strut.displacement_m());
-        let (begins, takes) = s.moves_within(at, dt);
+    for ((segment, time), signals) in motion
+        .segments
+        .iter()
+        .zip(inputs.time_s.windows(2))
+        .zip(&inputs.signals)
+    {
+        let (duration, at) = (time[1] - time[0], strut.displacement_m());
+        let (begins, takes) = segment.moves_within(at, duration);
         if begins > 0.0 {
-            strut.advance(at, begins, signals);
+            strut.advance(at, begins, *signals);
         }
-        let mut output = strut.advance_with_speeds(s.to_m, s.from_m_s, s.to_m_s, takes, signals);
-        if begins + takes < dt {
-            output = strut.advance(s.to_m, dt - (begins + takes), signals);
+        let mut output = strut.advance_with_speeds(segment.to_m, segment.from_m_s, segment.to_m_s, takes, *signals);
+        if begins + takes < duration {
+            output = strut.advance(segment.to_m, duration - (begins + takes), *signals);
         }
-        keep(output);
+        out.push(output);
     }
-    sensor::record(effects, "force_N", &inputs.time_s, &mut out.force_n);
-    for (column, signal) in sensor::COLUMNS[2..].iter().zip(&mut out.pressure_pa) {
-        sensor::record(effects, column, &inputs.time_s, signal);
+    let [_, force, pressures @ ..] = COLUMNS;
+    record_column(effects, force, &inputs.time_s, &mut out.force_n);
+    for (column, signal) in pressures.iter().zip(&mut out.pressure_pa) {
+        record_column(effects, column, &inputs.time_s, signal);
     }
     Ok(out)
 }

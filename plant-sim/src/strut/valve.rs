@@ -1,16 +1,25 @@
 //! Solenoid valves: when they begin to move after an edge of the switching signal, and how far they are open.
 //!
-//! Total response `c0 + c1 dP + c2 dP^2` over the pressure difference at the edge (seed report, figure 25); 5 % of the
-//! change after `initial_delay_fraction` of it, 95 % after all of it (report, 3.5.3). The movement is the straight line
-//! through those two points, or a step at the total response.
+//! 5 % of the change has happened after a fraction of the total response, 95 % after all of it (report, 3.5.3). The total
+//! response is a polynomial of the pressure difference at the edge (term `valve_delay`); the way between the two points
+//! is the term `valve_transition`.
 
-/// Movement of one valve.
+use super::terms::ValveTransition;
+
+/// Movement of one valve. All times are on one clock, that of its owner.
+///
+/// ```
+/// use oleo_plant_sim::strut::ValveMotion;
+/// let mut valve = ValveMotion::at_rest(false);
+/// valve.switch(true, 10.0, 0.05, 0.02, None);
+/// assert_eq!((valve.opening(10.04), valve.opening(10.06)), (0.0, 1.0));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ValveMotion {
     signal: bool,
     from: f64,
     to: f64,
-    /// Times on the strut's clock between which the opening changes, s.
+    /// Times between which the opening changes, s.
     begins_s: f64,
     ends_s: f64,
 }
@@ -35,21 +44,25 @@ impl ValveMotion {
         self.signal
     }
 
-    /// An edge at `now_s`: the movement starts anew from the opening reached.
+    /// An edge of the switching signal at `now_s`: the movement starts anew from the opening reached.
     ///
-    /// `total_s` is the response time to 95 %, `initial_s` to 5 %; `gradual` as the model has it.
-    pub fn switch(&mut self, open: bool, now_s: f64, total_s: f64, initial_s: f64, gradual: bool) {
+    /// 5 % of the change has happened after `initial_s`, 95 % after `total_s`. Without a transition the valve moves in a step
+    /// after `total_s`.
+    pub fn switch(
+        &mut self,
+        open: bool,
+        now_s: f64,
+        total_s: f64,
+        initial_s: f64,
+        transition: Option<&ValveTransition>,
+    ) {
         self.from = self.opening(now_s);
         self.to = f64::from(u8::from(open));
         self.signal = open;
-        if gradual {
-            let overhang = (total_s - initial_s) * (0.05 / 0.9);
-            self.begins_s = now_s + initial_s - overhang;
-            self.ends_s = now_s + total_s + overhang;
-        } else {
-            self.begins_s = now_s + total_s;
-            self.ends_s = self.begins_s;
-        }
+        (self.begins_s, self.ends_s) = match transition {
+            Some(transition) => transition.movement_s(now_s, initial_s, total_s),
+            None => (now_s + total_s, now_s + total_s),
+        };
     }
 
     /// Opening at a time, 0 closed, 1 open.
@@ -89,11 +102,16 @@ impl ValveMotion {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::strut::terms::TransitionShape;
+
+    const LINEAR: ValveTransition = ValveTransition {
+        shape: TransitionShape::Linear,
+    };
 
     #[test]
     fn passes_five_and_ninety_five_per_cent() {
         let mut v = ValveMotion::at_rest(false);
-        v.switch(true, 1.0, 0.05, 0.02, true);
+        v.switch(true, 1.0, 0.05, 0.02, Some(&LINEAR));
         assert!((v.opening(1.02) - 0.05).abs() < 1e-12 && (v.opening(1.05) - 0.95).abs() < 1e-12);
         assert_eq!((v.opening(1.0), v.opening(1.06)), (0.0, 1.0));
     }
@@ -101,9 +119,9 @@ mod tests {
     #[test]
     fn an_edge_in_movement_starts_from_the_opening_reached() {
         let mut v = ValveMotion::at_rest(false);
-        v.switch(true, 0.0, 0.05, 0.02, true);
+        v.switch(true, 0.0, 0.05, 0.02, Some(&LINEAR));
         let reached = v.opening(0.035);
-        v.switch(false, 0.035, 0.05, 0.02, true);
+        v.switch(false, 0.035, 0.05, 0.02, Some(&LINEAR));
         assert_eq!(v.opening(0.036), reached);
         assert_eq!(v.opening(0.2), 0.0);
     }
@@ -111,7 +129,7 @@ mod tests {
     #[test]
     fn a_step_waits_for_the_total_response() {
         let mut v = ValveMotion::at_rest(true);
-        v.switch(false, 0.0, 0.05, 0.02, false);
+        v.switch(false, 0.0, 0.05, 0.02, None);
         assert_eq!((v.opening(0.049), v.opening(0.05)), (1.0, 0.0));
     }
 }

@@ -1,6 +1,9 @@
 //! The five tables of the first-generation model, calculated from a strut's geometry, fillings and damper packs.
 
-use crate::strut::{ATMOSPHERE_PA, ModelError, StrutModel};
+use oleo_interface::{Absolute, Gauge};
+
+use crate::model_file::{Checked, InvalidValue};
+use crate::strut::StrutModel;
 
 use super::look_up::LookUpTable;
 
@@ -51,9 +54,9 @@ impl Characteristics {
     ///
     /// # Errors
     /// Impossible values in the model, such as one that lets no oil pass.
-    pub fn of(model: &StrutModel) -> Result<Self, ModelError> {
-        // Checks the values, among them that tables are increasing, as the paths below need.
-        crate::strut::Strut::at_rest(model, [true; 3])?;
+    pub fn of(model: &StrutModel) -> Result<Self, InvalidValue> {
+        // Among others that tables are increasing, as the paths below need.
+        model.check()?;
         let area_m2 = model.piston_area_m2();
         let static_pa = model.cylinder.static_pressure_pa;
         let small = model.accumulator[0].static_gas_volume_m3;
@@ -101,8 +104,8 @@ impl Characteristics {
 
 /// Boyle's law at a displacement, N; atmosphere acts on the outside of the piston.
 pub(crate) fn isothermal_force_n(static_pa: f64, volume_m3: f64, area_m2: f64, displacement_m: f64) -> f64 {
-    let absolute = (static_pa + ATMOSPHERE_PA) * volume_m3 / (volume_m3 - area_m2 * displacement_m);
-    (absolute - ATMOSPHERE_PA) * area_m2
+    let absolute = Gauge(static_pa).absolute().pa() * volume_m3 / (volume_m3 - area_m2 * displacement_m);
+    Absolute(absolute).gauge().pa() * area_m2
 }
 
 /// Flow at a pressure drop from the cylinder to the accumulators, m3/s; increasing.
@@ -173,14 +176,11 @@ mod tests {
     #[test]
     fn spring_tables_are_boyles_law_within_one_per_mille_over_the_measured_range() {
         let (model, tables) = preset();
-        let (area, p0) = (
-            model.piston_area_m2(),
-            model.cylinder.static_pressure_pa + ATMOSPHERE_PA,
-        );
+        let (area, p0) = (model.piston_area_m2(), model.static_pressure().absolute().pa());
         for (spring, volume) in [(Spring::Soft, 5e-4), (Spring::Stiff, 1e-4)] {
             for i in -1005..=400 {
                 let x = f64::from(i) * 1e-4;
-                let exact = (p0 * volume / (volume - area * x) - ATMOSPHERE_PA) * area;
+                let exact = Absolute(p0 * volume / (volume - area * x)).gauge().pa() * area;
                 let table = tables.spring(spring).at(x);
                 assert!(
                     (table / exact - 1.0).abs() < 1e-3,

@@ -1,6 +1,9 @@
 //! The model of figure 26: five inputs (displacement, speed, three switch signals), one force.
 
-use crate::strut::{ModelError, StrutModel};
+use oleo_interface::{StrutValves, Valve};
+
+use crate::model_file::InvalidValue;
+use crate::strut::StrutModel;
 
 use super::characteristics::{Characteristics, Damping, Spring};
 use super::switching::DelayedSwitch;
@@ -14,26 +17,28 @@ pub struct FirstGenerationOutput {
     pub spring_force_n: f64,
     /// The damper's part, N.
     pub damper_force_n: f64,
-    /// The delayed signals that act, valves 1 to 3.
-    pub acting: [bool; 3],
+    /// The delayed signals that act.
+    pub acting: StrutValves<bool>,
 }
 
 /// First-generation strut: tables and the state of three valves.
 ///
 /// ```
+/// use oleo_interface::StrutValves;
 /// use oleo_plant_sim::strut::StrutModel;
 /// use oleo_plant_sim::strut_first::FirstGenerationStrut;
-/// let mut strut = FirstGenerationStrut::at_rest(&StrutModel::defender110(8000.0), [true; 3])?;
-/// let out = strut.update(0.0, 0.0, 0.0, [true; 3]);
+/// let open = StrutValves::new(true, true, true);
+/// let mut strut = FirstGenerationStrut::at_rest(&StrutModel::defender110(8000.0), open)?;
+/// let out = strut.update(0.0, 0.0, 0.0, open);
 /// assert!((out.force_n - 8000.0).abs() < 1.0);
-/// # Ok::<(), oleo_plant_sim::strut::ModelError>(())
+/// # Ok::<(), oleo_plant_sim::model_file::InvalidValue>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct FirstGenerationStrut {
     characteristics: Characteristics,
     area_m2: f64,
     response_polynomial_s: Vec<f64>,
-    switches: [DelayedSwitch; 3],
+    switches: StrutValves<DelayedSwitch>,
     last: Option<FirstGenerationOutput>,
 }
 
@@ -42,7 +47,7 @@ impl FirstGenerationStrut {
     ///
     /// # Errors
     /// Impossible values in the model.
-    pub fn at_rest(model: &StrutModel, signals: [bool; 3]) -> Result<Self, ModelError> {
+    pub fn at_rest(model: &StrutModel, signals: StrutValves<bool>) -> Result<Self, InvalidValue> {
         Ok(Self {
             characteristics: Characteristics::of(model)?,
             area_m2: model.piston_area_m2(),
@@ -67,7 +72,7 @@ impl FirstGenerationStrut {
         time_s: f64,
         displacement_m: f64,
         speed_m_s: f64,
-        signals: [bool; 3],
+        signals: StrutValves<bool>,
     ) -> FirstGenerationOutput {
         let before = match self.last {
             Some(last) => last,
@@ -75,24 +80,24 @@ impl FirstGenerationStrut {
         };
         let damper_pa = before.damper_force_n / self.area_m2;
         let spring_pa = before.spring_force_n / self.area_m2;
-        let across = [damper_pa, damper_pa, spring_pa];
-        let mut acting = [false; 3];
-        for (index, switch) in self.switches.iter_mut().enumerate() {
-            acting[index] = switch.update(time_s, signals[index], across[index], &self.response_polynomial_s);
-        }
+        let across = StrutValves::new(damper_pa, damper_pa, spring_pa);
+        let acting = StrutValves::from_fn(|valve| {
+            self.switches[valve].update(time_s, signals[valve], across[valve], &self.response_polynomial_s)
+        });
         let output = self.forces(displacement_m, speed_m_s, acting);
         self.last = Some(output);
         output
     }
 
     /// The sub-systems "soft spring" and "stiff spring" with their damping sub-systems (figures 28 to 30).
-    fn forces(&self, displacement_m: f64, speed_m_s: f64, acting: [bool; 3]) -> FirstGenerationOutput {
-        let (spring, damping) = if acting[2] {
+    fn forces(&self, displacement_m: f64, speed_m_s: f64, acting: StrutValves<bool>) -> FirstGenerationOutput {
+        let (spring, damping) = if acting[Valve::Spring] {
             // One open bypass takes nearly all the oil; the report has no curve of its own for it.
-            let low = acting[0] || acting[1];
+            let low = acting[Valve::Bypass1] || acting[Valve::Bypass2];
             (Spring::Soft, if low { Damping::Low } else { Damping::HighSoft })
         } else {
-            (Spring::Stiff, if acting[0] { Damping::Low } else { Damping::HighStiff })
+            let low = acting[Valve::Bypass1];
+            (Spring::Stiff, if low { Damping::Low } else { Damping::HighStiff })
         };
         let spring_force_n = self.characteristics.spring(spring).at(displacement_m);
         let damper_force_n = self.characteristics.damping(damping).at(speed_m_s);
@@ -109,27 +114,31 @@ impl FirstGenerationStrut {
 mod tests {
     use super::*;
 
-    fn strut(signals: [bool; 3]) -> FirstGenerationStrut {
+    const OPEN: StrutValves<bool> = StrutValves::new(true, true, true);
+    const STIFF: StrutValves<bool> = StrutValves::new(true, true, false);
+
+    fn strut(signals: StrutValves<bool>) -> FirstGenerationStrut {
         FirstGenerationStrut::at_rest(&StrutModel::defender110(8000.0), signals).expect("the preset is possible")
     }
 
     #[test]
     fn valve_2_does_nothing_with_valve_3_closed() {
         for first in [false, true] {
-            let closed = strut([first, false, false]).update(0.0, 0.01, 0.3, [first, false, false]);
-            let open = strut([first, true, false]).update(0.0, 0.01, 0.3, [first, true, false]);
-            assert_eq!(closed.force_n, open.force_n);
+            let force_n = |signals| strut(signals).update(0.0, 0.01, 0.3, signals).force_n;
+            let closed = force_n(StrutValves::new(first, false, false));
+            let open = force_n(StrutValves::new(first, true, false));
+            assert_eq!(closed, open);
         }
     }
 
     #[test]
     fn opening_valve_3_at_the_reference_position_is_smooth_and_elsewhere_a_jump() {
         let jump = |displacement_m: f64| {
-            let mut strut = strut([true, true, false]);
-            let before = strut.update(0.0, displacement_m, 0.0, [true, true, false]);
-            strut.update(0.1, displacement_m, 0.0, [true; 3]);
-            let after = strut.update(0.3, displacement_m, 0.0, [true; 3]);
-            assert!(after.acting[2]);
+            let mut strut = strut(STIFF);
+            let before = strut.update(0.0, displacement_m, 0.0, STIFF);
+            strut.update(0.1, displacement_m, 0.0, OPEN);
+            let after = strut.update(0.3, displacement_m, 0.0, OPEN);
+            assert!(after.acting[Valve::Spring]);
             after.force_n - before.force_n
         };
         assert!(jump(0.0).abs() < 5.0);
@@ -139,11 +148,11 @@ mod tests {
     #[test]
     fn valve_3_is_later_at_a_higher_spring_force() {
         let delay = |displacement_m: f64| {
-            let mut strut = strut([true, true, false]);
-            strut.update(0.0, displacement_m, 0.0, [true, true, false]);
+            let mut strut = strut(STIFF);
+            strut.update(0.0, displacement_m, 0.0, STIFF);
             (0..2000)
                 .map(|i| 1e-4 * f64::from(i))
-                .find(|&t| strut.update(t, displacement_m, 0.0, [true; 3]).acting[2])
+                .find(|&t| strut.update(t, displacement_m, 0.0, OPEN).acting[Valve::Spring])
                 .expect("it acts")
         };
         // Parabola of the preset at 4.07 MPa (static), and at some 38 kN over 1963.5 mm2.
@@ -153,10 +162,10 @@ mod tests {
 
     #[test]
     fn isothermal_and_without_memory() {
-        let mut strut = strut([true; 3]);
-        let first = strut.update(0.0, 0.02, 0.1, [true; 3]);
-        strut.update(50.0, -0.1, 0.0, [true; 3]);
-        let again = strut.update(100.0, 0.02, 0.1, [true; 3]);
+        let mut strut = strut(OPEN);
+        let first = strut.update(0.0, 0.02, 0.1, OPEN);
+        strut.update(50.0, -0.1, 0.0, OPEN);
+        let again = strut.update(100.0, 0.02, 0.1, OPEN);
         assert_eq!(first.force_n, again.force_n);
     }
 }

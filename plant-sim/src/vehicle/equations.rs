@@ -163,7 +163,7 @@ impl Equations {
     ///
     /// Written as a mean and a difference per axle so that a mirrored motion gives mirrored bits.
     pub fn extension(&self, q: &Coordinates) -> Corners<f64> {
-        Corners::from_axles(Axles::from_fn(|axle| {
+        Corners::from_left_right(Axles::from_fn(|axle| {
             let middle = q.heave - q.axle_heave(axle) - self.axle_ahead_m[axle] * q.pitch;
             let roll = self.half_strut_spacing_m[axle] * (q.roll - q.axle_roll(axle));
             [middle + roll, middle - roll]
@@ -172,7 +172,7 @@ impl Equations {
 
     /// Height of the four wheel centres above their static position (or, from rates, its rate), m (m/s).
     pub fn wheel_height(&self, q: &Coordinates) -> Corners<f64> {
-        Corners::from_axles(Axles::from_fn(|axle| {
+        Corners::from_left_right(Axles::from_fn(|axle| {
             let (middle, roll) = (q.axle_heave(axle), self.half_track_m[axle] * q.axle_roll(axle));
             [middle + roll, middle - roll]
         }))

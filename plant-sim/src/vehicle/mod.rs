@@ -16,14 +16,12 @@ mod contact;
 pub mod equations;
 pub mod linear;
 mod load;
-pub(crate) mod parameter_file;
 mod parameters;
 mod ride;
 mod seat;
 pub mod suspension;
 
 pub use load::Load;
-pub use parameter_file::ParameterError;
 pub use parameters::{
     AxleParameters, BaselineParameters, BodyParameters, GRAVITY_M_S2, LayoutParameters, SeatParameters,
     SolverParameters, TyreParameters, VehicleParameters,

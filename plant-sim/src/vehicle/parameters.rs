@@ -9,6 +9,7 @@ use oleo_interface::{Axle, Corner, Corners};
 use serde::{Deserialize, Serialize};
 
 use super::seat::Seat;
+use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
 
 /// Standard acceleration of gravity, m/s2 (ISO 80000-3).
 pub const GRAVITY_M_S2: f64 = 9.80665;
@@ -41,6 +42,44 @@ pub struct VehicleParameters {
     pub solver: SolverParameters,
 }
 
+/// Mass of a body or an axle, kg.
+const MASS_KG: Range = Range::FromTo(1.0, 1e5);
+/// Inertia of a body or an axle, kg m2.
+const INERTIA_KG_M2: Range = Range::FromTo(0.1, 1e6);
+/// Dimension of a vehicle, m.
+const LENGTH_M: Range = Range::FromTo(0.1, 20.0);
+/// Rate of a spring or a tyre, N/m.
+const RATE_N_M: Range = Range::FromTo(1e3, 1e7);
+/// Rate of a damper or a tyre, N s/m.
+const DAMPING_N_S_M: Range = Range::FromTo(0.0, 1e5);
+
+impl Checked for VehicleParameters {
+    const LIMITS: &'static [Limit<Self>] = &[];
+
+    fn check_together(&self) -> Result<(), InvalidValue> {
+        checked(&self.body, "body")?;
+        checked(&self.layout, "layout")?;
+        checked(&self.front_axle, "front_axle")?;
+        checked(&self.rear_axle, "rear_axle")?;
+        checked(&self.tyre, "tyre")?;
+        checked(&self.front_baseline, "front_baseline")?;
+        checked(&self.rear_baseline, "rear_baseline")?;
+        checked(&self.driver_seat, "driver_seat")?;
+        checked(&self.passenger_seat, "passenger_seat")?;
+        checked(&self.solver, "solver")?;
+        let front_share = 1.0 - self.body_cg_behind_front_axle_m() / self.layout.wheelbase_m;
+        if !(0.02..=0.98).contains(&front_share) {
+            let what = format!(
+                "is {}: with these axle masses the front struts would carry {:.0} % of the body; must leave 2 to 98 %",
+                self.body.front_mass_share,
+                100.0 * front_share
+            );
+            return Err(InvalidValue::new("front_mass_share", what).inside("body"));
+        }
+        Ok(())
+    }
+}
+
 /// The sprung mass: a rigid body with its principal axes along x (forward), y (left), z (up).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -59,6 +98,21 @@ pub struct BodyParameters {
     pub front_mass_share: f64,
 }
 
+impl Checked for BodyParameters {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("sprung_mass_kg", MASS_KG, "kg", |p| p.sprung_mass_kg),
+        Limit::one("roll_inertia_kg_m2", INERTIA_KG_M2, "kg m2", |p| p.roll_inertia_kg_m2),
+        Limit::one("pitch_inertia_kg_m2", INERTIA_KG_M2, "kg m2", |p| p.pitch_inertia_kg_m2),
+        Limit::one("yaw_inertia_kg_m2", INERTIA_KG_M2, "kg m2", |p| p.yaw_inertia_kg_m2),
+        Limit::one("vehicle_cg_height_m", Range::FromTo(0.05, 10.0), "m", |p| {
+            p.vehicle_cg_height_m
+        }),
+        Limit::one("front_mass_share", Range::FromTo(0.05, 0.95), "", |p| {
+            p.front_mass_share
+        }),
+    ];
+}
+
 /// Overall dimensions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -67,6 +121,13 @@ pub struct LayoutParameters {
     pub wheelbase_m: f64,
     /// Overall width w, which sets the lane widths of ISO 3888, m.
     pub width_m: f64,
+}
+
+impl Checked for LayoutParameters {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("wheelbase_m", LENGTH_M, "m", |p| p.wheelbase_m),
+        Limit::one("width_m", LENGTH_M, "m", |p| p.width_m),
+    ];
 }
 
 /// A live axle with its two wheels.
@@ -91,12 +152,33 @@ pub struct AxleParameters {
     pub tyre_radius_m: f64,
 }
 
+impl Checked for AxleParameters {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("mass_kg", MASS_KG, "kg", |p| p.mass_kg),
+        Limit::one("inertia_kg_m2", INERTIA_KG_M2, "kg m2", |p| p.inertia_kg_m2),
+        Limit::one("track_m", LENGTH_M, "m", |p| p.track_m),
+        Limit::one("strut_spacing_m", LENGTH_M, "m", |p| p.strut_spacing_m),
+        Limit::one("anti_roll_stiffness_n_m_rad", Range::FromTo(0.0, 1e7), "N m/rad", |p| {
+            p.anti_roll_stiffness_n_m_rad
+        }),
+        Limit::one("tyre_stiffness_n_m", RATE_N_M, "N/m", |p| p.tyre_stiffness_n_m),
+        Limit::one("tyre_damping_n_s_m", DAMPING_N_S_M, "N s/m", |p| p.tyre_damping_n_s_m),
+        Limit::one("tyre_radius_m", Range::FromTo(0.05, 3.0), "m", |p| p.tyre_radius_m),
+    ];
+}
+
 /// Tyre contact in the vertical direction.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TyreParameters {
     /// Length over which the road height is averaged, m; 0 = point contact as in Appendix A.
     pub contact_length_m: f64,
+}
+
+impl Checked for TyreParameters {
+    const LIMITS: &'static [Limit<Self>] = &[Limit::one("contact_length_m", Range::FromTo(0.0, 1.0), "m", |p| {
+        p.contact_length_m
+    })];
 }
 
 /// Coil spring, damper and stops of one wheel of the vehicle as sold. Bump = compression.
@@ -117,6 +199,23 @@ pub struct BaselineParameters {
     pub stop_stiffness_n_m: f64,
 }
 
+impl Checked for BaselineParameters {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("coil_stiffness_n_m", RATE_N_M, "N/m", |p| p.coil_stiffness_n_m),
+        Limit::one("bump_damping_n_s_m", DAMPING_N_S_M, "N s/m", |p| p.bump_damping_n_s_m),
+        Limit::one("rebound_damping_n_s_m", DAMPING_N_S_M, "N s/m", |p| {
+            p.rebound_damping_n_s_m
+        }),
+        Limit::one("bump_clearance_m", Range::FromTo(0.0, 1.0), "m", |p| p.bump_clearance_m),
+        Limit::one("rebound_clearance_m", Range::FromTo(0.0, 1.0), "m", |p| {
+            p.rebound_clearance_m
+        }),
+        Limit::one("stop_stiffness_n_m", Range::FromTo(0.0, 1e7), "N/m", |p| {
+            p.stop_stiffness_n_m
+        }),
+    ];
+}
+
 /// A seat's place on the body.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -129,6 +228,18 @@ pub struct SeatParameters {
     pub above_ground_m: f64,
 }
 
+impl Checked for SeatParameters {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("behind_front_axle_m", Range::FromTo(-10.0, 20.0), "m", |p| {
+            p.behind_front_axle_m
+        }),
+        Limit::one("left_of_centre_m", Range::FromTo(-5.0, 5.0), "m", |p| {
+            p.left_of_centre_m
+        }),
+        Limit::one("above_ground_m", Range::FromTo(-2.0, 10.0), "m", |p| p.above_ground_m),
+    ];
+}
+
 /// Fixed-step integration.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -137,7 +248,36 @@ pub struct SolverParameters {
     pub step_s: f64,
 }
 
+impl Checked for SolverParameters {
+    const LIMITS: &'static [Limit<Self>] = &[Limit::one("step_s", Range::FromTo(1e-6, 0.005), "s", |p| p.step_s)];
+
+    fn check_together(&self) -> Result<(), InvalidValue> {
+        let steps = (TICK_S / self.step_s).round();
+        if (steps * self.step_s - TICK_S).abs() <= 1e-9 {
+            return Ok(());
+        }
+        let what = format!(
+            "is {}: must divide the tick of {TICK_S} s, for example 0.001",
+            self.step_s
+        );
+        Err(InvalidValue::new("step_s", what))
+    }
+}
+
 impl VehicleParameters {
+    /// Read and check a vehicle file. `file` is the name that appears in errors.
+    ///
+    /// # Errors
+    /// Unknown, missing or mistyped keys and values outside their physical range, each with its line.
+    pub fn from_toml(text: &str, file: &str) -> Result<Self, ModelFileError> {
+        read(text, file)
+    }
+
+    /// The parameters as a file that `from_toml` reads back to the same bits.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).unwrap_or_default()
+    }
+
     /// The shipped Defender 110: kerb weight and driver, 2050 kg.
     pub fn defender110() -> Self {
         Self::from_toml(DEFENDER110_TOML, "presets/defender110.toml")
@@ -226,9 +366,15 @@ impl VehicleParameters {
 
 const DEFENDER110_TOML: &str = include_str!("../../presets/defender110.toml");
 
+/// The controller's tick, s, which the plant's step must divide.
+const TICK_S: f64 = oleo_interface::tick::TICK_S;
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model_file::limits::forgotten_keys;
+
+    const PRESET: &str = DEFENDER110_TOML;
 
     /// Table 1 of the seed report counts one "anti-rollbar stiffness" between the two halves of one bar.
     #[test]
@@ -236,5 +382,113 @@ mod tests {
         let preset = VehicleParameters::defender110();
         let bars = Axle::ALL.map(|axle| preset.axle(axle).anti_roll_stiffness_n_m_rad);
         assert_eq!(bars.iter().filter(|stiffness| **stiffness > 0.0).count(), 1, "{bars:?}");
+    }
+
+    fn error_of(text: &str) -> ModelFileError {
+        VehicleParameters::from_toml(text, "car.toml").expect_err("must be refused")
+    }
+
+    #[test]
+    fn preset_is_read_and_survives_the_round_trip() {
+        let preset = VehicleParameters::defender110();
+        assert_eq!(preset.total_mass_kg(), 2050.0);
+        let again = VehicleParameters::from_toml(&preset.to_toml(), "again").unwrap();
+        assert_eq!(again, preset);
+    }
+
+    #[test]
+    fn every_value_of_the_preset_is_labelled_with_its_origin() {
+        for line in PRESET
+            .lines()
+            .filter(|line| line.contains(" = ") && !line.starts_with('#'))
+        {
+            if line.starts_with("name") || line.starts_with("step_s") {
+                continue;
+            }
+            let label = line.split('#').nth(1).unwrap_or("").trim();
+            assert!(
+                ["report", "source", "recalled", "assumed", "computed"]
+                    .iter()
+                    .any(|known| label.starts_with(known)),
+                "no origin: {line}"
+            );
+        }
+    }
+
+    #[test]
+    fn weight_is_carried_by_wheels_and_shared_as_stated() {
+        let preset = VehicleParameters::defender110();
+        let wheels = preset.static_wheel_load_n();
+        let sum: f64 = wheels.values().sum();
+        let [front_left, front_right] = wheels.of_axle(Axle::Front);
+        assert!((sum / (2050.0 * GRAVITY_M_S2) - 1.0).abs() < 1e-12);
+        assert!(((front_left + front_right) / sum - 0.5).abs() < 1e-12);
+        assert_eq!(front_left.to_bits(), front_right.to_bits());
+    }
+
+    #[test]
+    fn every_number_has_a_limit() {
+        let p = VehicleParameters::defender110();
+        let forgotten = [
+            forgotten_keys(&p),
+            forgotten_keys(&p.body),
+            forgotten_keys(&p.layout),
+            forgotten_keys(&p.front_axle),
+            forgotten_keys(&p.tyre),
+            forgotten_keys(&p.front_baseline),
+            forgotten_keys(&p.driver_seat),
+            forgotten_keys(&p.solver),
+        ];
+        assert!(forgotten.concat().is_empty(), "{forgotten:?}");
+    }
+
+    #[test]
+    fn bad_files_give_file_line_and_key() {
+        let unknown = PRESET.replace("width_m", "widht_m");
+        let error = error_of(&unknown);
+        assert_eq!(
+            error.line(),
+            Some(1 + unknown.lines().position(|l| l.starts_with("widht_m")).unwrap())
+        );
+        assert!(error.to_string().contains("widht_m"), "{error}");
+
+        let missing: String = PRESET
+            .lines()
+            .filter(|l| !l.starts_with("wheelbase_m"))
+            .map(|l| format!("{l}\n"))
+            .collect();
+        let error = error_of(&missing);
+        assert!(error.to_string().contains("wheelbase_m"), "{error}");
+        assert_eq!(
+            error.line(),
+            Some(1 + missing.lines().position(|l| l.starts_with("[layout]")).unwrap())
+        );
+
+        let impossible = PRESET.replace("sprung_mass_kg = 1600.0", "sprung_mass_kg = -1600.0");
+        let error = error_of(&impossible);
+        assert_eq!(
+            error.line(),
+            Some(1 + PRESET.lines().position(|l| l.starts_with("sprung_mass_kg")).unwrap())
+        );
+        assert!(error.to_string().starts_with("car.toml:"), "{error}");
+        assert!(error.to_string().contains("[body] sprung_mass_kg"), "{error}");
+
+        let mistyped = PRESET.replace("step_s = 0.001", "step_s = \"fast\"");
+        assert!(error_of(&mistyped).to_string().contains("step_s"));
+
+        let undivided = PRESET.replace("step_s = 0.001", "step_s = 0.003");
+        assert!(error_of(&undivided).to_string().contains("must divide the tick"));
+
+        for text in ["", "name", "[body", "\u{0}"] {
+            assert!(!error_of(text).to_string().contains('\n'));
+        }
+    }
+
+    #[test]
+    fn not_a_number_and_infinity_are_refused() {
+        for value in ["nan", "inf", "-inf"] {
+            let text = PRESET.replace("width_m = 1.79", &format!("width_m = {value}"));
+            assert!(error_of(&text).to_string().contains("width_m"));
+        }
     }
 }

@@ -89,7 +89,7 @@ impl SuspensionElement for StrutElement {
             self.rate_m_s,
             motion.compression_rate_m_s,
             motion.duration_s,
-            signal.into_array(),
+            signal,
         );
         self.rate_m_s = motion.compression_rate_m_s;
         self.output.force_n

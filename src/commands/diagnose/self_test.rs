@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use oleo_diagnose::selftest::{Ledger, Plan, Summary, page, records, run, save, tables};
+use oleo_diagnose::selftest::{Ledger, Plan, Subject, Summary, csv_rows, page, run, save, tables};
 use oleo_report::{OutputDirectory, Progress};
 
 use crate::failure::Failure;
@@ -60,10 +60,19 @@ pub fn run_self_test(args: &Args, out: Option<&std::path::Path>) -> Result<ExitC
     let plan = Plan {
         seed: args.seed,
         campaigns: args.campaigns,
-        terms: args.terms.clone(),
+        subjects: args
+            .terms
+            .iter()
+            .map(|t| t.parse())
+            .collect::<Result<Vec<Subject>, _>>()?,
         without_names: args.without_names,
     };
-    let cases = plan.cases()?;
+    if plan.without_names && plan.subjects.iter().any(|s| !matches!(s, Subject::Effect(_))) {
+        return Err(Failure::new(
+            "--terms: none and pair have no name to leave out; give terms of the vocabulary with --without-names",
+        ));
+    }
+    let cases = plan.cases();
     if cases.is_empty() {
         return Err(Failure::new("--campaigns 0: give a number of campaigns above 0"));
     }
@@ -97,10 +106,10 @@ pub fn run_self_test(args: &Args, out: Option<&std::path::Path>) -> Result<ExitC
     let summary = Summary::of(plan.seed, &trials);
     if let Some(mut out) = staged {
         let arguments: Vec<String> = std::env::args().skip(1).collect();
-        out.csv_records("trials.csv", records::trials(&trials))?;
-        out.csv_records("power.csv", records::power(&summary))?;
-        out.csv_records("confusion.csv", records::confusion(&summary))?;
-        out.csv_records("coverage.csv", records::coverage(&summary))?;
+        out.csv_records("trials.csv", csv_rows::trials(&trials))?;
+        out.csv_records("power.csv", csv_rows::power(&summary))?;
+        out.csv_records("confusion.csv", csv_rows::confusion(&summary))?;
+        out.csv_records("coverage.csv", csv_rows::coverage(&summary))?;
         out.json("summary.json", &summary)?;
         out.page(&page(&summary, &format!("oleo {}", arguments.join(" "))))?;
         out.commit()?;

@@ -10,8 +10,8 @@ use oleo_plant_sim::road::{self, Bend, SideSlope};
 use oleo_plant_sim::vehicle::suspension::{CoilElement, StrutElement, SuspensionElement};
 use oleo_plant_sim::vehicle::{BaselineVehicle, RideModel, RideVehicle, SeatAcceleration, Seats, VehicleParameters};
 
+use super::arguments::{Args, Kind, Model, Setting};
 use super::suspension::{Valves, struts};
-use super::{Args, Kind, Model, Setting};
 use crate::failure::Failure;
 
 /// Time before a step of steer, or before brake or accelerator, s.

@@ -11,7 +11,7 @@ use oleo_plant_sim::vehicle::Seats;
 use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Style, Table, significant};
 use serde_json::{Map, Value, json};
 
-use super::Args;
+use super::arguments::Args;
 use super::plan::Plan;
 use crate::failure::Failure;
 
@@ -291,7 +291,7 @@ const COLUMNS: [(&str, Signal); 36] = [
 
 /// The controller's valve word: bit `3 * corner + valve`, 1 open.
 fn valve_word(signals: &Signals) -> u16 {
-    ValveCommand::from_corners(signals.map(StrutValves::into_array).into_array()).word()
+    ValveCommand::from_corners(*signals).word()
 }
 
 /// Open valves of an axle, 0 to 6.

@@ -1,12 +1,13 @@
 //! The suspension as set on the command line: fixed valves, or the controller called directly, without a bus between.
 
 use oleo_controller::{Configuration, Inputs, State, tick};
-use oleo_interface::{Corners, StrutValves};
+use oleo_interface::{Corners, Gauge, StrutPressures, StrutValves};
 use oleo_plant_sim::course::Signals;
-use oleo_plant_sim::strut::{ModelError, Strut, StrutModel, StrutOutput};
+use oleo_plant_sim::model_file::InvalidValue;
+use oleo_plant_sim::strut::{Strut, StrutModel, StrutOutput};
 use oleo_plant_sim::vehicle::VehicleParameters;
 
-use super::Setting;
+use super::arguments::Setting;
 
 /// Where the valves' signals come from.
 pub enum Valves {
@@ -31,28 +32,26 @@ impl Valves {
 
     /// Signals before the first tick: what the struts start with.
     pub fn at_start(&self) -> StrutValves<bool> {
-        StrutValves::from_fn(|_| matches!(self, Self::Fixed(true)))
+        StrutValves::splat(matches!(self, Self::Fixed(true)))
     }
 
     /// Signals for the coming tick of 5 ms.
     pub fn decide(&mut self, displacement_m: Corners<f64>, outputs: Corners<StrutOutput>) -> Signals {
         match self {
-            Self::Fixed(open) => Corners::from_fn(|_| StrutValves::from_fn(|_| *open)),
+            Self::Fixed(open) => Corners::splat(StrutValves::splat(*open)),
             Self::Controlled { configuration, state } => {
-                let inputs = Inputs::from_values(
-                    displacement_m.map(|x| x as f32).into_array(),
-                    outputs.map(|output| output.pressure_pa.map(|p| p as f32)).into_array(),
-                );
-                let command = tick(configuration, state, &inputs).command;
-                Corners::from_array(command.corners()).map(StrutValves::from_array)
+                let pressure =
+                    outputs.map(|output| StrutPressures::from_array(output.pressure_pa).map(|p| Gauge(p as f32)));
+                let inputs = Inputs::from_values(displacement_m.map(|x| x as f32), pressure);
+                tick(configuration, state, &inputs).command.corners()
             }
         }
     }
 }
 
 /// Four struts of the preset, each for its corner's static load.
-pub fn struts(parameters: &VehicleParameters, signals: StrutValves<bool>) -> Result<Corners<Strut>, ModelError> {
+pub fn struts(parameters: &VehicleParameters, signals: StrutValves<bool>) -> Result<Corners<Strut>, InvalidValue> {
     let [a, b, c, d] = parameters.static_strut_load_n().into_array();
-    let strut = |load_n: f64| Strut::at_rest(&StrutModel::defender110(load_n), signals.into_array());
+    let strut = |load_n: f64| Strut::at_rest(&StrutModel::defender110(load_n), signals);
     Ok(Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]))
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use oleo_interface::{PressurePoint, StrutValves, Valve};
 use oleo_plant_sim::rig::{
     FirstGenerationRun, Programme, Record, RecordedStrut, demonstration, play, run_first_generation, spring_comparison,
 };
@@ -123,7 +124,7 @@ impl Run {
             &record.signals,
         )?;
         let area_m2 = model.piston_area_m2();
-        let pressure_force_n = record.pressure_pa[0]
+        let pressure_force_n = record.pressure_pa[PressurePoint::P1.index()]
             .iter()
             .map(|pressure| pressure * area_m2)
             .collect();
@@ -192,11 +193,12 @@ impl Run {
             Axis::new("Time", "s"),
         );
         switches.link(&self.name);
-        for valve in 0..3 {
-            let state = |states: &[[bool; 3]]| states.iter().map(|s| f64::from(u8::from(s[valve]))).collect::<Vec<_>>();
+        for valve in Valve::ALL {
+            let state =
+                |states: &[StrutValves<bool>]| states.iter().map(|s| f64::from(u8::from(s[valve]))).collect::<Vec<_>>();
             let ticks = [(0.0, "closed"), (1.0, "open")];
             switches.panel(
-                Axis::new(&format!("Valve {}", valve + 1), "")
+                Axis::new(&format!("Valve {}", valve.number()), "")
                     .ticks(ticks)
                     .range(-0.15, 1.15),
             );
@@ -249,14 +251,14 @@ impl Run {
     }
 
     fn write(&self, sheet: &mut Sheet, generation: Generation) -> Result<(), Failure> {
-        let acting = |valve: usize| {
+        let acting = |valve: Valve| {
             self.first
                 .acting
                 .iter()
                 .map(|s| f64::from(u8::from(s[valve])))
                 .collect::<Vec<_>>()
         };
-        let (one, two, three) = (acting(0), acting(1), acting(2));
+        let [one, two, three] = Valve::ALL.map(acting);
         let mut more: Vec<(&str, &[f64])> = vec![("speed_m_s", &self.record.speed_m_s)];
         if generation != Generation::Second {
             more.extend([

@@ -8,7 +8,7 @@ use oleo_plant_sim::study::{DAMPER_FACTORS, GAS_VOLUMES_M3, Objective, Optimum, 
 use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Progress, Style, Table, significant};
 use serde_json::json;
 
-use super::Drive;
+use super::drive::Drive;
 use crate::failure::Failure;
 
 /// Search gas volume and damper factor for the least weighted sum of ride and handling measures

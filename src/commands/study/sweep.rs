@@ -8,7 +8,7 @@ use oleo_report::interrupt::Graceful;
 use oleo_report::{Axis, Cell, Column, Field, FieldStyle, OutputDirectory, Page, Progress, Table, Verdict};
 use serde_json::json;
 
-use super::Drive;
+use super::drive::Drive;
 use crate::failure::Failure;
 
 /// Run 10 gas volumes x 7 damper factors over the Belgian block and through the lane change

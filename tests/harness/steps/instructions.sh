@@ -23,7 +23,7 @@ instructions_in() {
 # shellcheck disable=SC2016
 by_file='/^f[lie]=/ { file = substr($0, 4) }
     /^calls=/ { getline; next }
-    /^[0-9]+ [0-9]+$/ { if (!sub(/.*controller\/src\//, "controller/src/", file)) sub(/.*\/(library|registry\/src\/[^\/]*)\//, "", file); cost[file] += $2 }
+    /^[0-9]+ [0-9]+$/ { if (!sub(/.*controller\/src\//, "controller/src/", file) && !sub(/.*interface\/src\//, "interface/src/", file)) sub(/.*\/(library|registry\/src\/[^\/]*)\//, "", file); cost[file] += $2 }
     END { for (file in cost) printf "%6d  %s\n", cost[file] / ticks, file }'
 for part in "9 controller_tick tick" "1 node_tick node-tick" "1 node_receive receive-six-frames"; do
     read -r lines function title <<< "$part"

@@ -7,40 +7,41 @@ use oleo_plant_sim::strut::{
 };
 
 use super::laws;
-use crate::specimen::Candidate;
+use crate::specimen::candidate::Candidate;
+use crate::vocabulary::{Branch, EffectId};
 
 /// Presliding stiffness of the seal, N/m (recordings README).
 const PRESLIDING_STIFFNESS_N_M: f64 = 2e6;
 
 /// Puts a candidate with its parameters' values into a model. Values as in `vocabulary`.
 pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
-    let column = || candidate.place.trim_start_matches("sensor:").to_owned();
-    let second = candidate.place.ends_with('2');
+    let column = || candidate.place.sensor().map_or_else(String::new, ToString::to_string);
+    let second = candidate.place.branch() == Some(Branch::Second);
     match candidate.id {
-        "oil_compressibility" => {
+        EffectId::OilCompressibility => {
             effects.oil_compressibility = Some(OilCompressibility {
                 bulk_modulus_pa: 1.0 / v[0].max(1e-13),
                 counted_at: OilCount::default(),
             })
         }
-        "entrained_air" => {
+        EffectId::EntrainedAir => {
             effects.entrained_air = Some(EntrainedAir {
                 volume_fraction: v[0],
                 polytropic_exponent: v[1],
             });
         }
-        "gas_heat_transfer" => {
+        EffectId::GasHeatTransfer => {
             effects.gas_heat_transfer = Some(GasHeatTransfer {
                 time_constant_1_s: v[0],
                 time_constant_2_s: v[1],
             });
         }
-        "real_gas" => {
+        EffectId::RealGas => {
             effects.real_gas = Some(RealGas {
                 equation: GasEquation::Reference,
             })
         }
-        "gas_charge_error" => {
+        EffectId::GasChargeError => {
             let none = GasChargeError {
                 relative_error_1: 0.0,
                 relative_error_2: 0.0,
@@ -52,7 +53,7 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
                 &mut term.relative_error_1
             }) = v[0];
         }
-        "seal_friction" => {
+        EffectId::SealFriction => {
             effects.seal_friction = Some(SealFriction {
                 coulomb_force_n: v[0],
                 breakaway_force_n: v[0] * v[1],
@@ -60,13 +61,13 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
                 presliding_stiffness_n_m: PRESLIDING_STIFFNESS_N_M,
             });
         }
-        "side_load_friction" => {
+        EffectId::SideLoadFriction => {
             effects.side_load_friction = Some(SideLoadFriction {
                 coefficient: v[0],
                 overlap_growth_1_m: v[1],
             });
         }
-        "accumulator_piston_friction" => {
+        EffectId::AccumulatorPistonFriction => {
             let none = AccumulatorPistonFriction {
                 pressure_1_pa: 0.0,
                 pressure_2_pa: 0.0,
@@ -80,7 +81,7 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
                 &mut term.pressure_1_pa
             }) = v[0];
         }
-        "damper_leakage" => {
+        EffectId::DamperLeakage => {
             let none = DamperLeakage {
                 flow_coefficient_1: 0.0,
                 flow_coefficient_2: 0.0,
@@ -92,7 +93,7 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
                 &mut term.flow_coefficient_1
             }) = v[0];
         }
-        "line_resistance" => {
+        EffectId::LineResistance => {
             let none = LineResistance {
                 resistance_1_pa_s_m3: 0.0,
                 resistance_2_pa_s_m3: 0.0,
@@ -104,23 +105,23 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
                 &mut term.resistance_1_pa_s_m3
             }) = v[0];
         }
-        "line_inertance" => {
+        EffectId::LineInertance => {
             effects.line_inertance = Some(LineInertance {
                 inertance_2_kg_m4: v[0],
             })
         }
-        "valve_delay" => {
+        EffectId::ValveDelay => {
             effects.valve_delay = Some(ValveDelay {
                 response_polynomial_s: [v[0], v[1], v[2]],
             })
         }
-        "valve_transition" => {
+        EffectId::ValveTransition => {
             effects.valve_transition = Some(ValveTransition {
                 shape: TransitionShape::Linear,
             })
         }
-        "valve3_leakage" => effects.valve3_leakage = Some(Valve3Leakage { flow_coefficient: v[0] }),
-        "bump_stop" => {
+        EffectId::Valve3Leakage => effects.valve3_leakage = Some(Valve3Leakage { flow_coefficient: v[0] }),
+        EffectId::BumpStop => {
             let far = 10.0;
             let none = BumpStop {
                 bump_clearance_m: far,
@@ -134,16 +135,16 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
             term.stiffness_n_m = v[2];
             term.progression_n_m3 = v[3];
         }
-        "mount_compliance" => {
+        EffectId::MountCompliance => {
             effects.mount_compliance = Some(MountCompliance {
                 stiffness_n_m: 1.0 / v[0].max(1e-15),
             })
         }
-        "damping_fade" => {
-            let (f1, f2, tau) = match candidate.place.as_str() {
-                "path-1" => (v[0], 0.0, v[1]),
-                "path-2" => (0.0, v[0], v[1]),
-                _ => (v[0], v[1], v[2]),
+        EffectId::DampingFade => {
+            let (f1, f2, tau) = match candidate.place.branch() {
+                Some(Branch::First) => (v[0], 0.0, v[1]),
+                Some(Branch::Second) => (0.0, v[0], v[1]),
+                None => (v[0], v[1], v[2]),
             };
             effects.damping_fade = Some(DampingFade {
                 fade_1_per_j: f1,
@@ -151,11 +152,21 @@ pub fn apply(effects: &mut Effects, candidate: &Candidate, v: &[f64]) {
                 cooling_time_s: tau,
             });
         }
-        "sensor_lag" => _ = effects.sensor_lag.get_or_insert_default().insert(column(), v[0]),
-        "sensor_skew" => _ = effects.sensor_skew.get_or_insert_default().insert(column(), v[0]),
-        "sensor_gain" => _ = effects.sensor_gain.get_or_insert_default().insert(column(), v[0]),
-        "sensor_drift" => _ = effects.sensor_drift.get_or_insert_default().insert(column(), v[0]),
-        "sensor_sign" => _ = effects.sensor_sign.get_or_insert_default().insert(column(), -1.0),
-        _ => effects.unlisted.extend(laws::law(&candidate.label, v)),
+        EffectId::SensorLag => _ = effects.sensor_lag.get_or_insert_default().insert(column(), v[0]),
+        EffectId::SensorSkew => _ = effects.sensor_skew.get_or_insert_default().insert(column(), v[0]),
+        EffectId::SensorGain => _ = effects.sensor_gain.get_or_insert_default().insert(column(), v[0]),
+        EffectId::SensorDrift => _ = effects.sensor_drift.get_or_insert_default().insert(column(), v[0]),
+        EffectId::SensorSign => _ = effects.sensor_sign.get_or_insert_default().insert(column(), -1.0),
+        EffectId::Unlisted => effects.unlisted.extend(laws::law(&candidate.label, v)),
+        // What only dampers and drives have is no candidate of a strut.
+        EffectId::CoulombFriction
+        | EffectId::StribeckFriction
+        | EffectId::PreslidingFriction
+        | EffectId::SmoothYield
+        | EffectId::ForceOffset
+        | EffectId::Stiffness
+        | EffectId::GasSpring
+        | EffectId::Backlash
+        | EffectId::Inertia => {}
     }
 }

@@ -1,17 +1,13 @@
 //! What the recordings excite, so that effects they cannot show are listed as not tested instead of absent.
 
-use oleo_plant_sim::strut::Inputs;
-
 use crate::recording::Recording;
-use crate::specimen::Channel;
+use crate::specimen::channel::Channel;
 
 /// Extremes and events over all recordings of a strut.
 #[derive(Debug, Clone, Default)]
 pub struct Excitation {
     /// Displacement range, m.
     pub displacement_m: (f64, f64),
-    /// Largest speed, m/s.
-    pub speed_m_s: f64,
     /// Largest departure from the first value per channel (`specimen::strut::CHANNELS`).
     pub departure: [f64; 5],
     /// Switching edges of each valve.
@@ -31,19 +27,18 @@ pub struct Excitation {
 impl Excitation {
     /// Goes through all recordings once.
     #[must_use]
-    pub fn of(recordings: &[Recording], inputs: &[Inputs], channels: &[Channel], displacement_noise: f64) -> Self {
+    pub fn of(recordings: &[Recording], channels: &[Channel], displacement_noise: f64) -> Self {
         let mut e = Self {
             interval_s: f64::INFINITY,
             displacement_m: (f64::MAX, f64::MIN),
             ..Self::default()
         };
-        for (r, i) in recordings.iter().zip(inputs) {
+        for r in recordings {
             let first = r.columns[0][0];
             for &x in &r.columns[0] {
                 e.displacement_m = (e.displacement_m.0.min(x), e.displacement_m.1.max(x));
                 e.moves |= (x - first).abs() > 10.0 * displacement_noise.max(1e-6);
             }
-            e.speed_m_s = i.motion.segments.iter().fold(e.speed_m_s, |m, s| m.max(s.to_m_s.abs()));
             for c in 0..5 {
                 let rest = r.columns[1 + c][0];
                 e.departure[c] = r.columns[1 + c]

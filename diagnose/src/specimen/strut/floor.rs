@@ -8,7 +8,7 @@ use oleo_plant_sim::strut::{Inputs, StrutModel, replay};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::specimen::Channel;
+use crate::specimen::channel::Channel;
 
 /// Fixed, so that a report is the same every time.
 const SEED: u64 = 1;
@@ -51,17 +51,19 @@ pub fn excess(model: &StrutModel, inputs: &Inputs, jittered: &Inputs, channels: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vocabulary::Column;
+    use oleo_interface::StrutValves;
 
     #[test]
     fn noise_of_nothing_adds_next_to_nothing_and_more_noise_adds_more() {
         let model = StrutModel::defender110(8000.0);
         let time_s: Vec<f64> = (0..2000).map(|k| 0.004 * f64::from(k)).collect();
         let x: Vec<f64> = time_s.iter().map(|t| 0.02 * libm::sin(8.0 * t) * t.min(1.0)).collect();
-        let inputs = Inputs::from_recording(&time_s, &x, &vec![[false; 3]; 2000], 5e-6);
-        let channels: Vec<Channel> = super::super::CHANNELS
+        let inputs = Inputs::from_recording(&time_s, &x, &vec![StrutValves::default(); 2000], 5e-6);
+        let channels: Vec<Channel> = super::super::channels::CHANNELS
             .iter()
             .map(|c| Channel {
-                name: (*c).into(),
+                column: Column::known(c),
                 noise: if *c == "force_N" { 12.0 } else { 4e3 },
             })
             .collect();

@@ -4,11 +4,12 @@
 //! of the main chamber; a drop in series with a path, a flow beside its damper, a damper or a valve that is weaker or
 //! stronger than believed; a gas law that bends. The search space is the product of places and quantities.
 
+use oleo_interface::Valve;
 use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
 
-use super::excitation::Excitation;
 use crate::parameter::Parameter;
-use crate::specimen::Candidate;
+use crate::specimen::candidate::{Candidate, ExclusionGroup};
+use crate::vocabulary::{Branch, EffectId, Site};
 
 /// What a table's numbers are, and how they are fitted.
 #[derive(Clone, Copy, PartialEq)]
@@ -30,7 +31,7 @@ enum Form {
 /// One kind of law.
 struct Kind {
     label: &'static str,
-    place: &'static str,
+    site: Site,
     law: LawPlace,
     argument: LawArgument,
     knots: &'static [f64],
@@ -103,7 +104,7 @@ const RELATIVE_VOLUME: &[f64] = &[0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0];
 
 const fn kind(
     label: &'static str,
-    place: &'static str,
+    site: Site,
     law: LawPlace,
     argument: LawArgument,
     knots: &'static [f64],
@@ -112,7 +113,7 @@ const fn kind(
 ) -> Kind {
     Kind {
         label,
-        place,
+        site,
         law,
         argument,
         knots,
@@ -128,7 +129,7 @@ use LawPlace as At;
 const KINDS: &[Kind] = &[
     kind(
         "force over displacement",
-        "main-seal",
+        Site::MainSeal,
         At::MainSeal,
         Displacement,
         TRAVEL_M,
@@ -137,17 +138,25 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "force over speed",
-        "main-seal",
+        Site::MainSeal,
         At::MainSeal,
         Speed,
         SPEED_M_S,
         20.0,
         Added,
     ),
-    kind("force over pressure", "main-seal", At::MainSeal, P1, P1_PA, 20.0, Added),
+    kind(
+        "force over pressure",
+        Site::MainSeal,
+        At::MainSeal,
+        P1,
+        P1_PA,
+        20.0,
+        Added,
+    ),
     kind(
         "friction over displacement",
-        "main-seal",
+        Site::MainSeal,
         At::MainSealFriction,
         Displacement,
         TRAVEL_M,
@@ -156,7 +165,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "friction over speed",
-        "main-seal",
+        Site::MainSeal,
         At::MainSealFriction,
         Speed,
         SPEED_M_S,
@@ -165,7 +174,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "friction over pressure",
-        "main-seal",
+        Site::MainSeal,
         At::MainSealFriction,
         P1,
         P1_PA,
@@ -174,7 +183,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "volume over pressure",
-        "main-chamber",
+        Site::MainChamber,
         At::MainChamber,
         P1,
         CHAMBER_PA,
@@ -183,7 +192,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "oil lost over pressure",
-        "main-chamber",
+        Site::MainChamber,
         At::MainChamberLoss,
         P1,
         P1_PA,
@@ -192,7 +201,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "series drop over flow, path 1",
-        "path-1",
+        Site::Path(Branch::First),
         At::Path1,
         Flow,
         FLOW_M3_S,
@@ -201,7 +210,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "series drop over flow, path 2",
-        "path-2",
+        Site::Path(Branch::Second),
         At::Path2,
         Flow,
         FLOW_M3_S,
@@ -210,7 +219,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "flow beside pack 1 over pressure drop",
-        "path-1",
+        Site::Path(Branch::First),
         At::BesidePack1,
         PressureDrop,
         PACK_PA,
@@ -219,7 +228,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "flow beside pack 2 over pressure drop",
-        "path-2",
+        Site::Path(Branch::Second),
         At::BesidePack2,
         PressureDrop,
         PACK_PA,
@@ -228,7 +237,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "opening beside pack 1 over displacement",
-        "path-1",
+        Site::Path(Branch::First),
         At::BesidePack1,
         Displacement,
         GROOVE_M,
@@ -237,7 +246,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "opening beside pack 2 over displacement",
-        "path-2",
+        Site::Path(Branch::Second),
         At::BesidePack2,
         Displacement,
         GROOVE_M,
@@ -246,7 +255,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "strength of pack 1 over displacement",
-        "path-1",
+        Site::Path(Branch::First),
         At::Pack1,
         Displacement,
         STROKE_M,
@@ -255,7 +264,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "strength of pack 2 over displacement",
-        "path-2",
+        Site::Path(Branch::Second),
         At::Pack2,
         Displacement,
         STROKE_M,
@@ -264,7 +273,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "flow of the open valves over pressure drop",
-        "valve-1..3",
+        Site::Valves,
         At::Valves,
         PressureDrop,
         VALVE_PA,
@@ -273,7 +282,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "flow of open valve 1 over pressure drop",
-        "valve-1",
+        Site::Valve(Valve::Bypass1),
         At::Valve1,
         PressureDrop,
         VALVE_PA,
@@ -282,7 +291,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "flow of open valve 2 over pressure drop",
-        "valve-2",
+        Site::Valve(Valve::Bypass2),
         At::Valve2,
         PressureDrop,
         VALVE_PA,
@@ -291,7 +300,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "flow of open valve 3 over pressure drop",
-        "valve-3",
+        Site::Valve(Valve::Spring),
         At::Valve3,
         PressureDrop,
         VALVE_PA,
@@ -300,7 +309,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "gas pressure over volume, accumulator 1",
-        "accumulator-1",
+        Site::Accumulator(Branch::First),
         At::Accumulator1,
         RelativeVolume,
         RELATIVE_VOLUME,
@@ -309,7 +318,7 @@ const KINDS: &[Kind] = &[
     ),
     kind(
         "gas pressure over volume, accumulator 2",
-        "accumulator-2",
+        Site::Accumulator(Branch::Second),
         At::Accumulator2,
         RelativeVolume,
         RELATIVE_VOLUME,
@@ -395,17 +404,16 @@ impl Kind {
 
 /// Candidates for every kind of law.
 #[must_use]
-pub fn candidates(_excitation: &Excitation, untestable: &Option<String>) -> Vec<Candidate> {
+pub fn candidates(untestable: &Option<String>) -> Vec<Candidate> {
     KINDS
         .iter()
         .map(|kind| Candidate {
-            id: "unlisted",
-            place: kind.place.to_owned(),
+            id: EffectId::Unlisted,
+            place: kind.site.clone().into(),
             label: kind.label.to_owned(),
             parameters: kind.parameters(),
             starts: kind.starts(),
-            instrument: false,
-            group: "unlisted",
+            group: Some(ExclusionGroup::Unlisted),
             untestable: untestable.clone(),
         })
         .collect()

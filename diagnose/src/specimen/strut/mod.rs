@@ -1,26 +1,39 @@
 //! The two-stage hydropneumatic strut: the belief as a [`StrutModel`], five compared channels, and the vocabulary.
 
 mod apply;
+mod calibration;
+mod channels;
+mod drawing;
 mod excitation;
 mod floor;
 mod laws;
+mod relations;
 mod vocabulary;
 
-use oleo_plant_sim::strut::{COLUMNS, Effects, Inputs, StrutModel, record_column, replay};
-
-pub use excitation::Excitation;
-pub use vocabulary::TERMS;
-
-use super::{Candidate, Channel, Hypothesis, Series, Specimen};
 use std::sync::OnceLock;
 
+use oleo_interface::{StrutValves, Valve};
+use oleo_plant_sim::strut::{COLUMNS, Effects, Inputs, StrutModel, record_column, replay};
 use rayon::prelude::*;
 
-use crate::parameter::Parameter;
-use crate::recording::{ColumnKind, ColumnSpec, Recording};
+use excitation::Excitation;
+pub use vocabulary::TERMS;
 
-/// Columns of the channels, in their order.
-pub const CHANNELS: [&str; 5] = ["force_N", "p1_Pa", "p2_Pa", "p3_Pa", "p4_Pa"];
+use calibration::Calibration;
+pub use channels::{CHANNELS, columns};
+use channels::{FORCE, P1, P2, P3, P4};
+use relations::Measured;
+
+use super::candidate::{Candidate, Hypothesis};
+use super::channel::{Channel, Series, StateSeries, stated};
+use super::contract::{BelievedModel, Specimen};
+use super::kind::SpecimenKind;
+use super::relation::MeasuredRelation;
+use crate::error::DiagnoseError;
+use crate::parameter::Parameter;
+use crate::recording::{ColumnSpec, GapPolicy, Recording};
+use crate::vocabulary::{Branch, Column, EffectId, Place, Site, State};
+
 /// Noise assumed where the model file states none.
 const DEFAULT_NOISE: [f64; 5] = [12.0, 4e3, 4e3, 4e3, 4e3];
 
@@ -33,41 +46,8 @@ pub struct TwoStageStrut {
     calibration: Vec<Calibration>,
     parameters: Vec<Parameter>,
     candidates: Vec<Candidate>,
-    excitation: Excitation,
     /// The inputs with displacement noise once more; made when somebody asks for the floor.
     jittered: OnceLock<Vec<Inputs>>,
-}
-
-/// What a calibration parameter changes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Calibration {
-    GasVolume(usize),
-    StaticPressure,
-    OilVolume,
-    Flow(usize),
-    BulkModulus,
-    TimeConstant(usize),
-    Temperature,
-    /// Offset of `COLUMNS[i]`.
-    Offset(usize),
-}
-
-/// Columns of a strut's recording: displacement, the five channels, the three switching signals.
-#[must_use]
-pub fn columns() -> Vec<ColumnSpec> {
-    let mut specs = vec![ColumnSpec {
-        name: "displacement_m".into(),
-        kind: ColumnKind::Input,
-    }];
-    specs.extend(CHANNELS.map(|c| ColumnSpec {
-        name: c.into(),
-        kind: ColumnKind::Output,
-    }));
-    specs.extend(["valve1", "valve2", "valve3"].map(|c| ColumnSpec {
-        name: c.into(),
-        kind: ColumnKind::Switch,
-    }));
-    specs
 }
 
 impl TwoStageStrut {
@@ -76,19 +56,12 @@ impl TwoStageStrut {
     /// # Errors
     /// A model whose numbers are impossible.
     pub fn new(model: StrutModel, recordings: Vec<Recording>) -> Result<Self, String> {
-        let noise = |column: &str, otherwise: f64| {
-            model
-                .noise
-                .get(column)
-                .copied()
-                .filter(|n| *n > 0.0)
-                .unwrap_or(otherwise)
-        };
+        let noise = |column: &str, otherwise: f64| stated(&model.noise, column).unwrap_or(otherwise);
         let channels: Vec<Channel> = CHANNELS
             .iter()
             .zip(DEFAULT_NOISE)
             .map(|(c, n)| Channel {
-                name: (*c).into(),
+                column: Column::known(c),
                 noise: noise(c, n),
             })
             .collect();
@@ -96,14 +69,14 @@ impl TwoStageStrut {
         let inputs: Vec<Inputs> = recordings
             .iter()
             .map(|r| {
-                let signals: Vec<[bool; 3]> = (0..r.len())
-                    .map(|k| [6, 7, 8].map(|c: usize| r.columns[c][k] > 0.5))
+                let signals: Vec<StrutValves<bool>> = (0..r.len())
+                    .map(|k| StrutValves::from_fn(|valve| r.columns[6 + valve.index()][k] > 0.5))
                     .collect();
                 Inputs::from_recording(&r.time_s, &r.columns[0], &signals, displacement_noise)
             })
             .collect();
-        let excitation = Excitation::of(&recordings, &inputs, &channels, displacement_noise);
-        let (calibration, parameters) = calibration(&model);
+        let excitation = Excitation::of(&recordings, &channels, displacement_noise);
+        let (calibration, parameters) = calibration::of(&model);
         let candidates = vocabulary::candidates(&model, &excitation);
         let strut = Self {
             model,
@@ -113,7 +86,6 @@ impl TwoStageStrut {
             calibration,
             parameters,
             candidates,
-            excitation,
             jittered: OnceLock::new(),
         };
         // A model that cannot even stand still is refused here, with the model's own words.
@@ -128,28 +100,10 @@ impl TwoStageStrut {
     }
 
     /// Takes a term out of the search, to see what is said of it without its name (self-test).
-    pub fn leave_out(&mut self, id: &str) {
+    pub fn leave_out(&mut self, id: EffectId) {
         for candidate in self.candidates.iter_mut().filter(|c| c.id == id) {
             candidate.untestable = Some("left out of the search".to_owned());
         }
-    }
-
-    /// The model as given.
-    #[must_use]
-    pub fn model(&self) -> &StrutModel {
-        &self.model
-    }
-
-    /// What the recordings excite.
-    #[must_use]
-    pub fn excitation(&self) -> &Excitation {
-        &self.excitation
-    }
-
-    /// Inputs of a recording, smoothed.
-    #[must_use]
-    pub fn inputs(&self, recording: usize) -> &Inputs {
-        &self.inputs[recording]
     }
 
     /// The model under a hypothesis, instruments included.
@@ -157,54 +111,18 @@ impl TwoStageStrut {
     pub fn applied(&self, hypothesis: &Hypothesis) -> StrutModel {
         let mut model = self.model.clone();
         for (what, &value) in self.calibration.iter().zip(&hypothesis.calibration) {
-            let e = &mut model.effects;
-            match *what {
-                Calibration::GasVolume(i) => model.accumulator[i].static_gas_volume_m3 *= 1.0 + value,
-                Calibration::StaticPressure => model.cylinder.static_pressure_pa *= 1.0 + value,
-                Calibration::OilVolume => model.cylinder.oil_volume_m3 *= 1.0 + value,
-                Calibration::Flow(i) => model.valve[i].flow_coefficient *= 1.0 + value,
-                Calibration::BulkModulus => {
-                    e.oil_compressibility
-                        .iter_mut()
-                        .for_each(|o| o.bulk_modulus_pa *= 1.0 + value);
-                }
-                Calibration::TimeConstant(i) => e.gas_heat_transfer.iter_mut().for_each(|h| {
-                    let tau = if i == 0 {
-                        &mut h.time_constant_1_s
-                    } else {
-                        &mut h.time_constant_2_s
-                    };
-                    *tau *= 1.0 + value;
-                }),
-                Calibration::Temperature => model.gas.temperature_k += value,
-                Calibration::Offset(i) => {
-                    *e.sensor_offset
-                        .get_or_insert_default()
-                        .entry(COLUMNS[i].into())
-                        .or_default() += value;
-                }
-            }
+            what.apply(&mut model, value);
         }
         for (index, values) in &hypothesis.effects {
             apply::apply(&mut model.effects, &self.candidates[*index], values);
         }
         model
     }
-}
 
-/// A valve or a pressure has settled after this time, s: three times the slowest valve of the report.
-const SETTLED_S: f64 = 0.3;
-
-impl TwoStageStrut {
-    fn settled(&self, recording: usize) -> usize {
-        (SETTLED_S / self.recordings[recording].interval_s().max(1e-6)).ceil() as usize
-    }
-
-    fn held(&self, recording: usize, sample: usize, valve: usize, open: bool) -> bool {
-        let from = sample.saturating_sub(self.settled(recording));
-        self.inputs[recording].signals[from..=sample]
-            .iter()
-            .all(|s| s[valve] == open)
+    /// What was measured, for relations that need no model.
+    fn as_measured(&self) -> Measured<'_> {
+        let area = self.model.piston_area_m2();
+        Measured::new(&self.recordings, &self.inputs, &self.channels, area)
     }
 
     /// Time since the last switching edge, s; the time itself before the first.
@@ -224,106 +142,30 @@ impl TwoStageStrut {
     }
 }
 
-fn calibration(model: &StrutModel) -> (Vec<Calibration>, Vec<Parameter>) {
-    let tolerance = |key: &str| model.tolerance.get(key).copied().filter(|t| *t > 0.0);
-    let mut out = Vec::new();
-    let mut add = |what: Calibration, key: String, tolerance: Option<f64>| {
-        if let Some(t) = tolerance {
-            let parameter = Parameter::calibration(key, t);
-            let instrument = matches!(what, Calibration::Offset(i) if i > 0);
-            out.push((
-                what,
-                if instrument {
-                    parameter.on_instrument()
-                } else {
-                    parameter
-                },
-            ));
-        }
-    };
-    for i in 0..2 {
-        add(
-            Calibration::GasVolume(i),
-            format!("static_gas_volume_{}", i + 1),
-            tolerance("static_gas_volume"),
-        );
+impl BelievedModel for StrutModel {
+    fn columns(&self) -> Vec<ColumnSpec> {
+        columns()
     }
-    add(
-        Calibration::StaticPressure,
-        "static_pressure".into(),
-        tolerance("static_pressure"),
-    );
-    for i in 0..3 {
-        add(
-            Calibration::Flow(i),
-            format!("flow_coefficient_{}", i + 1),
-            tolerance("flow_coefficient"),
-        );
+
+    fn gap_policy(&self) -> GapPolicy {
+        GapPolicy::Cut
     }
-    // Also where the oil is believed rigid: its volume matters as soon as it is not.
-    add(Calibration::OilVolume, "oil_volume".into(), tolerance("oil_volume"));
-    if model.effects.oil_compressibility.is_some() {
-        add(
-            Calibration::BulkModulus,
-            "bulk_modulus".into(),
-            tolerance("bulk_modulus"),
-        );
+
+    fn with_recordings(self: Box<Self>, recordings: Vec<Recording>) -> Result<Box<dyn Specimen>, DiagnoseError> {
+        let strut = TwoStageStrut::new(*self, recordings).map_err(DiagnoseError::Model)?;
+        Ok(Box::new(strut))
     }
-    if model.effects.gas_heat_transfer.is_some() {
-        for i in 0..2 {
-            add(
-                Calibration::TimeConstant(i),
-                format!("time_constant_{}", i + 1),
-                tolerance("time_constant"),
-            );
-        }
-    }
-    // An ideal gas at ambient temperature has the same pressures at any ambient temperature.
-    if model.effects.real_gas.is_some() {
-        add(
-            Calibration::Temperature,
-            "temperature_K".into(),
-            tolerance("temperature_K"),
-        );
-    }
-    add(
-        Calibration::Offset(0),
-        "displacement_offset_m".into(),
-        tolerance("displacement_offset_m"),
-    );
-    add(
-        Calibration::Offset(1),
-        "force_offset_N".into(),
-        tolerance("force_offset_N"),
-    );
-    for (i, column) in COLUMNS.iter().enumerate().skip(2) {
-        add(
-            Calibration::Offset(i),
-            format!("{column} offset"),
-            tolerance("pressure_offset_Pa"),
-        );
-    }
-    out.into_iter().unzip()
 }
 
 impl Specimen for TwoStageStrut {
-    fn kind(&self) -> &'static str {
-        "two-stage hydropneumatic strut"
+    fn kind(&self) -> SpecimenKind {
+        SpecimenKind::TwoStageStrut
+    }
+    fn recordings(&self) -> &[Recording] {
+        &self.recordings
     }
     fn channels(&self) -> &[Channel] {
         &self.channels
-    }
-    fn recordings(&self) -> usize {
-        self.recordings.len()
-    }
-    fn recording_name(&self, recording: usize) -> &str {
-        &self.recordings[recording].name
-    }
-    fn time_s(&self, recording: usize) -> &[f64] {
-        &self.recordings[recording].time_s
-    }
-    fn measured(&self, recording: usize, channel: usize) -> &[f64] {
-        &self.recordings[recording].columns[1 + channel]
     }
     fn calibration(&self) -> &[Parameter] {
         &self.parameters
@@ -379,43 +221,56 @@ impl Specimen for TwoStageStrut {
         serde_json::to_value(law).ok()
     }
 
-    fn piston_area_m2(&self) -> Option<f64> {
-        Some(self.model.piston_area_m2())
+    fn inputs_in_words(&self) -> &'static str {
+        "displacement and switching signals"
     }
 
-    fn quiet(&self, recording: usize, sample: usize, speed_m_s: f64) -> bool {
-        let segments = &self.inputs[recording].motion.segments;
-        let back = self.settled(recording);
-        sample >= back
-            && segments[sample - back..sample]
-                .iter()
-                .all(|s| s.to_m_s.abs() < speed_m_s)
+    fn is_believed_complete(&self) -> bool {
+        true
     }
 
-    fn valve_open(&self, recording: usize, sample: usize, valve: usize) -> bool {
-        self.held(recording, sample, valve, true)
+    fn measured_relations(&self) -> Vec<MeasuredRelation> {
+        self.as_measured().relations()
     }
 
-    fn valve_shut(&self, recording: usize, sample: usize, valve: usize) -> bool {
-        self.held(recording, sample, valve, false)
+    fn settings(&self, recording: usize, sample: usize) -> Vec<String> {
+        self.as_measured().settings(recording, sample)
     }
 
-    fn states(&self, recording: usize) -> Vec<(&'static str, Vec<f64>)> {
+    fn nearest_channels(&self, place: &Place) -> Vec<Column> {
+        let known = |channels: &[usize]| channels.iter().map(|&c| Column::known(CHANNELS[c])).collect();
+        match &place.site {
+            Site::MainSeal | Site::EndStop => known(&[FORCE]),
+            Site::MainChamber => known(&[P1]),
+            Site::Accumulator(Branch::First) => known(&[P2]),
+            Site::Accumulator(Branch::Second) => known(&[P4]),
+            Site::Path(Branch::First) => known(&[P1, P2]),
+            Site::Path(Branch::Second) | Site::Valve(Valve::Spring) => known(&[P3, P4]),
+            Site::Sensor(column) => vec![column.clone()],
+            _ => vec![],
+        }
+    }
+
+    fn drawing(&self, found: &[&Place]) -> Option<String> {
+        Some(drawing::drawing(found))
+    }
+
+    fn states(&self, recording: usize) -> Vec<StateSeries> {
         let r = &self.recordings[recording];
         let motion = &self.inputs[recording].motion;
         let mut speed: Vec<f64> = motion.segments.iter().map(|s| s.to_m_s).collect();
         speed.insert(0, 0.0);
         let across = |a: usize, b: usize| r.columns[a].iter().zip(&r.columns[b]).map(|(a, b)| a - b).collect();
         let mut states = vec![
-            ("displacement, m", r.columns[0].clone()),
-            ("speed, m/s", speed),
-            ("p1, Pa", r.columns[2].clone()),
-            ("p1 - p2, Pa", across(2, 3)),
-            ("p1 - p3, Pa", across(2, 4)),
-            ("p3 - p4, Pa", across(4, 5)),
+            StateSeries::new(State::Displacement, r.columns[0].clone()),
+            StateSeries::new(State::Speed, speed),
+            StateSeries::new(State::P1, r.columns[2].clone()),
+            StateSeries::new(State::P1MinusP2, across(2, 3)),
+            StateSeries::new(State::P1MinusP3, across(2, 4)),
+            StateSeries::new(State::P3MinusP4, across(4, 5)),
         ];
         if let Some(since) = self.since_edge(recording) {
-            states.push(("time since a switching edge, s", since));
+            states.push(StateSeries::new(State::TimeSinceSwitching, since));
         }
         states
     }

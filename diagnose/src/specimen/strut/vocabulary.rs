@@ -2,38 +2,42 @@
 //!
 //! A term that the model already has is not a candidate; its numbers are calibration.
 
+use oleo_interface::Valve;
 use oleo_plant_sim::strut::{COLUMNS, StrutModel};
 
+use super::channels::CHANNELS;
 use super::excitation::Excitation;
-use super::{CHANNELS, laws};
+use super::laws;
 use crate::parameter::Parameter;
-use crate::specimen::{Candidate, instrument};
+use crate::specimen::candidate::{Candidate, ExclusionGroup};
+use crate::specimen::instrument;
+use crate::vocabulary::{Branch, Column, EffectId, Site};
 
 /// Ids of the vocabulary, and of what has no name in it.
-pub const TERMS: [&str; 23] = [
-    "oil_compressibility",
-    "entrained_air",
-    "gas_heat_transfer",
-    "real_gas",
-    "gas_charge_error",
-    "seal_friction",
-    "side_load_friction",
-    "accumulator_piston_friction",
-    "damper_leakage",
-    "line_resistance",
-    "line_inertance",
-    "valve_delay",
-    "valve_transition",
-    "valve3_leakage",
-    "bump_stop",
-    "mount_compliance",
-    "damping_fade",
-    "sensor_lag",
-    "sensor_gain",
-    "sensor_drift",
-    "sensor_skew",
-    "sensor_sign",
-    "unlisted",
+pub const TERMS: [EffectId; 23] = [
+    EffectId::OilCompressibility,
+    EffectId::EntrainedAir,
+    EffectId::GasHeatTransfer,
+    EffectId::RealGas,
+    EffectId::GasChargeError,
+    EffectId::SealFriction,
+    EffectId::SideLoadFriction,
+    EffectId::AccumulatorPistonFriction,
+    EffectId::DamperLeakage,
+    EffectId::LineResistance,
+    EffectId::LineInertance,
+    EffectId::ValveDelay,
+    EffectId::ValveTransition,
+    EffectId::Valve3Leakage,
+    EffectId::BumpStop,
+    EffectId::MountCompliance,
+    EffectId::DampingFade,
+    EffectId::SensorLag,
+    EffectId::SensorGain,
+    EffectId::SensorDrift,
+    EffectId::SensorSkew,
+    EffectId::SensorSign,
+    EffectId::Unlisted,
 ];
 
 /// Everything that may be missing from `model`.
@@ -43,22 +47,21 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
     let mut all = Vec::new();
     let still = (!excitation.moves).then(|| "the strut does not move; record moves of at least 10 mm".to_owned());
     let mut add =
-        |id: &'static str, place: &str, parameters: Vec<Parameter>, starts: Vec<Vec<f64>>, cannot: Option<String>| {
+        |id: EffectId, site: Site, parameters: Vec<Parameter>, starts: Vec<Vec<f64>>, cannot: Option<String>| {
             all.push(Candidate {
                 id,
-                place: place.to_owned(),
+                place: site.into(),
                 label: String::new(),
                 parameters,
                 starts,
-                instrument: false,
-                group: if id == "damping_fade" { "damping_fade" } else { "" },
+                group: (id == EffectId::DampingFade).then_some(ExclusionGroup::DampingFade),
                 untestable: still.clone().or(cannot),
             });
         };
     if e.oil_compressibility.is_none() {
         add(
-            "oil_compressibility",
-            "main-chamber",
+            EffectId::OilCompressibility,
+            Site::MainChamber,
             vec![Parameter::amount("compressibility_1_Pa", 1e-10, 2e-8).shown_as_inverse("bulk_modulus_Pa")],
             vec![],
             None,
@@ -67,8 +70,8 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
     if e.entrained_air.is_none() {
         let exponent = Parameter::linear("polytropic_exponent", 1.2, 0.1, (1.0, 1.4));
         add(
-            "entrained_air",
-            "main-chamber",
+            EffectId::EntrainedAir,
+            Site::MainChamber,
             vec![Parameter::amount("volume_fraction", 1e-3, 0.3), exponent],
             vec![vec![5e-3, 1.2]],
             None,
@@ -81,17 +84,24 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         } else {
             vec![]
         };
-        add("gas_heat_transfer", "accumulators", vec![tau(1), tau(2)], shared, None);
+        add(
+            EffectId::GasHeatTransfer,
+            Site::Accumulators,
+            vec![tau(1), tau(2)],
+            shared,
+            None,
+        );
     }
     if e.real_gas.is_none() {
-        add("real_gas", "accumulators", vec![], vec![], None);
+        add(EffectId::RealGas, Site::Accumulators, vec![], vec![], None);
     }
     if e.gas_charge_error.is_none() {
-        for i in 1..=2 {
+        for branch in Branch::ALL {
+            let i = branch.number();
             let error = Parameter::linear(format!("relative_error_{i}"), 0.0, 0.02, (-0.7, 2.0));
             add(
-                "gas_charge_error",
-                &format!("accumulator-{i}"),
+                EffectId::GasChargeError,
+                Site::Accumulator(branch),
                 vec![error],
                 vec![],
                 None,
@@ -104,12 +114,12 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
             Parameter::linear("breakaway_over_coulomb", 1.3, 0.2, (1.0, 4.0)),
             Parameter::log("stribeck_speed_m_s", 0.02, (1e-3, 0.5)),
         ];
-        add("seal_friction", "main-seal", parameters, vec![], None);
+        add(EffectId::SealFriction, Site::MainSeal, parameters, vec![], None);
     }
     if e.side_load_friction.is_none() {
         add(
-            "side_load_friction",
-            "main-seal",
+            EffectId::SideLoadFriction,
+            Site::MainSeal,
             vec![
                 Parameter::amount("coefficient", 0.003, 0.5),
                 Parameter::linear("overlap_growth_1_m", 0.0, 1.0, (-4.0, 6.0)),
@@ -119,11 +129,12 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         );
     }
     if e.accumulator_piston_friction.is_none() {
-        for i in 1..=2 {
+        for branch in Branch::ALL {
+            let i = branch.number();
             let pressure = Parameter::amount(format!("pressure_{i}_Pa"), 1e4, 3e6);
             add(
-                "accumulator_piston_friction",
-                &format!("accumulator-{i}"),
+                EffectId::AccumulatorPistonFriction,
+                Site::Accumulator(branch),
                 vec![pressure, Parameter::log("presliding_volume_m3", 3e-7, (1e-8, 2e-5))],
                 vec![vec![1e5, 5e-7]],
                 None,
@@ -131,11 +142,12 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         }
     }
     if e.damper_leakage.is_none() {
-        for i in 1..=2 {
+        for branch in Branch::ALL {
+            let i = branch.number();
             let leak = Parameter::amount(format!("flow_coefficient_{i}"), 1e-8, 1e-5);
             add(
-                "damper_leakage",
-                &format!("path-{i}"),
+                EffectId::DamperLeakage,
+                Site::Path(branch),
                 vec![leak],
                 vec![],
                 slow(excitation, i),
@@ -143,11 +155,12 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         }
     }
     if e.line_resistance.is_none() {
-        for i in 1..=2 {
+        for branch in Branch::ALL {
+            let i = branch.number();
             let resistance = Parameter::amount(format!("resistance_{i}_Pa_s_m3"), 3e7, 1e11);
             add(
-                "line_resistance",
-                &format!("path-{i}"),
+                EffectId::LineResistance,
+                Site::Path(branch),
                 vec![resistance],
                 vec![],
                 slow(excitation, i),
@@ -156,7 +169,13 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
     }
     if e.line_inertance.is_none() {
         let inertance = Parameter::amount("inertance_2_kg_m4", 1e6, 1e9);
-        add("line_inertance", "path-2", vec![inertance], vec![], slow(excitation, 2));
+        add(
+            EffectId::LineInertance,
+            Site::Path(Branch::Second),
+            vec![inertance],
+            vec![],
+            slow(excitation, 2),
+        );
     }
     let switched = excitation.edges.iter().any(|&n| n > 0);
     let no_edges = (!switched).then(|| "no valve is switched; record steps at several pressure differences".to_owned());
@@ -167,18 +186,18 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
             Parameter::linear("c1_s_MPa", 0.0, 0.002, (-0.05, 0.05)),
             Parameter::linear("c2_s_MPa2", 0.0, 2e-4, (-0.005, 0.005)),
         ];
-        add("valve_delay", "valve-1..3", parameters, vec![], no_edges.clone());
+        add(EffectId::ValveDelay, Site::Valves, parameters, vec![], no_edges.clone());
     }
     if e.valve_transition.is_none() {
-        add("valve_transition", "valve-1..3", vec![], vec![], no_edges);
+        add(EffectId::ValveTransition, Site::Valves, vec![], vec![], no_edges);
     }
     if e.valve3_leakage.is_none() {
         let cannot = (excitation.valve3_holding_s < 0.5).then(|| {
             "valve 3 is never closed against a pressure difference; close it at 30 mm of jounce and hold 5 s".to_owned()
         });
         add(
-            "valve3_leakage",
-            "valve-3",
+            EffectId::Valve3Leakage,
+            Site::Valve(Valve::Spring),
             vec![Parameter::amount("flow_coefficient", 1e-10, 1e-6)],
             vec![],
             cannot,
@@ -195,8 +214,8 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         ];
         let at = |a: f64, b: f64| vec![a * high, b * low, 0.0, 0.0];
         add(
-            "bump_stop",
-            "end-stop",
+            EffectId::BumpStop,
+            Site::EndStop,
             parameters,
             vec![at(0.7, 0.7), at(0.5, 1.1), at(1.1, 0.5), at(0.6, 0.95)],
             None,
@@ -204,8 +223,8 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
     }
     if e.mount_compliance.is_none() {
         add(
-            "mount_compliance",
-            "mount",
+            EffectId::MountCompliance,
+            Site::Mount,
             vec![Parameter::amount("compliance_m_N", 1e-8, 1e-4).shown_as_inverse("stiffness_N_m")],
             vec![],
             None,
@@ -215,23 +234,23 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         let cooling = || Parameter::log("cooling_time_s", 60.0, (1.0, 1e5));
         let fade = |i: usize| Parameter::amount(format!("fade_{i}_per_J"), 1e-5, 1e-2);
         add(
-            "damping_fade",
-            "path-1",
+            EffectId::DampingFade,
+            Site::Path(Branch::First),
             vec![fade(1), cooling()],
             vec![],
             slow(excitation, 1),
         );
         add(
-            "damping_fade",
-            "path-2",
+            EffectId::DampingFade,
+            Site::Path(Branch::Second),
             vec![fade(2), cooling()],
             vec![],
             slow(excitation, 2),
         );
         let both = slow(excitation, 1).or(slow(excitation, 2));
         add(
-            "damping_fade",
-            "path-1+path-2",
+            EffectId::DampingFade,
+            Site::Paths,
             vec![fade(1), fade(2), cooling()],
             vec![],
             both,
@@ -243,9 +262,14 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         } else {
             excitation.departure[k - 1]
         };
-        let mut faults = instrument::faults(column, size, excitation.duration_s, excitation.interval_s);
+        let mut faults = instrument::faults(
+            &Column::known(column),
+            size,
+            excitation.duration_s,
+            excitation.interval_s,
+        );
         faults.push(Candidate {
-            id: "sensor_sign",
+            id: EffectId::SensorSign,
             parameters: vec![],
             ..faults[0].clone()
         });
@@ -258,7 +282,7 @@ pub fn candidates(model: &StrutModel, excitation: &Excitation) -> Vec<Candidate>
         }
     }
     debug_assert_eq!(CHANNELS[0], COLUMNS[1]);
-    all.extend(laws::candidates(excitation, &still));
+    all.extend(laws::candidates(&still));
     all
 }
 

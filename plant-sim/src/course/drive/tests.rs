@@ -27,9 +27,9 @@ fn severe() -> Manoeuvre {
 
 fn on_struts(course: &Course) -> Drive<StrutElement> {
     let p = VehicleParameters::defender110();
-    let elements = p
-        .static_strut_load_n()
-        .map(|load_n| StrutElement::new(Strut::at_rest(&StrutModel::defender110(load_n), [true; 3]).unwrap()));
+    let elements = p.static_strut_load_n().map(|load_n| {
+        StrutElement::new(Strut::at_rest(&StrutModel::defender110(load_n), StrutValves::splat(true)).unwrap())
+    });
     Drive::begin(course, &p, &HandlingParameters::defender110(), elements).unwrap()
 }
 

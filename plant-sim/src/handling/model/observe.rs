@@ -5,7 +5,7 @@ use oleo_interface::{Axle, Axles, Corners};
 
 use super::{HandlingModel, half_twist};
 use crate::handling::attitude::yaw_pitch_roll;
-use crate::handling::axle::AxleCoordinates;
+use crate::handling::axle_place::AxleCoordinates;
 use crate::handling::motion::HandlingMotion;
 use crate::handling::wheel::WheelState;
 use crate::vehicle::suspension::SuspensionElement;
@@ -93,7 +93,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
     /// Displacement of the four struts from rest, m, compression positive.
     pub fn strut_displacement_m(&self) -> Corners<f64> {
         let places = self.places();
-        Corners::from_axles(Axles::from_fn(|axle| {
+        Corners::from_left_right(Axles::from_fn(|axle| {
             let twist = half_twist(axle) * self.twist;
             self.masses.axles[axle].compression(&places[axle], self.axles[axle], twist)
         }))

@@ -36,7 +36,7 @@ fn on_struts(road: Arc<dyn Road>, speed: f64) -> HandlingVehicle {
     let p = parameters();
     let struts = p
         .static_strut_load_n()
-        .map(|load| Strut::at_rest(&StrutModel::defender110(load), [true; 3]).unwrap());
+        .map(|load| Strut::at_rest(&StrutModel::defender110(load), StrutValves::splat(true)).unwrap());
     HandlingVehicle::new(&p, &HandlingParameters::defender110(), struts, road, speed).unwrap()
 }
 
@@ -283,7 +283,8 @@ fn tripped_it_rolls_over_and_the_equations_hold_beyond() {
 #[test]
 fn a_strut_that_does_not_carry_its_corner_is_refused() {
     let p = parameters();
-    let struts = Corners::from_fn(|_| Strut::at_rest(&StrutModel::defender110(3000.0), [true; 3]).unwrap());
+    let struts =
+        Corners::from_fn(|_| Strut::at_rest(&StrutModel::defender110(3000.0), StrutValves::splat(true)).unwrap());
     let refused = HandlingVehicle::new(&p, &preset(), struts, Arc::new(Flat), 10.0);
     assert!(matches!(
         refused.err(),

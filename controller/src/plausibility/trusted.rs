@@ -1,0 +1,85 @@
+//! Readings that may be used, and the values that replace those that may not.
+
+use oleo_interface::{Absolute, Corners, Gauge, StrutPressures};
+
+use super::limits::DISPLACEMENT;
+use super::verdict::Verdicts;
+use crate::failsafe::{FaultCode, Health};
+use crate::reading::Inputs;
+use crate::sensor_message::MessageSet;
+
+/// Readings that may be used, measured or replaced: always finite and within their range.
+/// See [`State`](super::State) for an example.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Trusted {
+    /// Strut displacement from the static position, m, compression positive, -0.25 to 0.25.
+    pub displacement_m: Corners<f32>,
+    /// Pressures p1 to p4 of each strut, Pa, -4.9e6 to 35e6.
+    pub pressure: Corners<StrutPressures<Gauge<f32>>>,
+    /// Gas pressure of each strut at its static position, Pa, learnt at start-up.
+    pub charge: Corners<Absolute<f32>>,
+    /// Health of the readings, for the mode machine.
+    pub health: Health,
+    /// Number of readings that were replaced, 0 to 20.
+    pub invalid_readings: u8,
+}
+
+impl Trusted {
+    /// Sums up the verdicts for the mode machine.
+    pub(super) fn judge(&mut self, verdicts: &Corners<Verdicts>, inputs: &Inputs) {
+        let mut cause = FaultCode::None;
+        for (corner, verdict) in verdicts.iter() {
+            if *verdict == Verdicts::default() {
+                continue;
+            }
+            for fault in verdict.all().filter(|&fault| fault != FaultCode::None) {
+                self.health.affected[corner] = true;
+                self.invalid_readings = self.invalid_readings.saturating_add(1);
+                cause = cause.max(fault);
+            }
+        }
+        if inputs.lost_messages == MessageSet::ALL {
+            cause = FaultCode::BusSilent;
+        }
+        if inputs.solenoid_failed {
+            cause = FaultCode::Solenoid;
+        }
+        self.health.cause = cause;
+    }
+
+    /// Replaces what was found wrong.
+    pub(super) fn substitute(&mut self, verdicts: &Corners<Verdicts>) {
+        let good = verdicts
+            .each_ref()
+            .map(|verdict| verdict.displacement == FaultCode::None);
+        let [fl, fr, rl, rr] = self.displacement_m.into_array();
+        // The body is rigid: left and right differ equally at both axles.
+        self.displacement_m = Corners::from_array(match good.into_array() {
+            [false, true, true, true] => [fr + rl - rr, fr, rl, rr],
+            [true, false, true, true] => [fl, fl + rr - rl, rl, rr],
+            [true, true, false, true] => [fl, fr, rr + fl - fr, rr],
+            [true, true, true, false] => [fl, fr, rl, rl + fr - fl],
+            _ => [fl, fr, rl, rr],
+        })
+        .map(|x| x.clamp(DISPLACEMENT.least, DISPLACEMENT.most));
+        for (corner, verdict) in verdicts.iter() {
+            let pressure = &mut self.pressure[corner];
+            let good = verdict.pressure.map(|fault| fault == FaultCode::None);
+            let main = if good.p1 {
+                pressure.p1
+            } else if good.p2 {
+                pressure.p2
+            } else if good.p3 {
+                pressure.p3
+            } else {
+                pressure.p1
+            };
+            *pressure = StrutPressures {
+                p1: main,
+                p2: if good.p2 { pressure.p2 } else { main },
+                p3: if good.p3 { pressure.p3 } else { main },
+                p4: pressure.p4,
+            };
+        }
+    }
+}

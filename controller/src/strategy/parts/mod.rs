@@ -1,0 +1,5 @@
+//! What strategies are built from.
+
+pub mod rollover_guard;
+pub mod running_rms;
+pub mod semi_active;

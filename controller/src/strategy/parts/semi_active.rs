@@ -1,0 +1,228 @@
+//! Damper switching in ride mode: high damping where it calms the body.
+//!
+//! A damper can only oppose the relative motion of body and wheel. Let `w` be the extension speed of the strut (the negative of its
+//! compression speed), and `v` and `a` the body's vertical velocity and acceleration above it. High damping helps where
+//!
+//! ```text
+//!   Karnopp             v w > 0      the damper pulls against the body's velocity (skyhook, two stages)
+//!   Hoelscher & Huang   a w > 0      the damper's force reduces |a|
+//! ```
+//!
+//! Sources: Karnopp, Crosby & Harwood, "Vibration control using semi-active force generators", J. Eng. Ind. 96 (1974);
+//! Hoelscher & Huang as described by Nell & Steyn (report, reference 16). Both are *recalled*.
+//!
+//! Valves of 40 to 90 ms lag by 14 to 65 degrees at 1 to 2 Hz and cannot follow the wheel at all. So `w` is lagged at 4 Hz, and
+//! switching has a dead band and needs a least body motion: where the body hardly moves, the damping stays low and the valves
+//! rest. The least motion grows with the running RMS of the vertical acceleration. A body that swings at 1.5 Hz has
+//! `v = a / 9.4 s`; where its velocity is much less than that, the acceleration comes from the wheels, and high damping would
+//! only pass on more of it.
+
+use oleo_interface::Corners;
+use strum::{EnumString, IntoStaticStr, VariantNames};
+
+use crate::estimate::Estimate;
+use crate::filter::{LowPass, at_least};
+use crate::range::{ConfigurationError, within};
+
+/// Square of the body velocity below which Karnopp's rule asks for low damping, m2/s2.
+const LEAST_VELOCITY_2: f32 = 0.08 * 0.08;
+/// Square of the body acceleration below which Hoelscher and Huang's rule asks for low damping, m2/s4.
+const LEAST_ACCELERATION_2: f32 = 0.5 * 0.5;
+/// Half width of the dead band of the relative speed, m/s.
+const DEAD_BAND_M_S: f32 = 0.02;
+/// Compression above which damping is high while the strut moves further in, and extension above which it is high while the
+/// strut moves further out, m: the stops are harder than any damper.
+const NEAR_STOP_M: (f32, f32) = (0.06, 0.11);
+
+/// How dampers are switched in ride mode. The names are those of the command line: `hoelscher-huang`.
+///
+/// ```
+/// use oleo_controller::DamperPolicy;
+/// assert_eq!("low".parse(), Ok(DamperPolicy::Low));
+/// assert_eq!(DamperPolicy::HoelscherHuang.name(), "hoelscher-huang");
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, EnumString, IntoStaticStr, VariantNames)]
+#[strum(serialize_all = "kebab-case")]
+pub enum DamperPolicy {
+    /// Low damping always.
+    Low,
+    /// High where the damper's force opposes the body's velocity (skyhook in two stages).
+    #[default]
+    Karnopp,
+    /// High where the damper's force opposes the body's acceleration.
+    HoelscherHuang,
+}
+
+impl DamperPolicy {
+    /// Name on the command line and in scenario files.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+}
+
+/// Policy and thresholds. See [`strategy::Tuning`](crate::strategy::Tuning) for an example.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// Which rule decides.
+    pub policy: DamperPolicy,
+    /// Body velocity over the running RMS of vertical acceleration that Karnopp's rule needs to act, s, 0 to 10.
+    pub body_velocity_share_s: f32,
+    /// Body acceleration below 4 Hz over the running RMS that Hoelscher and Huang's rule needs to act, 0 to 100.
+    pub body_acceleration_share: f32,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self {
+            policy: DamperPolicy::Karnopp,
+            body_velocity_share_s: 0.35,  // measured: docs/controller.md
+            body_acceleration_share: 2.2, // measured: docs/controller.md
+        }
+    }
+}
+
+impl Tuning {
+    /// Whether every value is within its range.
+    pub(crate) fn check(&self) -> Result<(), ConfigurationError> {
+        within(
+            "tuning.strategy.ride_handling.dampers.body_velocity_share_s",
+            self.body_velocity_share_s,
+            0.0,
+            10.0,
+        )?;
+        within(
+            "tuning.strategy.ride_handling.dampers.body_acceleration_share",
+            self.body_acceleration_share,
+            0.0,
+            100.0,
+        )
+    }
+}
+
+/// Policy, squared thresholds and the filter of strut speed and body acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Parameters {
+    policy: DamperPolicy,
+    body_band: LowPass,
+    body_velocity_share_2: f32,
+    body_acceleration_share_2: f32,
+}
+
+impl Parameters {
+    /// From a tuning that has been checked.
+    pub(crate) fn new(tuning: &Tuning) -> Self {
+        let square = |x: f32| x * x;
+        Self {
+            policy: tuning.policy,
+            // Body frequencies only: the valves cannot follow the wheel.
+            body_band: LowPass::from_corner_hz(4.0),
+            body_velocity_share_2: square(tuning.body_velocity_share_s),
+            body_acceleration_share_2: square(tuning.body_acceleration_share),
+        }
+    }
+}
+
+/// State of the four corners.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct State {
+    corners: Corners<CornerState>,
+}
+
+/// State of one corner.
+#[derive(Clone, Copy, Debug, Default)]
+struct CornerState {
+    speed_m_s: f32,
+    acceleration_m_s2: f32,
+    high: bool,
+}
+
+impl State {
+    /// One tick; returns whether low damping is wanted at each corner.
+    pub fn step(
+        &mut self,
+        parameters: &Parameters,
+        estimate: &Estimate,
+        displacement_m: &Corners<f32>,
+    ) -> Corners<bool> {
+        let band = &parameters.body_band;
+        for (corner, state) in self.corners.iter_mut() {
+            let speed = estimate.strut_speed_m_s[corner];
+            let extension = -band.step(&mut state.speed_m_s, speed);
+            let acceleration = estimate.corner_acceleration_m_s2[corner];
+            let body_acceleration = band.step(&mut state.acceleration_m_s2, acceleration);
+            let (body, least_2) = match parameters.policy {
+                DamperPolicy::Low => (0.0, f32::MAX),
+                DamperPolicy::Karnopp => (
+                    estimate.corner_velocity_m_s[corner],
+                    at_least(
+                        parameters.body_velocity_share_2 * estimate.vertical_mean_square,
+                        LEAST_VELOCITY_2,
+                    ),
+                ),
+                DamperPolicy::HoelscherHuang => (
+                    body_acceleration,
+                    at_least(
+                        parameters.body_acceleration_share_2 * estimate.vertical_mean_square,
+                        LEAST_ACCELERATION_2,
+                    ),
+                ),
+            };
+            let x = displacement_m[corner];
+            let (jounce, rebound) = NEAR_STOP_M;
+            let near_stop = (x > jounce && speed > 0.0) || (x < -rebound && speed < 0.0);
+            let opposes = if body < 0.0 { -extension } else { extension };
+            if near_stop {
+                state.high = true;
+            } else if body * body < least_2 || opposes < -DEAD_BAND_M_S {
+                state.high = false;
+            } else if opposes > DEAD_BAND_M_S {
+                state.high = true;
+            }
+        }
+        self.corners.map(|state| !state.high)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settled(policy: DamperPolicy, extension_m_s: f32, velocity: f32, acceleration: f32, x_m: f32) -> bool {
+        let parameters = Parameters::new(&Tuning {
+            policy,
+            ..Tuning::default()
+        });
+        let estimate = Estimate {
+            strut_speed_m_s: Corners::splat(-extension_m_s),
+            corner_velocity_m_s: Corners::splat(velocity),
+            corner_acceleration_m_s2: Corners::splat(acceleration),
+            ..Estimate::default()
+        };
+        let mut state = State::default();
+        let mut low = Corners::splat(false);
+        for _ in 0..100 {
+            low = state.step(&parameters, &estimate, &Corners::splat(x_m));
+        }
+        let [one, ..] = low.into_array();
+        assert_eq!(low, Corners::splat(one));
+        !one
+    }
+
+    #[test]
+    fn quadrants_of_both_rules() {
+        for w in [0.3, -0.3] {
+            for v in [0.4, -0.4] {
+                assert_eq!(settled(DamperPolicy::Karnopp, w, v, 0.0, 0.0), w * v > 0.0);
+                assert_eq!(settled(DamperPolicy::HoelscherHuang, w, 0.0, 5.0 * v, 0.0), w * v > 0.0);
+                assert!(!settled(DamperPolicy::Low, w, v, 5.0 * v, 0.0));
+            }
+        }
+    }
+
+    #[test]
+    fn a_quiet_body_rests_the_valves_and_a_near_stop_does_not() {
+        assert!(!settled(DamperPolicy::Karnopp, 0.3, 0.05, 0.0, 0.0));
+        assert!(settled(DamperPolicy::Karnopp, -0.3, 0.0, 0.0, 0.07));
+        assert!(!settled(DamperPolicy::Karnopp, 0.3, 0.0, 0.0, 0.07));
+    }
+}

@@ -1,0 +1,213 @@
+//! Every threshold of the search, each with its reason.
+//!
+//! The search asks many small questions: is this gain more than chance, is this model complete, is this rival as good. What
+//! is enough is stated here and nowhere else. [`Criteria::default`] holds the values that all published figures were made
+//! with; a test of the search may change one and see what follows.
+//!
+//! *Cost* is a sum of squared residuals in units of the channels' noise; *gain* is how much of it a model takes away; both are
+//! judged on blocks that had no say in the fit (held out) unless said otherwise. *Unexplained* is the cost beyond one per
+//! residual.
+
+/// All thresholds of the search.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Criteria {
+    /// How far fits are carried, and when the linear approximation of a held-out fit is believed.
+    pub fitting: Fitting,
+    /// How candidates are screened before any is fitted in full.
+    pub screening: Screening,
+    /// When an effect is accepted into the model.
+    pub acceptance: Acceptance,
+    /// When a model counts as complete.
+    pub completeness: Completeness,
+    /// When an effect is told from its rival.
+    pub rivalry: Rivalry,
+}
+
+/// How hard a fit tries.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Effort {
+    /// Most Jacobians that are computed.
+    pub linearisations: usize,
+    /// The fit ends when a step gains less than this fraction of the cost.
+    pub tolerance: f64,
+}
+
+/// How far fits are carried, and when the linear approximation of a held-out fit is believed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fitting {
+    /// A fit whose figures are reported.
+    pub converged: Effort,
+    /// A fit that starts close to its end: without one fold, or without one effect for the share of the misfit.
+    pub quick: Effort,
+    /// Largest change of a coordinate that leaving out a fold may make in the linear approximation. Coordinates are of
+    /// order one, so a larger change leaves the region in which the derivatives were taken.
+    pub largest_linear_step: f64,
+    /// Where the linear approximation puts the held-out cost above this multiple of the fitted cost, the folds are fitted
+    /// one by one instead.
+    pub linear_limit: f64,
+}
+
+impl Default for Fitting {
+    fn default() -> Self {
+        Self {
+            converged: Effort {
+                linearisations: 8,
+                tolerance: 3e-5,
+            },
+            quick: Effort {
+                linearisations: 2,
+                tolerance: 1e-3,
+            },
+            largest_linear_step: 1.5,
+            linear_limit: 1.5,
+        }
+    }
+}
+
+/// How candidates are screened before any is fitted in full.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Screening {
+    /// Steps that every candidate gets, from each of its starts.
+    pub first_steps: usize,
+    /// Further steps that the promising ones get.
+    pub more_steps: usize,
+    /// How many candidates are promising: those of lowest cost after the first steps.
+    pub promising: usize,
+    /// How many of them are fitted in full in each round.
+    pub finalists: usize,
+    /// Screening is linear in the model's own parameters and underestimates what a candidate gains: one that reaches this
+    /// fraction of what acceptance asks is still fitted in full.
+    pub margin: f64,
+    /// Once a finalist is fitted, the next is fitted only if its screened gain is at least this fraction of that gain.
+    pub gain_of_next_finalist: f64,
+}
+
+impl Default for Screening {
+    fn default() -> Self {
+        Self {
+            first_steps: 1,
+            more_steps: 3,
+            promising: 6,
+            finalists: 3,
+            margin: 0.6,
+            gain_of_next_finalist: 0.5,
+        }
+    }
+}
+
+/// When an effect is accepted into the model.
+///
+/// A gain must be large enough in three ways (absolute, for each residual, as a fraction of what is unexplained) and more
+/// than chance in one of three (standard errors of the sum, standard errors of the mean logarithm, sign test over blocks).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Acceptance {
+    /// Most effects of a model. More than this many were never concealed together, and each doubles the ways to be wrong.
+    pub most_effects: usize,
+    /// Smallest gain. For one parameter 30 is more than five standard deviations of chance, whatever the number of samples.
+    pub least_gain: f64,
+    /// Smallest gain for each residual. Smoothing a measured displacement leaves errors that a late or lagging sensor can
+    /// imitate; on complete models they gained at most 0.0035.
+    pub least_gain_per_residual: f64,
+    /// Smallest gain in its own standard errors, taken from blocks.
+    pub least_standard_errors: f64,
+    /// Change of one block's cost that counts in the sign test.
+    pub block_gain: f64,
+    /// The sign test asks for this many better blocks for each worse one ...
+    pub better_blocks_per_worse: usize,
+    /// ... and for this many more.
+    pub better_blocks_besides: usize,
+    /// Smallest fraction of the unexplained cost that an effect must explain where the final model reaches the noise.
+    pub least_fraction: f64,
+    /// The same where it does not: small gains may then be a wrong law that bends towards a missing one. Also asked of
+    /// every law without a name, which can bend to much.
+    pub least_fraction_incomplete: f64,
+    /// The same for a specimen recorded under several conditions whose few parameters those conditions pin down.
+    pub least_fraction_conditions: f64,
+    /// A fault of an instrument below this fraction of a visible one is not reported: a clock off by a hundredth of a
+    /// sample, a gain off by a thousandth.
+    pub least_fault: f64,
+    /// A fit that is already known is repeated from another start if that start is better than the known fit by this
+    /// fraction of [`Self::least_gain`]: the known fit had ended in a local minimum.
+    pub better_start: f64,
+}
+
+impl Default for Acceptance {
+    fn default() -> Self {
+        Self {
+            most_effects: 6,
+            least_gain: 30.0,
+            least_gain_per_residual: 0.008,
+            least_standard_errors: 2.5,
+            block_gain: 6.0,
+            better_blocks_per_worse: 3,
+            better_blocks_besides: 4,
+            least_fraction: 0.08,
+            least_fraction_incomplete: 0.35,
+            least_fraction_conditions: 0.1,
+            least_fault: 0.1,
+            better_start: 0.1,
+        }
+    }
+}
+
+impl Acceptance {
+    /// Smallest gain for a number of residuals.
+    #[must_use]
+    pub fn least_gain_of(&self, residuals: f64) -> f64 {
+        self.least_gain.max(self.least_gain_per_residual * residuals)
+    }
+}
+
+/// When a model counts as complete.
+///
+/// The floor is the noise ratio that a complete model reaches although its inputs are noisy.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Completeness {
+    /// Held-out noise ratio up to which a model is complete where the inputs' noise does not come through.
+    pub noise_ratio: f64,
+    /// The same as a multiple of the floor; the larger of the two counts.
+    pub over_floor: f64,
+    /// Laws without a name are tried above this held-out noise ratio, and above the floor.
+    pub law_noise_ratio: f64,
+}
+
+impl Default for Completeness {
+    fn default() -> Self {
+        Self {
+            noise_ratio: 1.15,
+            over_floor: 1.07,
+            law_noise_ratio: 1.06,
+        }
+    }
+}
+
+/// When an effect is told from its rival.
+///
+/// The *lead* is the held-out cost of the model with the rival in the effect's place less that of the model found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rivalry {
+    /// The screened rival is fitted in full if its cost exceeds that of the model found by less than this fraction of the
+    /// effect's gain; a rival further behind cannot catch up.
+    pub contender: f64,
+    /// The pair is ambiguous unless the lead is at least this fraction of the smallest gain that is accepted ...
+    pub ambiguity_margin: f64,
+    /// ... and only where the lead is below this fraction of the effect's gain: a rival that itself explains nearly nothing is
+    /// no ambiguity.
+    pub ambiguity_lead: f64,
+    /// A law without a name takes the place of a named effect only if it leads by this fraction of the effect's gain.
+    pub lead_over_named: f64,
+    /// How often a rival that is better takes the place of an effect, after which all are compared anew.
+    pub exchanges: usize,
+}
+
+impl Default for Rivalry {
+    fn default() -> Self {
+        Self {
+            contender: 0.5,
+            ambiguity_margin: 0.25,
+            ambiguity_lead: 0.2,
+            lead_over_named: 0.1,
+            exchanges: 2,
+        }
+    }
+}

@@ -1,0 +1,110 @@
+//! Effects as they are reported: one entry a place, each with its own numbers.
+
+use super::estimate::Estimate;
+use crate::confidence::Evidence;
+use crate::estimation::LeastSquares;
+use crate::search::{SelectedEffect, Selection};
+use crate::vocabulary::{Branch, EffectId, Place, Site};
+
+/// Confidence in a misfit that stays and that no law was found for: it is seen, but it may be an instrument's.
+const REMAINDER_CONFIDENCE: f64 = 0.6;
+
+/// An effect as reported.
+#[derive(Debug, Clone)]
+pub struct Effect {
+    /// Id of the vocabulary.
+    pub id: EffectId,
+    /// Where it acts.
+    pub place: Place,
+    /// What tells laws without a name apart; empty for everything else.
+    pub label: String,
+    /// The effect of the improved model; `None` for a misfit that is seen but not modelled.
+    pub selected: Option<SelectedEffect>,
+    /// Chance that it is there, at its place, 0.05 to 0.99.
+    pub confidence: f64,
+    /// Its numbers.
+    pub parameters: Vec<Estimate>,
+    /// The law without a name, where one was fitted.
+    pub law: Option<serde_json::Value>,
+    /// Held-out noise ratio of the best model without it.
+    pub ratio_without: f64,
+    /// Held-out noise ratio of the improved model.
+    pub ratio_with: f64,
+}
+
+impl Effect {
+    /// Index of the candidate; `None` for a misfit that is not modelled.
+    #[must_use]
+    pub fn candidate(&self) -> Option<usize> {
+        self.selected.as_ref().map(|s| s.candidate)
+    }
+}
+
+/// The effects of the improved model, and what is left of a model that is believed to be complete.
+pub(super) fn effects(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Estimate]) -> Vec<Effect> {
+    let mut out = modelled(problem, selection, estimates);
+    let has_law = out.iter().any(|e| e.id == EffectId::Unlisted);
+    if selection.incomplete && !has_law && problem.specimen().is_believed_complete() {
+        out.push(Effect {
+            id: EffectId::Unlisted,
+            place: Site::Unknown.into(),
+            label: "remaining misfit".into(),
+            selected: None,
+            confidence: REMAINDER_CONFIDENCE,
+            parameters: vec![],
+            law: None,
+            ratio_without: selection.improved_ratio,
+            ratio_with: selection.improved_ratio,
+        });
+    }
+    out
+}
+
+fn modelled(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Estimate]) -> Vec<Effect> {
+    let specimen = problem.specimen();
+    let point = &selection.best.point;
+    let hypothesis = point.hypothesis(specimen);
+    let mut out = Vec::new();
+    for selected in &selection.effects {
+        let Some(position) = point.effects.iter().position(|&e| e == selected.candidate) else {
+            continue;
+        };
+        let candidate = &specimen.candidates()[selected.candidate];
+        let own = &estimates[point.coordinates_of(specimen, position)];
+        let law = (candidate.is_unlisted())
+            .then(|| specimen.law(selected.candidate, &hypothesis.effects[position].1))
+            .flatten();
+        let evidence = Evidence {
+            gain: (selected.gain.total, selected.gain.standard_error),
+            lead: selected.rival.map(|r| (r.lead.total, r.lead.standard_error)),
+        };
+        for (place, numbers) in places(&candidate.place, own.len()) {
+            out.push(Effect {
+                id: candidate.id,
+                place,
+                label: candidate.label.clone(),
+                selected: Some(selected.clone()),
+                confidence: evidence.confidence(),
+                parameters: numbers.iter().map(|&k| own[k].clone()).collect(),
+                law: law.clone(),
+                ratio_without: selected.ratio_without,
+                ratio_with: selection.improved_ratio,
+            });
+        }
+    }
+    out
+}
+
+/// A candidate that acts in several places is reported once a place, each with the numbers that belong to it.
+fn places(place: &Place, count: usize) -> Vec<(Place, Vec<usize>)> {
+    let at = |site: Site, numbers: Vec<usize>| (place.with_site(site), numbers);
+    match (&place.site, count) {
+        (Site::Accumulators, 2) => Branch::ALL
+            .map(|branch| at(Site::Accumulator(branch), vec![branch.number() - 1]))
+            .to_vec(),
+        (Site::Paths, 3) => Branch::ALL
+            .map(|branch| at(Site::Path(branch), vec![branch.number() - 1, 2]))
+            .to_vec(),
+        (_, n) => vec![(place.clone(), (0..n).collect())],
+    }
+}

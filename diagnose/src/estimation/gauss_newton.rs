@@ -1,0 +1,204 @@
+//! Least squares by damped Gauss-Newton steps on the normal equations of the blocks.
+//!
+//! The published Levenberg-Marquardt crate wants one dense Jacobian; ten recordings of five channels and twenty-five
+//! parameters would be re-laid-out for it at every step, and the sums over blocks that held-out figures and intervals are
+//! made of would have to be formed again. The step itself is Marquardt's (J. SIAM 11(2), 1963), with bounds.
+
+use std::sync::Arc;
+
+use super::bounded_step::bounded_step;
+use super::fit::Fit;
+use super::least_squares::LeastSquares;
+use super::normal_equations::{assemble, sum, total_cost, with_residuals};
+use super::point::Point;
+use crate::criteria::Effort;
+use crate::error::DiagnoseError;
+
+/// Steps with one Jacobian: a step costs one simulation, a Jacobian one for each parameter.
+const STEPS_PER_JACOBIAN: usize = 4;
+/// Dampings tried for the first step with a new Jacobian, and for each later one.
+const DAMPINGS_TRIED: (usize, usize) = (6, 2);
+/// Damping of the first step, and the smallest.
+const DAMPING: (f64, f64) = (1e-4, 1e-9);
+/// A step that fails raises the damping by this factor, one that succeeds lowers it by the same.
+const DAMPING_FACTOR: f64 = 10.0;
+/// The fit has converged when all steps with one Jacobian together gain less than this many times the tolerance.
+const TOLERANCES_PER_JACOBIAN: f64 = 3.0;
+
+/// Fits all parameters of a model from a starting point.
+///
+/// ```no_run
+/// use std::sync::atomic::AtomicBool;
+/// use oleo_diagnose::Campaign;
+/// use oleo_diagnose::estimation::{LeastSquares, Point, fit};
+///
+/// let campaign = Campaign::open("recordings/strut-7".as_ref())?;
+/// let stop = AtomicBool::new(false);
+/// let problem = LeastSquares::new(&*campaign.specimen, &stop);
+/// let start = Point::nominal(problem.specimen());
+/// let calibrated = fit(&problem, start, problem.criteria.fitting.converged)?;
+/// println!("cost {} of {} residuals", calibrated.cost, problem.residuals());
+/// # Ok::<(), oleo_diagnose::DiagnoseError>(())
+/// ```
+///
+/// # Errors
+/// A start that cannot be simulated; [`DiagnoseError::Interrupted`] once the caller asked to stop. A step to where the model
+/// cannot be simulated is only shortened.
+pub fn fit(problem: &LeastSquares<'_>, start: Point, effort: Effort) -> Result<Fit, DiagnoseError> {
+    let (specimen, blocks, evaluation) = (problem.specimen(), &problem.blocks, &problem.evaluation);
+    let (prior, ranges) = (start.prior(specimen), start.ranges(specimen));
+    let mut point = start;
+    for (z, range) in point.z.iter_mut().zip(&ranges) {
+        *z = z.clamp(range.0, range.1);
+    }
+    let all: Vec<usize> = (0..point.z.len()).collect();
+    let mut sensitivities = evaluation.sensitivities(&point, &all, None)?;
+    let mut normals = assemble(blocks, &sensitivities);
+    let mut cost = total_cost(&normals) + point.prior_cost(specimen);
+    let mut damping = DAMPING.0;
+    for round in 0..effort.linearisations {
+        if round > 0 {
+            sensitivities = evaluation.sensitivities(&point, &all, None)?;
+            normals = assemble(blocks, &sensitivities);
+        }
+        let before_round = cost;
+        for step in 0..STEPS_PER_JACOBIAN {
+            let (h, g) = sum(&normals, &prior, &point.z);
+            let before_step = cost;
+            let tries = if step == 0 { DAMPINGS_TRIED.0 } else { DAMPINGS_TRIED.1 };
+            for _ in 0..tries {
+                let Some(step) = bounded_step(&h, &g, damping, &point.z, &ranges) else {
+                    damping *= DAMPING_FACTOR;
+                    continue;
+                };
+                let mut trial = point.clone();
+                for ((z, d), range) in trial.z.iter_mut().zip(step.iter()).zip(&ranges) {
+                    *z = (*z + d).clamp(range.0, range.1);
+                }
+                if trial == point {
+                    break;
+                }
+                let residuals = match evaluation.residuals_at(&trial) {
+                    Ok(residuals) => residuals,
+                    Err(DiagnoseError::Simulation { .. }) => {
+                        damping *= DAMPING_FACTOR;
+                        continue;
+                    }
+                    Err(other) => return Err(other),
+                };
+                let trial_cost = problem.cost(&trial, &residuals);
+                if trial_cost < cost {
+                    (point, cost) = (trial, trial_cost);
+                    for (s, residual) in sensitivities.iter_mut().zip(residuals) {
+                        s.residual = residual;
+                    }
+                    normals = with_residuals(blocks, &normals, &sensitivities);
+                    damping = (damping * 0.1_f64).max(DAMPING.1);
+                    break;
+                }
+                damping *= DAMPING_FACTOR;
+            }
+            if before_step - cost < effort.tolerance * cost {
+                break;
+            }
+        }
+        if before_round - cost < TOLERANCES_PER_JACOBIAN * effort.tolerance * cost {
+            break;
+        }
+    }
+    Ok(Fit {
+        sensitivities: Some(Arc::new(sensitivities)),
+        ..Fit::new(point, normals, prior, cost, ranges)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analytic::{CUBIC, FRAGILE, FRICTION, RUN, Recipe, VIBRATION};
+    use crate::specimen::Specimen;
+
+    fn fitted(recipe: &Recipe, effects: &[(usize, &[f64])]) -> (Vec<f64>, f64) {
+        let specimen = recipe.make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let start = (effects.iter()).fold(Point::nominal(&specimen), |p, (e, v)| p.with_effect(&specimen, *e, v));
+        let fit = fit(&problem, start, problem.criteria.fitting.converged).expect("a fit");
+        let hypothesis = fit.point.hypothesis(&specimen);
+        let values = hypothesis.effects.into_iter().flat_map(|e| e.1).collect();
+        (values, fit.cost / problem.residuals() as f64)
+    }
+
+    #[test]
+    fn true_numbers_are_found_and_the_noise_is_left() {
+        let truth = vec![(CUBIC, vec![0.25]), (FRICTION, vec![0.07])];
+        let recipe = Recipe {
+            truth,
+            ..Recipe::default()
+        };
+        let (values, left) = fitted(&recipe, &[(CUBIC, &[0.0]), (FRICTION, &[0.0])]);
+        assert!(
+            (values[0] - 0.25).abs() < 0.005 && (values[1] - 0.07).abs() < 0.003,
+            "{values:?}"
+        );
+        assert!((left - 1.0).abs() < 0.06, "{left}");
+    }
+
+    #[test]
+    fn a_nonlinear_number_is_found_from_nearby_and_not_from_far() {
+        let truth = vec![(VIBRATION, vec![0.1, 2.3])];
+        let recipe = Recipe {
+            truth,
+            ..Recipe::default()
+        };
+        let (near, left) = fitted(&recipe, &[(VIBRATION, &[0.02, 2.29])]);
+        assert!((near[1] - 2.3).abs() < 0.003 && left < 1.06, "{near:?} {left}");
+        let (far, left) = fitted(&recipe, &[(VIBRATION, &[0.02, 1.5])]);
+        assert!((far[1] - 2.3).abs() > 0.3 && left > 1.5, "{far:?} {left}");
+    }
+
+    #[test]
+    fn numbers_stay_in_their_range() {
+        // The true friction is beyond the candidate's range on the other side: an amount is not negative.
+        let truth = vec![(FRICTION, vec![-0.1])];
+        let recipe = Recipe {
+            truth,
+            ..Recipe::default()
+        };
+        assert_eq!(fitted(&recipe, &[(FRICTION, &[0.2])]).0, [0.0]);
+        // And a start outside is moved inside.
+        assert_eq!(fitted(&recipe, &[(FRICTION, &[-3.0])]).0, [0.0]);
+    }
+
+    #[test]
+    fn a_tolerance_holds_the_calibration_back() {
+        // A cubic that is not in the model pulls on the stiffness; more than its tolerance and a tenth it may not give.
+        let truth = vec![(CUBIC, vec![2.0])];
+        let specimen = Recipe {
+            truth,
+            ..Recipe::default()
+        }
+        .make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let fit = fit(&problem, Point::nominal(&specimen), problem.criteria.fitting.converged).expect("a fit");
+        let stiffness = specimen.calibration()[0].value(fit.point.z[0]);
+        assert!((stiffness - 0.022).abs() < 1e-9, "{stiffness}");
+    }
+
+    #[test]
+    fn a_step_to_where_the_model_does_not_exist_is_shortened() {
+        let recipe = Recipe {
+            truth: vec![(CUBIC, vec![0.25])],
+            ..Recipe::default()
+        };
+        let (values, _) = fitted(&recipe, &[(FRAGILE, &[0.9]), (CUBIC, &[0.0])]);
+        assert!((values[1] - 0.25).abs() < 0.005, "{values:?}");
+        let specimen = recipe.make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let broken = Point::nominal(&specimen).with_effect(&specimen, FRAGILE, &[2.0]);
+        let effort = problem.criteria.fitting.converged;
+        assert!(matches!(
+            fit(&problem, broken, effort),
+            Err(DiagnoseError::Simulation { .. })
+        ));
+    }
+}

@@ -1,0 +1,115 @@
+//! A model judged on what had no say in its fit: each fold is left out in turn.
+
+use super::fit::{Fit, HeldOut};
+use super::gauss_newton::fit;
+use super::least_squares::LeastSquares;
+use super::normal_equations::total_cost;
+use crate::criteria::Effort;
+
+/// Costs of the blocks when their fold is held out, and the points fitted without each fold; computed once for each fit.
+///
+/// By fits of their own where they are cheap, or where the linear approximation around this fit says that leaving out a fold
+/// changes much; else in that approximation.
+pub fn held_out<'f>(fitted: &'f Fit, problem: &LeastSquares<'_>) -> &'f HeldOut {
+    fitted.held_out.get_or_init(|| {
+        let fitting = problem.criteria.fitting;
+        if problem.refits_folds() {
+            return refitted(fitted, problem, fitting.converged);
+        }
+        let linear = linear(fitted, problem);
+        let limit = fitting.linear_limit * total_cost(&fitted.normals);
+        if fitted.screened || linear.costs.iter().sum::<f64>() < limit {
+            linear
+        } else {
+            refitted(fitted, problem, fitting.quick)
+        }
+    })
+}
+
+/// One fit without each fold. A fold whose rest cannot be fitted keeps the full fit's point, one that cannot be simulated
+/// there costs infinitely much.
+fn refitted(fitted: &Fit, problem: &LeastSquares<'_>, effort: Effort) -> HeldOut {
+    let mut costs = vec![f64::INFINITY; fitted.normals.len()];
+    let mut points = Vec::with_capacity(problem.blocks.folds());
+    for fold in 0..problem.blocks.folds() {
+        let rest = problem.keeping(|b| b.fold != fold);
+        let point = fit(&rest, fitted.point.clone(), effort).map_or_else(|_| fitted.point.clone(), |f| f.point);
+        if let Ok(residuals) = problem.evaluation.residuals_at(&point) {
+            for (k, cost) in problem.block_costs(&residuals).into_iter().enumerate() {
+                if problem.blocks.as_slice()[k].fold == fold {
+                    costs[k] = cost;
+                }
+            }
+        }
+        points.push(point);
+    }
+    HeldOut { costs, points }
+}
+
+/// The same in the linear approximation around the fit.
+fn linear(fitted: &Fit, problem: &LeastSquares<'_>) -> HeldOut {
+    let blocks = problem.blocks.as_slice();
+    let mut costs = vec![0.0; fitted.normals.len()];
+    let mut points = Vec::with_capacity(problem.blocks.folds());
+    for fold in 0..problem.blocks.folds() {
+        let step = fitted.step_without(|k| blocks[k].fold == fold, problem.criteria.fitting.largest_linear_step);
+        let own = fitted
+            .normals
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| blocks[*k].fold == fold);
+        for (k, normal) in own {
+            costs[k] = step.as_ref().map_or(normal.cost, |d| normal.cost_after(d));
+        }
+        let mut point = fitted.point.clone();
+        if let Some(d) = step {
+            for ((z, d), r) in point.z.iter_mut().zip(d.iter()).zip(&fitted.ranges) {
+                *z = (*z + d).clamp(r.0, r.1);
+            }
+        }
+        points.push(point);
+    }
+    HeldOut { costs, points }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analytic::{CUBIC, FORTY_SINES, RUN, Recipe};
+    use crate::estimation::Point;
+
+    /// The analytic specimen is linear, so that the approximation must equal the fits themselves.
+    #[test]
+    fn the_linear_approximation_is_exact_for_a_linear_model() {
+        let specimen = Recipe {
+            truth: vec![(CUBIC, vec![0.3])],
+            ..Recipe::default()
+        }
+        .make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let with_cubic = Point::nominal(&specimen).with_effect(&specimen, CUBIC, &[0.0]);
+        let with_sines = with_cubic.with_effect(&specimen, FORTY_SINES, &[0.0; 40]);
+        for start in [with_cubic, with_sines] {
+            let fitted = fit(&problem, start, problem.criteria.fitting.converged).expect("a fit");
+            let (linear, refitted) = (
+                linear(&fitted, &problem),
+                refitted(&fitted, &problem, problem.criteria.fitting.converged),
+            );
+            for (a, b) in linear.costs.iter().zip(&refitted.costs) {
+                assert!((a - b).abs() < 1e-3 * b, "{a} {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn held_out_blocks_cost_more_than_fitted_ones_by_the_numbers_fitted() {
+        let specimen = Recipe::default().make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let start = Point::nominal(&specimen).with_effect(&specimen, FORTY_SINES, &[0.0; 40]);
+        let fitted = fit(&problem, start, problem.criteria.fitting.converged).expect("a fit");
+        let held_out: f64 = held_out(&fitted, &problem).costs.iter().sum();
+        // Forty numbers take forty from the fitted cost and add about as much to what was held out.
+        let excess = held_out - total_cost(&fitted.normals);
+        assert!((50.0..130.0).contains(&excess), "{excess}");
+    }
+}

@@ -1,0 +1,109 @@
+//! The least-squares problem: a specimen, the blocks of its recordings that count, and the thresholds of the search.
+
+use std::sync::atomic::AtomicBool;
+
+use super::blocks::{Block, Blocks};
+use super::evaluation::Evaluation;
+use super::point::Point;
+use crate::criteria::Criteria;
+use crate::error::DiagnoseError;
+use crate::recording::Recording;
+use crate::specimen::{Series, Specimen};
+
+/// A specimen whose parameters are estimated on some blocks of its recordings.
+pub struct LeastSquares<'a> {
+    /// Simulates the specimen.
+    pub evaluation: Evaluation<'a>,
+    /// The blocks that count.
+    pub blocks: Blocks,
+    /// Thresholds of fits and of the search.
+    pub criteria: Criteria,
+}
+
+impl<'a> LeastSquares<'a> {
+    /// All recordings of a specimen. `stop`, set from another thread, ends the work at the next simulation.
+    #[must_use]
+    pub fn new(specimen: &'a dyn Specimen, stop: &'a AtomicBool) -> Self {
+        Self::over(Evaluation::new(specimen, stop), Criteria::default())
+    }
+
+    /// The same with other thresholds.
+    #[must_use]
+    pub fn with_criteria(self, criteria: Criteria) -> Self {
+        Self { criteria, ..self }
+    }
+
+    /// Another specimen with all its recordings, stopped by the same flag.
+    #[must_use]
+    pub fn on<'b>(&self, specimen: &'b dyn Specimen) -> LeastSquares<'b>
+    where
+        'a: 'b,
+    {
+        LeastSquares::over(self.evaluation.on(specimen), self.criteria)
+    }
+
+    fn over(evaluation: Evaluation<'a>, criteria: Criteria) -> Self {
+        let specimen = evaluation.specimen();
+        let samples: Vec<usize> = specimen.recordings().iter().map(Recording::len).collect();
+        Self {
+            blocks: Blocks::cut(&samples),
+            evaluation,
+            criteria,
+        }
+    }
+
+    /// The same on some of the blocks.
+    #[must_use]
+    pub fn keeping(&self, wanted: impl Fn(&Block) -> bool) -> Self {
+        Self {
+            evaluation: self.evaluation.clone(),
+            blocks: self.blocks.keeping(wanted),
+            criteria: self.criteria,
+        }
+    }
+
+    /// The specimen.
+    #[must_use]
+    pub const fn specimen(&self) -> &'a dyn Specimen {
+        self.evaluation.specimen()
+    }
+
+    /// True where fitting without each fold is cheap enough to be done instead of approximated.
+    #[must_use]
+    pub fn refits_folds(&self) -> bool {
+        self.specimen().simulates_in_milliseconds() && self.specimen().recordings().len() == 1
+    }
+
+    /// Number of residuals.
+    #[must_use]
+    pub fn residuals(&self) -> usize {
+        let samples: usize = self.blocks.as_slice().iter().map(Block::samples).sum();
+        samples * self.specimen().channels().len()
+    }
+
+    /// Sum of squared residuals of every block.
+    #[must_use]
+    pub fn block_costs(&self, residuals: &[Series]) -> Vec<f64> {
+        (self.blocks.as_slice().iter())
+            .map(|b| {
+                (residuals[b.recording].iter())
+                    .map(|c| b.of(c).iter().map(|r| r * r).sum::<f64>())
+                    .sum()
+            })
+            .collect()
+    }
+
+    /// Cost: the squared residuals of every block, then the prior's cost of departing from nominal.
+    #[must_use]
+    pub fn cost(&self, point: &Point, residuals: &[Series]) -> f64 {
+        self.block_costs(residuals).iter().sum::<f64>() + point.prior_cost(self.specimen())
+    }
+
+    /// Cost at a point.
+    ///
+    /// # Errors
+    /// As [`Evaluation::truths`].
+    pub fn cost_at(&self, point: &Point) -> Result<f64, DiagnoseError> {
+        Ok(self.cost(point, &self.evaluation.residuals_at(point)?))
+    }
+}

@@ -1,0 +1,287 @@
+//! "Where": the drawing, the locations, which relation breaks, and the residual over time and state with the found
+//! region marked.
+
+use oleo_report::{Axis, Bars, Column, Curves, Page, Style, Table, extrema_by_bucket, significant};
+
+use super::words;
+use crate::campaign::Campaign;
+use crate::diagnosis::Diagnosis;
+use crate::locate::{self, Location};
+use crate::specimen::Specimen;
+use crate::vocabulary::{Place, Site, State};
+
+/// Buckets of a line over time: finer is not seen on a page.
+const BUCKETS: usize = 260;
+/// Markers of a residual over a state.
+const MARKERS: usize = 1200;
+/// Locations drawn.
+const DRAWN: usize = 6;
+/// Relations drawn.
+const RELATIONS: usize = 8;
+
+pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
+    let specimen = &*campaign.specimen;
+    page.section("Where");
+    let places: Vec<&Place> = diagnosis.locations.iter().map(|l| &l.place).collect();
+    let marked = places.iter().any(|p| p.site != Site::Unknown);
+    if let Some(svg) = specimen.drawing(&places) {
+        page.drawing(
+            &svg,
+            if marked {
+                "The specimen; marked: where the model and the recordings part."
+            } else {
+                "The specimen; nothing is marked because no place was found."
+            },
+        );
+    }
+    if diagnosis.locations.is_empty() {
+        page.text("No place stands out: after recalibration within tolerance no misfit beyond the noise is left.");
+    } else {
+        page.text(
+            "Share of the excess: part of the misfit beyond noise that comes back when this effect alone is taken out of \
+             the improved model and everything else is fitted again. Effects that hide each other can add to more than 100 %.",
+        )
+        .table(locations(specimen, &diagnosis.locations));
+    }
+    relations(page, diagnosis);
+    for location in diagnosis.locations.iter().take(DRAWN) {
+        over_time(page, specimen, diagnosis, location);
+        over_state(page, specimen, diagnosis, location);
+    }
+}
+
+fn locations(specimen: &dyn Specimen, locations: &[Location]) -> Table {
+    let mut table = Table::new([
+        Column::text("Place"),
+        Column::number("Share of the excess"),
+        Column::text("Shows most in"),
+        Column::text("Time, s"),
+        Column::text("Condition, over all recordings"),
+    ]);
+    for l in locations {
+        table.row([
+            l.place.to_string(),
+            format!("{:.0} %", 100.0 * l.share_of_excess),
+            format!(
+                "{} of {}",
+                specimen.channels()[l.channel].column,
+                specimen.recording_name(l.recording)
+            ),
+            format!("{:.2} to {:.2}", l.t_s[0], l.t_s[1]),
+            l.condition.text.clone(),
+        ]);
+    }
+    table
+}
+
+fn relations(page: &mut Page, diagnosis: &Diagnosis) {
+    let changed = &diagnosis.changed_relations;
+    if !changed.is_empty() {
+        let shown = &changed[..changed.len().min(RELATIONS)];
+        let mut bars = Bars::new(
+            "Which relation breaks",
+            shown.iter().map(|r| r.relation.as_str()),
+            Axis::new("Excess misfit explained", "%").range(0.0, 100.0),
+        );
+        bars.caption(
+            "Share of the held-out misfit beyond noise that disappears when this one relation of the recalibrated model may \
+             change and all others stay (the best candidate each). Where several break, none explains all.",
+        );
+        bars.series(
+            "changed alone",
+            &shown.iter().map(|r| 100.0 * r.share_of_excess).collect::<Vec<_>>(),
+        );
+        page.figure(bars);
+    }
+    if diagnosis.relations.iter().any(|r| r.noise_ratio.is_some()) {
+        let mut table = Table::new([
+            Column::text("Relation between measured neighbours, no simulation"),
+            Column::number("Noise ratio"),
+            Column::number("Samples"),
+            Column::text("Reading"),
+        ]);
+        for r in &diagnosis.relations {
+            let reading = match r.noise_ratio {
+                None => "the recordings do not excite it",
+                Some(v) if v < 1.2 => "holds",
+                Some(v) if v < 2.0 => "departs a little",
+                Some(_) => "breaks: something acts between these instruments, or one of them is wrong",
+            };
+            table.row([
+                r.name.to_owned(),
+                r.noise_ratio.map_or("-".into(), |v| format!("{v:.2}")),
+                r.samples.to_string(),
+                reading.to_owned(),
+            ]);
+        }
+        page.table(table);
+    }
+}
+
+fn title(diagnosis: &Diagnosis, location: &Location) -> String {
+    let effect =
+        (diagnosis.effects.iter()).find(|e| e.candidate() == location.candidate && location.candidate.is_some());
+    match effect {
+        Some(e) => format!(
+            "{} {}",
+            words::sentence(words::words(e.id, &e.label).name),
+            words::at(&location.place)
+        ),
+        None => "What is left unexplained".into(),
+    }
+}
+
+/// Six digits: all that a picture shows.
+fn brief(values: &[f64]) -> Vec<f64> {
+    values
+        .iter()
+        .map(|v| format!("{v:.4e}").parse().unwrap_or(*v))
+        .collect()
+}
+
+/// Factor and unit in which people read a quantity.
+fn scaled(unit: &str) -> (f64, &str) {
+    match unit {
+        "Pa" => (1e-6, "MPa"),
+        "m" => (1e3, "mm"),
+        other => (1.0, other),
+    }
+}
+
+fn over_time(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, location: &Location) {
+    let (r, c) = (location.recording, location.channel);
+    let time = specimen.time_s(r);
+    let channel = &specimen.channels()[c];
+    let measured = specimen.measured(r, c);
+    let with = &diagnosis.residuals.improved[r][c];
+    let without = &location.without[r][c];
+    let (quantity, unit) = (channel.column.quantity(), channel.column.unit());
+    let (scale, unit) = scaled(unit);
+    let simulated = |residual: &[f64]| -> Vec<f64> {
+        (measured.iter().zip(residual))
+            .map(|(m, e)| scale * (m - e * channel.noise))
+            .collect()
+    };
+    let mut curves = Curves::new(
+        &format!(
+            "{}: {} in {}",
+            title(diagnosis, location),
+            channel.column,
+            specimen.recording_name(r)
+        ),
+        Axis::new("Time", "s"),
+    );
+    curves.caption(&format!(
+        "Above what was measured and what the models predict, below recording minus prediction over the sensor's noise ({} {}). \
+         Shaded: where the misfit is found, {:.2} to {:.2} s; {}.",
+        significant(channel.noise * scale, 2),
+        unit,
+        location.t_s[0],
+        location.t_s[1],
+        location.condition.text
+    ));
+    curves.height(560);
+    let nothing_found = location.candidate.is_none();
+    let mut draw = |axis: Axis, series: &[(Style, &str, Vec<f64>)]| {
+        curves.panel(axis);
+        for (style, name, values) in series {
+            let (x, y) = extrema_by_bucket(time, values, BUCKETS);
+            curves.series(*style, name, &brief(&x), &brief(&y));
+        }
+        curves.region(location.t_s[0], location.t_s[1], "found here");
+    };
+    let recorded: Vec<f64> = measured.iter().map(|m| scale * m).collect();
+    if nothing_found {
+        draw(
+            Axis::new(quantity, unit),
+            &[
+                (Style::Line, "improved model", simulated(with)),
+                (Style::Dashed, "recording", recorded),
+            ],
+        );
+        draw(
+            Axis::new("Residual", "noise"),
+            &[(Style::Line, "improved model", with.clone())],
+        );
+    } else {
+        draw(
+            Axis::new(quantity, unit),
+            &[
+                (Style::Line, "without this effect", simulated(without)),
+                (Style::Line, "improved model", simulated(with)),
+                (Style::Dashed, "recording", recorded),
+            ],
+        );
+        draw(
+            Axis::new("Residual", "noise"),
+            &[
+                (Style::Line, "without this effect", without.clone()),
+                (Style::Line, "improved model", with.clone()),
+            ],
+        );
+    }
+    page.figure(curves);
+}
+
+fn over_state(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, location: &Location) {
+    let condition = &location.condition;
+    let name = match (&condition.region, &condition.follows) {
+        (Some(region), _) => region.state,
+        (None, Some((state, _))) => *state,
+        // Time says it: a decay needs no second picture.
+        (None, None) if condition.decays => return,
+        (None, None) => State::Displacement,
+    };
+    let every = specimen.samples().div_ceil(MARKERS).max(1);
+    let Some(state) = locate::states(specimen, every).into_iter().find(|s| s.state == name) else {
+        return;
+    };
+    let c = location.channel;
+    let pooled = |set: &[crate::specimen::Series]| -> Vec<f64> {
+        set.iter().flat_map(|r| r[c].iter().step_by(every).copied()).collect()
+    };
+    let (quantity, unit) = name.quantity_and_unit();
+    let (scale, unit) = scaled(unit);
+    let values: Vec<f64> = state.values.iter().map(|v| scale * v).collect();
+    let mut curves = Curves::new(
+        &format!(
+            "{}: residual of {} over {quantity}, all recordings",
+            title(diagnosis, location),
+            specimen.channels()[c].column
+        ),
+        Axis::new(quantity, unit),
+    );
+    curves.panel(Axis::new("Residual", "noise"));
+    if location.candidate.is_some() {
+        curves.series(
+            Style::Points,
+            "without this effect",
+            &brief(&values),
+            &brief(&pooled(&location.without)),
+        );
+    }
+    curves.series(
+        Style::Points,
+        "improved model",
+        &brief(&values),
+        &brief(&pooled(&diagnosis.residuals.improved)),
+    );
+    if let Some(region) = &condition.region {
+        curves.region(scale * region.from, scale * region.to, "found here");
+        curves.caption(&format!(
+            "Shaded: the stretch that holds the most misfit for its samples, {}.",
+            region.words()
+        ));
+    } else if let Some((_, part)) = &condition.follows {
+        curves.caption(&format!(
+            "The mean over {quantity} explains {:.0} % of what {}.",
+            100.0 * part,
+            if location.candidate.is_some() {
+                "the effect changes"
+            } else {
+                "is left"
+            }
+        ));
+    }
+    page.figure(curves);
+}

@@ -1,0 +1,76 @@
+//! Backward elimination: effects that the others have made superfluous leave the model.
+
+use super::selector::Selector;
+use crate::error::DiagnoseError;
+use crate::estimation::Fit;
+
+impl Selector<'_, '_> {
+    /// Drops effects, one at a time and the weakest first, until each that is left is accepted beside the others.
+    pub fn eliminate(&mut self, mut best: Fit, fraction: f64) -> Result<Fit, DiagnoseError> {
+        while let Some(less) = self.without_weakest(&best, fraction)? {
+            best = less;
+        }
+        Ok(best)
+    }
+
+    /// The model without its weakest effect, fitted again; `None` if every effect is accepted. Laws without a name go first:
+    /// what a named effect explains as well needs none.
+    fn without_weakest(&mut self, best: &Fit, fraction: f64) -> Result<Option<Fit>, DiagnoseError> {
+        let effects = &best.point.effects;
+        let (laws, named): (Vec<usize>, Vec<usize>) =
+            (0..effects.len()).partition(|&position| self.candidate(effects[position]).is_unlisted());
+        for positions in [laws, named] {
+            let mut weakest: Option<(f64, Fit)> = None;
+            for position in positions {
+                let less = self.fitted(best.point.without_effect(self.specimen(), position))?;
+                let gain = self.gain(self.held_out(&less), self.held_out(best));
+                let fraction = self.least_fraction(effects[position], fraction);
+                let weaker = weakest.as_ref().is_none_or(|(least, _)| gain.total < *least);
+                if !self.accepts(&gain, fraction) && weaker {
+                    weakest = Some((gain.total, less));
+                }
+            }
+            if let Some((_, less)) = weakest {
+                return Ok(Some(less));
+            }
+        }
+        Ok(None)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analytic::{CUBIC, FRICTION, GAIN, RUN, Recipe, TABLE};
+    use crate::estimation::{LeastSquares, Point};
+
+    /// Effects that are left of a model when the truth holds friction only.
+    fn left_of(effects: &[usize]) -> Vec<usize> {
+        let specimen = Recipe {
+            truth: vec![(FRICTION, vec![0.1])],
+            ..Recipe::default()
+        }
+        .make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut selector = Selector::new(&problem);
+        let start = effects.iter().fold(Point::nominal(&specimen), |point, &e| {
+            let values = vec![0.0; selector.candidate(e).parameters.len()];
+            point.with_effect(&specimen, e, &values)
+        });
+        let full = selector.fitted(start).expect("a fit");
+        let fraction = problem.criteria.acceptance.least_fraction;
+        selector.eliminate(full, fraction).expect("a fit").point.effects
+    }
+
+    #[test]
+    fn the_superfluous_leave_and_the_needed_stays() {
+        assert_eq!(left_of(&[CUBIC, FRICTION, GAIN]), [FRICTION]);
+        assert_eq!(left_of(&[TABLE, CUBIC, FRICTION]), [FRICTION]);
+        assert_eq!(left_of(&[FRICTION]), [FRICTION]);
+    }
+
+    #[test]
+    fn a_model_of_nothing_but_the_superfluous_is_emptied() {
+        assert_eq!(left_of(&[CUBIC, GAIN]), [] as [usize; 0]);
+    }
+}

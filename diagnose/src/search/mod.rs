@@ -1,0 +1,32 @@
+//! The search for missing effects: forward selection, elimination and exchange, all judged on held-out blocks.
+//!
+//! ```text
+//! calibrate within tolerance
+//!     |
+//!     v                                   (until no candidate is accepted; then once more with laws without a name)
+//! screen all candidates --> fit the finalists --> accept the best that held-out blocks confirm --+
+//!     ^                                                                                         |
+//!     +-----------------------------------------------------------------------------------------+
+//!     |
+//!     v
+//! eliminate what the others made superfluous --> compare each effect with its strongest rival --> Selection
+//! ```
+//!
+//! A candidate is believed only if it improves blocks that had no say in its fit, by more than chance and by a fraction of
+//! what is unexplained ([`crate::criteria`] has every threshold). Calibration within tolerance is part of every model, so it
+//! can never pass for physics. When what remains is far above the noise, no model that was tried is complete, and a small
+//! gain may be a wrong law that bends towards a missing one: a law must then explain much more to be reported.
+
+mod elimination;
+pub mod evidence;
+mod forward;
+mod rivals;
+pub mod screen;
+mod select;
+mod selection;
+mod selector;
+
+pub use evidence::HeldOutGain;
+pub use screen::Screen;
+pub use select::select;
+pub use selection::{CandidateScore, Progress, Rival, SelectedEffect, Selection};

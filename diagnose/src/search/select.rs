@@ -1,0 +1,332 @@
+//! The search from the believed model to the improved one.
+
+use super::selection::{CandidateScore, Progress, Selection};
+use super::selector::{Screened, Selector};
+use crate::error::DiagnoseError;
+use crate::estimation::{Fit, LeastSquares, Point};
+
+/// Runs the whole search.
+///
+/// # Errors
+/// A believed model that cannot be simulated; [`DiagnoseError::Interrupted`] once the caller asked to stop.
+pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Selection, DiagnoseError> {
+    let mut selector = Selector::new(problem);
+    progress("calibrating within tolerance", 0.02);
+    let calibrated = selector.fitted(Point::nominal(problem.specimen()))?;
+    let Grown {
+        mut best,
+        mut screened,
+        mut scores,
+        with_laws,
+    } = grow(&mut selector, &calibrated, progress)?;
+
+    progress("dropping what the others explain", 0.8);
+    let grown = best.point.effects.len();
+    let acceptance = &problem.criteria.acceptance;
+    best = selector.eliminate(best, acceptance.least_fraction)?;
+    if selector.held_out_ratio(&best) > selector.complete_up_to(&best) {
+        best = selector.eliminate(best, fraction_of_incomplete(problem))?;
+    }
+
+    progress("testing rivals in the place of each effect", 0.88);
+    let mut comparison = selector.compare_with_rivals(&best, with_laws)?;
+    let mut exchanged = false;
+    for _ in 0..problem.criteria.rivalry.exchanges {
+        let Some(better) = comparison.better.take() else { break };
+        best = selector.eliminate(better, acceptance.least_fraction)?;
+        exchanged = true;
+        comparison = selector.compare_with_rivals(&best, with_laws)?;
+    }
+    if exchanged || best.point.effects.len() != grown {
+        screened = selector.screen(&best, selector.open(&best.point, with_laws))?;
+    }
+    for (candidate, fit) in &screened {
+        if let (Some(score), Some(fit)) = (scores.iter_mut().find(|s| s.candidate == *candidate), fit) {
+            score.added = Some(selector.held_out_ratio(fit));
+        }
+    }
+    let improved_ratio = selector.held_out_ratio(&best);
+    Ok(Selection {
+        calibrated_ratio: selector.held_out_ratio(&calibrated),
+        improved_ratio,
+        incomplete: improved_ratio > selector.complete_up_to(&best),
+        effects: comparison.effects,
+        calibrated,
+        best,
+        scores,
+    })
+}
+
+/// A model to which nothing more can be added.
+struct Grown {
+    best: Fit,
+    /// Candidates screened beside it.
+    screened: Vec<Screened>,
+    /// Candidates screened beside the calibrated model.
+    scores: Vec<CandidateScore>,
+    /// True if laws without a name were tried.
+    with_laws: bool,
+}
+
+/// Adds effects until none is accepted. Laws without a name are tried when no name is left and the noise is not reached.
+fn grow(selector: &mut Selector<'_, '_>, calibrated: &Fit, progress: Progress<'_>) -> Result<Grown, DiagnoseError> {
+    let criteria = selector.criteria();
+    let mut best = calibrated.clone();
+    let mut with_laws = false;
+    let mut scores: Vec<CandidateScore> = Vec::new();
+    loop {
+        let done = 0.1 + 0.12 * best.point.effects.len() as f64;
+        progress("screening every candidate", done);
+        let screened = selector.screen(&best, selector.open(&best.point, with_laws))?;
+        if best.point.effects.is_empty() {
+            score_alone(selector, &screened, &mut scores);
+        }
+        progress("fitting the strongest candidates", done + 0.06);
+        let full = best.point.effects.len() >= criteria.acceptance.most_effects;
+        let next = if full {
+            None
+        } else {
+            selector.strongest(&screened, &best)?
+        };
+        if let Some(next) = next {
+            best = next;
+            continue;
+        }
+        let reaches_noise = || {
+            let limit = criteria.completeness.law_noise_ratio.max(selector.floor(&best));
+            selector.held_out_ratio(&best) <= limit
+        };
+        if with_laws || full || reaches_noise() {
+            return Ok(Grown {
+                best,
+                screened,
+                scores,
+                with_laws,
+            });
+        }
+        with_laws = true;
+    }
+}
+
+/// Fraction of the unexplained cost that each effect of an incomplete model must explain.
+fn fraction_of_incomplete(problem: &LeastSquares<'_>) -> f64 {
+    let several_conditions =
+        problem.specimen().recordings().len() > 1 && problem.specimen().simulates_in_milliseconds();
+    if several_conditions {
+        problem.criteria.acceptance.least_fraction_conditions
+    } else {
+        problem.criteria.acceptance.least_fraction_incomplete
+    }
+}
+
+/// Notes what candidates explain alone; laws without a name join when they are tried.
+fn score_alone(selector: &Selector<'_, '_>, screened: &[Screened], scores: &mut Vec<CandidateScore>) {
+    for (candidate, fit) in screened {
+        if scores.iter().all(|s| s.candidate != *candidate) {
+            scores.push(CandidateScore {
+                candidate: *candidate,
+                alone: fit.as_ref().map_or(f64::INFINITY, |f| selector.held_out_ratio(f)),
+                added: None,
+            });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analytic::{
+        CUBIC, FORTY_SINES, FREQUENCY, FRICTION, FRICTION_OF_BOTH, GAIN, NEARLY_CUBIC, RUN, Recipe, TABLE, VIBRATION,
+    };
+    use crate::criteria::Criteria;
+    use crate::estimation::covariance::deviations;
+    use std::sync::atomic::AtomicBool;
+
+    fn selected(recipe: &Recipe) -> Selection {
+        select(&LeastSquares::new(&recipe.make(), &RUN), &|_, _| {}).expect("a selection")
+    }
+
+    fn found(selection: &Selection) -> Vec<usize> {
+        let mut effects = selection.best.point.effects.clone();
+        effects.sort_unstable();
+        effects
+    }
+
+    #[test]
+    fn nothing_is_found_where_nothing_is_missing() {
+        for seed in 0..12 {
+            let s = selected(&Recipe {
+                seed,
+                ..Recipe::default()
+            });
+            assert!(s.effects.is_empty() && !s.incomplete, "seed {seed}: {:?}", s.effects);
+            assert!((s.improved_ratio - 1.0).abs() < 0.04, "{}", s.improved_ratio);
+        }
+    }
+
+    #[test]
+    fn the_missing_law_is_found_and_sized() {
+        for seed in 0..6 {
+            let s = selected(&Recipe {
+                seed,
+                truth: vec![(FRICTION, vec![0.1])],
+                ..Recipe::default()
+            });
+            assert_eq!(found(&s), [FRICTION], "seed {seed}");
+            assert!(!s.incomplete && s.effects[0].ambiguous_rival().is_none());
+            assert!(s.calibrated_ratio > 2.0 && s.improved_ratio < 1.05);
+            let (z, sd) = (s.best.point.z[2], deviations(&s.best)[2]);
+            // One coordinate is 0.05.
+            assert!((0.05 * z - 0.1).abs() < 4.0 * 0.05 * sd + 1e-3, "{z} +- {sd}");
+        }
+    }
+
+    #[test]
+    fn two_missing_laws_are_found_together() {
+        let s = selected(&Recipe {
+            truth: vec![(FRICTION, vec![0.08]), (CUBIC, vec![0.2])],
+            candidates: vec![CUBIC, FRICTION, VIBRATION, FORTY_SINES, GAIN],
+            ..Recipe::default()
+        });
+        assert_eq!(found(&s), [CUBIC, FRICTION]);
+        assert!(s.effects[0].gain.total >= s.effects[1].gain.total);
+    }
+
+    #[test]
+    fn laws_of_nearly_one_shape_are_called_ambiguous() {
+        let s = selected(&Recipe {
+            truth: vec![(CUBIC, vec![0.2])],
+            ..Recipe::default()
+        });
+        let effect = &s.effects[0];
+        assert_eq!(s.effects.len(), 1);
+        let pair = [effect.candidate, effect.ambiguous_rival().expect("a rival")];
+        assert!(pair.contains(&CUBIC) && pair.contains(&NEARLY_CUBIC), "{pair:?}");
+    }
+
+    #[test]
+    fn held_out_blocks_reject_what_fits_only_the_noise() {
+        for seed in 0..6 {
+            let specimen = Recipe {
+                seed,
+                candidates: vec![FORTY_SINES],
+                ..Recipe::default()
+            }
+            .make();
+            let problem = LeastSquares::new(&specimen, &RUN);
+            let s = select(&problem, &|_, _| {}).expect("a selection");
+            assert!(s.effects.is_empty(), "seed {seed}");
+            // In the fit itself forty numbers gain what would have been accepted.
+            let start = Point::nominal(&specimen).with_effect(&specimen, FORTY_SINES, &[0.0; 40]);
+            let full = crate::estimation::fit(&problem, start, problem.criteria.fitting.converged).expect("a fit");
+            let gained = s.calibrated.cost - full.cost;
+            let least = problem.criteria.acceptance.least_gain;
+            assert!(gained > 0.6 * least, "seed {seed}: {gained}");
+            // On held-out blocks they lose about as much.
+            assert!(s.scores[0].alone > s.calibrated_ratio, "seed {seed}: {:?}", s.scores);
+        }
+    }
+
+    #[test]
+    fn a_local_minimum_is_left_through_the_starts() {
+        let recipe = Recipe {
+            truth: vec![(VIBRATION, vec![0.1, FREQUENCY])],
+            ..Recipe::default()
+        };
+        let search = |starts: Vec<Vec<f64>>| {
+            let mut specimen = recipe.make();
+            specimen.give_starts(VIBRATION, starts);
+            select(&LeastSquares::new(&specimen, &RUN), &|_, _| {}).expect("a selection")
+        };
+        let without = search(vec![]);
+        assert!(!found(&without).contains(&VIBRATION) && without.incomplete);
+        let with = search((0..30).map(|k| vec![0.0, 0.5 + 0.115 * f64::from(k)]).collect());
+        assert_eq!(found(&with), [VIBRATION]);
+        let frequency = 1.0 + 0.05 * with.best.point.z[3];
+        assert!((frequency - FREQUENCY).abs() < 0.005, "{frequency}");
+        assert!(!with.incomplete);
+    }
+
+    #[test]
+    fn a_law_without_a_name_is_tried_only_when_no_name_explains_what_is_left() {
+        let recipe = |candidates: Vec<usize>| Recipe {
+            truth: vec![(CUBIC, vec![0.3])],
+            candidates,
+            ..Recipe::default()
+        };
+        let named = selected(&recipe(vec![CUBIC, FRICTION, TABLE]));
+        assert_eq!(found(&named), [CUBIC]);
+        assert!(named.scores.iter().all(|s| s.candidate != TABLE), "never screened");
+        let nameless = selected(&recipe(vec![FRICTION, TABLE]));
+        assert_eq!(found(&nameless), [TABLE]);
+        assert!(nameless.improved_ratio < 0.7 * nameless.calibrated_ratio);
+    }
+
+    #[test]
+    fn an_effect_in_fewer_places_is_reported_where_it_does_as_well() {
+        let s = selected(&Recipe {
+            truth: vec![(FRICTION, vec![0.1])],
+            candidates: vec![FRICTION, FRICTION_OF_BOTH],
+            ..Recipe::default()
+        });
+        assert_eq!(found(&s), [FRICTION]);
+        let s = selected(&Recipe {
+            truth: vec![(FRICTION_OF_BOTH, vec![0.15, 0.04])],
+            candidates: vec![FRICTION, FRICTION_OF_BOTH],
+            ..Recipe::default()
+        });
+        assert_eq!(found(&s), [FRICTION_OF_BOTH]);
+    }
+
+    #[test]
+    fn a_misfit_that_no_candidate_explains_leaves_the_model_incomplete() {
+        let s = selected(&Recipe {
+            truth: vec![(CUBIC, vec![0.3])],
+            candidates: vec![FRICTION, VIBRATION],
+            ..Recipe::default()
+        });
+        assert!(s.effects.is_empty() && s.incomplete);
+    }
+
+    #[test]
+    fn thresholds_are_those_of_the_criteria() {
+        let specimen = Recipe {
+            truth: vec![(FRICTION, vec![0.1])],
+            ..Recipe::default()
+        }
+        .make();
+        let mut criteria = Criteria::default();
+        criteria.acceptance.least_gain = 1e9;
+        let problem = LeastSquares::new(&specimen, &RUN).with_criteria(criteria);
+        let s = select(&problem, &|_, _| {}).expect("a selection");
+        assert!(s.effects.is_empty() && s.incomplete);
+    }
+
+    #[test]
+    fn the_same_bits_on_any_number_of_threads() {
+        let recipe = Recipe {
+            truth: vec![(FRICTION, vec![0.1]), (VIBRATION, vec![0.1, 1.03])],
+            ..Recipe::default()
+        };
+        let run = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build()
+                .expect("a pool");
+            let s = pool.install(|| selected(&recipe));
+            (
+                found(&s),
+                s.best.point.z.iter().map(|z| z.to_bits()).collect::<Vec<_>>(),
+                s.improved_ratio.to_bits(),
+            )
+        };
+        assert_eq!(run(1), run(3));
+    }
+
+    #[test]
+    fn it_ends_when_asked_to_stop() {
+        let (specimen, stop) = (Recipe::default().make(), AtomicBool::new(true));
+        let stopped = select(&LeastSquares::new(&specimen, &stop), &|_, _| {});
+        assert!(matches!(stopped, Err(DiagnoseError::Interrupted)));
+    }
+}

@@ -1,0 +1,69 @@
+//! The outcome of the search.
+
+use super::evidence::HeldOutGain;
+use crate::estimation::Fit;
+
+/// Told what is being done, and the fraction of the work that is done, 0 to 1.
+pub type Progress<'a> = &'a (dyn Fn(&str, f64) + Sync);
+
+/// What the search found.
+#[derive(Debug, Clone)]
+pub struct Selection {
+    /// The model calibrated within tolerance, no effect added.
+    pub calibrated: Fit,
+    /// The improved model.
+    pub best: Fit,
+    /// Effects of the improved model, the one of largest gain first.
+    pub effects: Vec<SelectedEffect>,
+    /// Every testable candidate.
+    pub scores: Vec<CandidateScore>,
+    /// Held-out noise ratio of the calibrated model.
+    pub calibrated_ratio: f64,
+    /// Held-out noise ratio of the improved model.
+    pub improved_ratio: f64,
+    /// True if the improved model is not complete: something predictable or large remains.
+    pub incomplete: bool,
+}
+
+/// An effect of the improved model, and how sure it is.
+#[derive(Debug, Clone)]
+pub struct SelectedEffect {
+    /// Index of the candidate.
+    pub candidate: usize,
+    /// Gain over the best model without it.
+    pub gain: HeldOutGain,
+    /// Held-out noise ratio of the best model without it.
+    pub ratio_without: f64,
+    /// The strongest rival, fitted in its place; `None` where none could be fitted.
+    pub rival: Option<Rival>,
+}
+
+/// The strongest other candidate in the place of an effect.
+#[derive(Debug, Clone, Copy)]
+pub struct Rival {
+    /// Index of the candidate.
+    pub candidate: usize,
+    /// Gain of the effect over the rival: by how much the rival's model meets held-out blocks worse.
+    pub lead: HeldOutGain,
+    /// True if the rival does as well, as far as the recordings can tell.
+    pub ambiguous: bool,
+}
+
+impl SelectedEffect {
+    /// The rival that the recordings cannot tell from the effect, if there is one.
+    #[must_use]
+    pub fn ambiguous_rival(&self) -> Option<usize> {
+        self.rival.filter(|r| r.ambiguous).map(|r| r.candidate)
+    }
+}
+
+/// What one candidate can explain.
+#[derive(Debug, Clone)]
+pub struct CandidateScore {
+    /// Index of the candidate.
+    pub candidate: usize,
+    /// Held-out noise ratio with it alone beside the calibrated model; infinite where it cannot be simulated.
+    pub alone: f64,
+    /// Held-out noise ratio with it added to the improved model; `None` if it is in it or excluded by it.
+    pub added: Option<f64>,
+}

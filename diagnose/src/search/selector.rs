@@ -1,0 +1,148 @@
+//! What all steps of the search share: fits that are made once, candidates that may be added, and judgement on held-out
+//! blocks.
+
+use std::collections::BTreeMap;
+
+use super::evidence::HeldOutGain;
+use super::screen::Screen;
+use crate::criteria::Criteria;
+use crate::error::DiagnoseError;
+use crate::estimation::{Fit, LeastSquares, Point, fit, held_out};
+use crate::specimen::{Candidate, Specimen};
+
+/// A candidate and its screened fit; `None` where it cannot be simulated at all.
+pub type Screened = (usize, Option<Fit>);
+
+/// The search in progress.
+pub struct Selector<'p, 'a> {
+    /// Specimen, blocks and thresholds.
+    pub problem: &'p LeastSquares<'a>,
+    /// Candidates that the recordings can show.
+    testable: Vec<usize>,
+    /// Fits already made, by their effects.
+    known: BTreeMap<Vec<usize>, Fit>,
+}
+
+impl<'p, 'a> Selector<'p, 'a> {
+    /// A search that has not begun.
+    pub fn new(problem: &'p LeastSquares<'a>) -> Self {
+        let all = problem.specimen().candidates();
+        Self {
+            problem,
+            testable: (0..all.len()).filter(|&c| all[c].untestable.is_none()).collect(),
+            known: BTreeMap::new(),
+        }
+    }
+
+    pub fn criteria(&self) -> &'p Criteria {
+        &self.problem.criteria
+    }
+
+    pub fn specimen(&self) -> &'a dyn Specimen {
+        self.problem.specimen()
+    }
+
+    pub fn candidate(&self, index: usize) -> &'a Candidate {
+        &self.specimen().candidates()[index]
+    }
+
+    /// The converged fit of a model. Each set of effects is fitted once, unless the start is better than the fit that is known:
+    /// that one had then ended in a local minimum.
+    pub fn fitted(&mut self, start: Point) -> Result<Fit, DiagnoseError> {
+        let mut effects = start.effects.clone();
+        effects.sort_unstable();
+        if let Some(known) = self.known.get(&effects) {
+            let acceptance = &self.criteria().acceptance;
+            let cost = self.problem.cost_at(&start)?;
+            if cost > known.cost - acceptance.better_start * acceptance.least_gain {
+                return Ok(known.clone());
+            }
+        }
+        let full = fit(self.problem, start, self.criteria().fitting.converged)?;
+        self.known.insert(effects, full.without_sensitivities());
+        Ok(full)
+    }
+
+    /// Costs of the blocks, each held out.
+    pub fn held_out<'f>(&self, fit: &'f Fit) -> &'f [f64] {
+        &held_out(fit, self.problem).costs
+    }
+
+    /// Noise ratio of costs over all blocks.
+    pub fn noise_ratio(&self, costs: &[f64]) -> f64 {
+        (costs.iter().sum::<f64>() / self.problem.residuals() as f64).sqrt()
+    }
+
+    /// Held-out noise ratio of a fit.
+    pub fn held_out_ratio(&self, fit: &Fit) -> f64 {
+        self.noise_ratio(self.held_out(fit))
+    }
+
+    /// What one set of costs gains over another.
+    pub fn gain(&self, before: &[f64], after: &[f64]) -> HeldOutGain {
+        let residuals = self.problem.residuals() as f64;
+        HeldOutGain::between(before, after, residuals, &self.criteria().acceptance)
+    }
+
+    /// True if a gain is accepted: certain, large, and at least a fraction of what is unexplained.
+    pub fn accepts(&self, gain: &HeldOutGain, least_fraction: f64) -> bool {
+        gain.is_accepted(least_fraction, &self.criteria().acceptance)
+    }
+
+    /// Candidates that may be added to a model: not in it and excluded by none of its effects. Laws without a name only
+    /// where they are asked for.
+    pub fn open(&self, point: &Point, with_laws: bool) -> Vec<usize> {
+        let excluded = |c: usize| {
+            let candidate = self.candidate(c);
+            (candidate.is_unlisted() && !with_laws)
+                || (point.effects.iter()).any(|&e| e == c || self.candidate(e).excludes(candidate))
+        };
+        self.testable.iter().copied().filter(|&c| !excluded(c)).collect()
+    }
+
+    /// Screens candidates beside a fitted model.
+    pub fn screen(&self, fit: &Fit, candidates: Vec<usize>) -> Result<Vec<Screened>, DiagnoseError> {
+        let fits = Screen::new(self.problem, fit)?.all(&candidates)?;
+        Ok(candidates.into_iter().zip(fits).collect())
+    }
+
+    /// Smallest fraction of the unexplained cost that a candidate must explain. A law without a name bends to much, and so
+    /// does an instrument where the model stays incomplete: both must explain more.
+    pub fn least_fraction(&self, candidate: usize, fraction: f64) -> f64 {
+        let acceptance = &self.criteria().acceptance;
+        let candidate = self.candidate(candidate);
+        let stays_incomplete = fraction > acceptance.least_fraction;
+        if candidate.is_unlisted() || (candidate.is_instrument_fault() && stays_incomplete) {
+            fraction.max(acceptance.least_fraction_incomplete)
+        } else {
+            fraction
+        }
+    }
+
+    /// Noise ratio that a fitted model would reach if it were complete.
+    pub fn floor(&self, fit: &Fit) -> f64 {
+        self.specimen().noise_floor(&fit.point.hypothesis(self.specimen()))
+    }
+
+    /// Noise ratio up to which a fitted model counts as complete.
+    pub fn complete_up_to(&self, fit: &Fit) -> f64 {
+        let completeness = &self.criteria().completeness;
+        completeness.noise_ratio.max(completeness.over_floor * self.floor(fit))
+    }
+}
+
+/// Costs of the blocks as a screened fit reaches them. Held-out costs would ask too much of it: it has not converged, and
+/// where one edge of a valve holds most of the misfit, the rest says little about it in a linear approximation.
+pub fn reached(fit: &Fit) -> Vec<f64> {
+    fit.normals.iter().map(|n| n.cost).collect()
+}
+
+/// Screened fits with the costs that they reach, the lowest first.
+pub fn ranked(screened: &[Screened]) -> Vec<(f64, Fit)> {
+    let mut order: Vec<(f64, Fit)> = (screened.iter())
+        .filter_map(|(_, fit)| fit.as_ref())
+        .map(|fit| (reached(fit).iter().sum(), fit.clone()))
+        .collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order
+}

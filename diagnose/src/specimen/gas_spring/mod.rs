@@ -1,0 +1,166 @@
+//! A gas spring: one chamber, one pressure. The adiabat (or isotherm) is what is believed; what may be missing is heat
+//! transfer, and, as rivals that would look like it, a polytropic exponent, a leak and the faults of the instrument.
+
+mod candidates;
+mod corner;
+
+use oleo_plant_sim::specimen::{GasHeatTransferTerm, GasSpringModel, smooth_motion};
+
+use super::candidate::{Candidate, Hypothesis};
+use super::channel::{Channel, StateSeries, stated};
+use super::contract::{BelievedModel, Specimen};
+use super::drawing::Drawing;
+use super::extent::Extent;
+use super::instrument::FaultTables;
+use super::kind::SpecimenKind;
+use super::single_output::{SingleOutput, SingleOutputSpecimen};
+use crate::error::DiagnoseError;
+use crate::recording::{ColumnKind, ColumnSpec, GapPolicy, Recording};
+use crate::vocabulary::{Column, EffectId, Place, Site, State};
+use candidates::{GAS_LOST, POLYTROPIC_EXPONENT, PRESSURE};
+use corner::{Clock, corners};
+
+/// Noise assumed where the model file states none: a tenth of a psi, the resolution of common gauges.
+const DEFAULT_NOISE_PA: f64 = 690.0;
+/// Half window over which the motion is smoothed for its speed, in samples.
+const SMOOTHING_SAMPLES: f64 = 5.0;
+
+/// What is believed of a gas spring, and what the corners of its motion say about the clocks.
+pub struct GasSpring {
+    model: GasSpringModel,
+    /// One a recording, where it has corners enough.
+    clocks: Vec<Option<Clock>>,
+}
+
+impl BelievedModel for GasSpringModel {
+    fn columns(&self) -> Vec<ColumnSpec> {
+        vec![
+            ColumnSpec::new("displacement_m", ColumnKind::Input),
+            ColumnSpec::new("p_Pa", ColumnKind::Output),
+        ]
+    }
+
+    fn gap_policy(&self) -> GapPolicy {
+        GapPolicy::Cut
+    }
+
+    fn with_recordings(self: Box<Self>, recordings: Vec<Recording>) -> Result<Box<dyn Specimen>, DiagnoseError> {
+        let noise = stated(&self.noise, PRESSURE.as_str()).unwrap_or(DEFAULT_NOISE_PA);
+        let clocks: Vec<Option<Clock>> = recordings.iter().map(|r| clock(&self, r, noise)).collect();
+        let extent = Extent::of(&recordings);
+        let read: Vec<Clock> = clocks.iter().copied().flatten().collect();
+        Ok(Box::new(SingleOutputSpecimen {
+            calibration: candidates::calibration(&self, &recordings),
+            candidates: candidates::candidates(&self, &extent, noise, &read),
+            kind: GasSpring { model: *self, clocks },
+            recordings,
+            channel: Channel {
+                column: PRESSURE,
+                noise,
+            },
+        }))
+    }
+}
+
+/// Corners of the motion in one recording: logarithm of the volume against logarithm of the pressure, whose slope there
+/// is the exponent of the fast process, about that of the adiabat whatever the gas does afterwards.
+fn clock(model: &GasSpringModel, recording: &Recording, noise_pa: f64) -> Option<Clock> {
+    let volume = |x: &f64| libm::log((model.chamber.volume_at_zero_m3 - model.chamber.area_m2 * x).max(1e-9));
+    let cause: Vec<f64> = recording.columns[0].iter().map(volume).collect();
+    let effect: Vec<f64> = recording.columns[1].iter().map(|p| libm::log(p.max(1.0))).collect();
+    let mean = recording.columns[1].iter().sum::<f64>() / recording.len() as f64;
+    Clock::of(&corners(&recording.time_s, &cause, &effect, noise_pa / mean.max(1.0)))
+}
+
+/// What the corners of the motion say about the clocks.
+fn remark(recording: &Recording, clock: &Clock) -> String {
+    let [low, middle, high] = clock.delay_s;
+    let verdict = if clock.is_late(recording.interval_s()) {
+        "no gas does that: the clocks of the two columns differ"
+    } else {
+        "one clock, as far as the corners tell"
+    };
+    format!(
+        "{}: at {} corners of the motion p_Pa follows displacement_m after {middle:.2} s ({low:.2} to {high:.2} s), \
+         with an exponent of {:.2} to {:.2} there; {verdict}",
+        recording.name, clock.corners, -clock.slope[1], -clock.slope[0]
+    )
+}
+
+impl SingleOutput for GasSpring {
+    type Model = GasSpringModel;
+
+    fn kind(&self) -> SpecimenKind {
+        SpecimenKind::GasSpring
+    }
+
+    fn inputs_in_words(&self) -> &'static str {
+        "displacement and the first pressure"
+    }
+
+    fn applied(&self, candidates: &[Candidate], hypothesis: &Hypothesis) -> GasSpringModel {
+        let mut model = self.model.clone();
+        candidates::calibrate(&mut model, &hypothesis.calibration);
+        for (index, values) in &hypothesis.effects {
+            let candidate = &candidates[*index];
+            let value = values[0];
+            let e = &mut model.effects;
+            match (candidate.id, candidate.label.as_str()) {
+                (EffectId::GasHeatTransfer, _) => {
+                    e.gas_heat_transfer = Some(GasHeatTransferTerm { time_constant_s: value });
+                }
+                (EffectId::Unlisted, GAS_LOST) => e.gas_leak_rate_1_s = Some(value),
+                (EffectId::Unlisted, POLYTROPIC_EXPONENT) => e.polytropic_exponent = Some(value),
+                _ => FaultTables {
+                    lag: &mut e.sensor_lag,
+                    skew: &mut e.sensor_skew,
+                    gain: &mut e.sensor_gain,
+                    drift: &mut e.sensor_drift,
+                }
+                .put(candidate, value),
+            }
+        }
+        model
+    }
+
+    fn output(&self, model: &GasSpringModel, recording: &Recording, _index: usize) -> Result<Vec<f64>, String> {
+        let [x, p] = [&recording.columns[0], &recording.columns[1]];
+        model.pressure_pa(&recording.time_s, x, p[0])
+    }
+
+    fn shown(&self, model: &GasSpringModel, time_s: &[f64], output: Vec<f64>) -> Vec<f64> {
+        model.shown(time_s, output)
+    }
+
+    fn to_toml(&self, model: &GasSpringModel) -> Result<String, String> {
+        model.to_toml()
+    }
+
+    fn states(&self, recording: &Recording, _index: usize) -> Vec<StateSeries> {
+        let x = &recording.columns[0];
+        let motion = smooth_motion(&recording.time_s, x, SMOOTHING_SAMPLES * recording.interval_s());
+        vec![
+            StateSeries::new(State::Displacement, x.clone()),
+            StateSeries::new(State::Speed, motion.speed_m_s),
+            StateSeries::new(State::Pressure, recording.columns[1].clone()),
+        ]
+    }
+
+    fn remarks(&self, recordings: &[Recording]) -> Vec<String> {
+        (recordings.iter().zip(&self.clocks))
+            .filter_map(|(recording, clock)| clock.as_ref().map(|clock| remark(recording, clock)))
+            .collect()
+    }
+
+    fn drawing(&self, found: &[&Place]) -> String {
+        let mut d = Drawing::new(900, 150, found);
+        d.block((60, 55, 90, 40), "rod", false);
+        d.line("150,75 330,75", false);
+        d.block((330, 30, 40, 90), "pis-|ton", false);
+        d.site((370, 30, 300, 90), "gas chamber", Site::Chamber);
+        d.sensor((240, 50), "x", Column::DISPLACEMENT);
+        d.line("670,75 740,75", false);
+        d.sensor((760, 75), "p", PRESSURE);
+        d.svg()
+    }
+}

@@ -1,0 +1,41 @@
+//! A model file of any kind: the one place that knows all kinds of specimen.
+
+use oleo_plant_sim::model_file::InvalidValue;
+use oleo_plant_sim::model_file::names::suggestion;
+use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, specimen_name};
+use oleo_plant_sim::strut::StrutModel;
+use strum::VariantNames;
+
+use super::contract::BelievedModel;
+use super::kind::SpecimenKind;
+use crate::error::DiagnoseError;
+
+/// A model file that was read and checked.
+pub struct ModelFile {
+    /// Name of the individual.
+    pub name: String,
+    /// What is believed of it.
+    pub model: Box<dyn BelievedModel>,
+}
+
+impl ModelFile {
+    /// Reads a model file; `source` names it in messages.
+    ///
+    /// # Errors
+    /// One line: source, line or key, what is wrong, what to do.
+    pub fn read(text: &str, source: &str) -> Result<Self, DiagnoseError> {
+        let head = specimen_name(text, source)?;
+        let kind: SpecimenKind = (head.kind.parse()).map_err(|_| unknown(&head.kind).in_file(text, source))?;
+        let model: Box<dyn BelievedModel> = match kind {
+            SpecimenKind::TwoStageStrut => Box::new(StrutModel::from_toml(text, source)?),
+            SpecimenKind::GasSpring => Box::new(GasSpringModel::from_toml(text, source)?),
+            SpecimenKind::Cylinder => Box::new(CylinderModel::from_toml(text, source)?),
+        };
+        Ok(Self { name: head.name, model })
+    }
+}
+
+fn unknown(kind: &str) -> InvalidValue {
+    let what = format!("is {kind:?}: {}", suggestion(kind, SpecimenKind::VARIANTS, "kinds"));
+    InvalidValue::new("kind", what).inside("specimen")
+}

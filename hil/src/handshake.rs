@@ -1,0 +1,138 @@
+//! How two nodes on a bus find each other, whichever was started first, and agree on the run.
+//!
+//! Each repeats its `Hello` until it has received the other's and knows that its own was received.
+
+use std::time::{Duration, Instant};
+
+use crate::bus::{Bus, BusError};
+use crate::sync::{Role, Sync, Terms};
+
+/// Why two nodes did not start a run together.
+#[derive(Debug, thiserror::Error)]
+pub enum HandshakeError {
+    /// The other node did not answer.
+    #[error("no {} answers on {bus} within {waited_s:.0} s: start `oleo hil --node {} --bus {bus}` as well", .partner.name(), .partner.name())]
+    Alone {
+        /// The node that was expected.
+        partner: Role,
+        /// Address of the bus.
+        bus: String,
+        /// Time for which it was waited for, s.
+        waited_s: f64,
+    },
+    /// The two nodes want different runs.
+    #[error("the {} on {bus} runs another {what}: give both nodes the same scenario, --strategy and --clock", .partner.name())]
+    Terms {
+        /// The node that answered.
+        partner: Role,
+        /// Address of the bus.
+        bus: String,
+        /// What differs: `strategy` or `clock`.
+        what: &'static str,
+    },
+    /// The bus failed.
+    #[error(transparent)]
+    Bus(#[from] BusError),
+}
+
+/// Pause between two `Hello`s.
+const HELLO_PERIOD: Duration = Duration::from_millis(50);
+
+/// Finds the partner, whichever was started first.
+///
+/// # Errors
+/// The partner did not answer within `patience`, wants another run, or the bus failed.
+pub fn handshake(
+    bus: &mut dyn Bus,
+    name: &str,
+    role: Role,
+    terms: Terms,
+    patience: Duration,
+) -> Result<(), HandshakeError> {
+    let partner = role.other();
+    let started = Instant::now();
+    let (mut heard, mut is_heard) = (false, false);
+    while !(heard && is_heard) {
+        if started.elapsed() > patience {
+            return Err(HandshakeError::Alone {
+                partner,
+                bus: name.into(),
+                waited_s: patience.as_secs_f64(),
+            });
+        }
+        bus.send(&Sync::Hello { terms, heard }.encode(role))?;
+        let pause = Instant::now() + HELLO_PERIOD;
+        while !(heard && is_heard) {
+            let left = pause.saturating_duration_since(Instant::now());
+            let Some(frame) = bus.receive(left)? else { break };
+            let Some(Sync::Hello {
+                terms: theirs,
+                heard: theirs_heard,
+            }) = Sync::decode(&frame, partner)
+            else {
+                continue;
+            };
+            let differs = |what| HandshakeError::Terms {
+                partner,
+                bus: name.into(),
+                what,
+            };
+            if theirs.strategy != terms.strategy {
+                return Err(differs("strategy"));
+            }
+            if theirs.clock != terms.clock {
+                return Err(differs("clock"));
+            }
+            is_heard |= theirs_heard;
+            if !std::mem::replace(&mut heard, true) {
+                break; // say so at once
+            }
+        }
+    }
+    // The partner may not know yet that its own `Hello` was received.
+    bus.send(&Sync::Hello { terms, heard: true }.encode(role))?;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_find_each_other_in_either_order() {
+        let terms = Terms { strategy: 2, clock: 0 };
+        for late in [Role::Plant, Role::Controller] {
+            let (mut a, mut b) = crate::bus::in_process_pair();
+            std::thread::scope(|scope| {
+                let early = scope
+                    .spawn(move || handshake(&mut a, "x", late.other(), terms, Duration::from_secs(20)).map(|()| a));
+                std::thread::sleep(Duration::from_millis(120));
+                handshake(&mut b, "x", late, terms, Duration::from_secs(20)).unwrap();
+                early.join().unwrap().unwrap();
+            });
+        }
+    }
+
+    #[test]
+    fn a_node_alone_or_with_other_terms_says_so() {
+        let terms = Terms { strategy: 2, clock: 0 };
+        let (mut a, mut b) = crate::bus::in_process_pair();
+        let alone = handshake(&mut a, "socketcan:vcan0", Role::Plant, terms, Duration::from_millis(60));
+        assert!(
+            alone
+                .unwrap_err()
+                .to_string()
+                .contains("oleo hil --node controller --bus socketcan:vcan0")
+        );
+        b.send(
+            &Sync::Hello {
+                terms: Terms { strategy: 1, clock: 0 },
+                heard: false,
+            }
+            .encode(Role::Controller),
+        )
+        .unwrap();
+        let other = handshake(&mut a, "x", Role::Plant, terms, Duration::from_secs(9)).unwrap_err();
+        assert!(other.to_string().contains("another strategy"), "{other}");
+    }
+}

@@ -1,0 +1,94 @@
+//! A run, complete and checked: what is driven, how time passes, what goes wrong, what must hold.
+
+use oleo_controller::{DamperPolicy, Strategy};
+use oleo_interface::tick::TICK_S;
+use strum::{EnumString, IntoStaticStr, VariantNames};
+
+use super::check::Check;
+use super::fault::Fault;
+use crate::bus::BusAddress;
+
+/// How time passes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, EnumString, IntoStaticStr, VariantNames)]
+#[strum(serialize_all = "lowercase")]
+pub enum Clock {
+    /// Plant and controller exchange tick n before either goes on: deterministic, as fast as it goes.
+    #[default]
+    Lockstep,
+    /// Absolute deadlines of wall-clock time.
+    RealTime,
+}
+
+impl Clock {
+    /// As on the command line: `lockstep` or `realtime`.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+}
+
+/// What the plant does when the controller is gone for good.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, EnumString, VariantNames)]
+#[strum(serialize_all = "lowercase")]
+pub enum OnControllerLoss {
+    /// Goes on to the end with de-energised valves.
+    #[default]
+    Continue,
+    /// Ends the run.
+    End,
+}
+
+/// A run, complete and checked.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Short name.
+    pub name: String,
+    /// What it shows.
+    pub description: String,
+    /// Built-in road or path of a `.crg` or `.csv` file.
+    pub road: String,
+    /// Forward speed, m/s.
+    pub speed_m_s: f64,
+    /// Simulated time, whole ticks.
+    pub ticks: u32,
+    /// How valves are decided.
+    pub strategy: Strategy,
+    /// How dampers are switched in ride mode.
+    pub damper_policy: DamperPolicy,
+    /// Strut model: `defender110` or the path of a `model.toml`.
+    pub strut: String,
+    /// Vehicle: `defender110` or the path of a parameter file.
+    pub vehicle: String,
+    /// Of the road and of all fault randomness.
+    pub seed: u64,
+    /// Where the frames go.
+    pub bus: BusAddress,
+    /// How time passes.
+    pub clock: Clock,
+    /// What the plant does without a controller.
+    pub on_controller_loss: OnControllerLoss,
+    /// Wall-clock time after which a silent partner is gone, s. A guard against hanging, without effect on results.
+    pub partner_timeout_s: f64,
+    /// What goes wrong.
+    pub faults: Vec<Fault>,
+    /// What must hold.
+    pub checks: Vec<Check>,
+}
+
+impl Scenario {
+    /// Simulated time, s.
+    pub fn duration_s(&self) -> f64 {
+        f64::from(self.ticks) * TICK_S
+    }
+
+    /// Length of road needed, m, with room for the smooth entry and the rear axle.
+    pub fn road_length_m(&self) -> f64 {
+        self.speed_m_s * self.duration_s() + 20.0
+    }
+
+    /// First tick of the first fault, and the first tick after the last one, where there is any.
+    pub fn fault_ticks(&self) -> Option<(u32, u32)> {
+        let from = self.faults.iter().map(|fault| fault.from_tick).min()?;
+        let until = self.faults.iter().map(|fault| fault.until_tick).max()?;
+        Some((from, until))
+    }
+}

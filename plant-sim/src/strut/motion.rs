@@ -1,0 +1,115 @@
+//! How the actuator moves: a cubic from sample to sample, with one speed before each sample and one after it.
+
+/// One sampling interval of a motion: where it ends, and the speeds at its two ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Segment {
+    /// Displacement at the end, m, compression positive.
+    pub to_m: f64,
+    /// Speed just after the beginning, m/s.
+    pub from_m_s: f64,
+    /// Speed just before the end, m/s.
+    pub to_m_s: f64,
+}
+
+impl Segment {
+    /// The part of an interval of `duration_s` in which the motion from `from_m` happens: when it begins and how long it
+    /// takes, s.
+    ///
+    /// Where the motion begins or ends at rest and its other speed would carry it farther than it goes, it has begun or
+    /// ended within the interval: at constant acceleration, which takes twice the way over the speed. (A cubic over the
+    /// whole interval would overshoot and come back, and a seal's friction with it.)
+    ///
+    /// ```
+    /// use oleo_plant_sim::strut::Segment;
+    /// // From 0.2 m/s to rest within 1 mm takes 10 ms, whatever the sampling interval.
+    /// let stop = Segment { to_m: 1e-3, from_m_s: 0.2, to_m_s: 0.0 };
+    /// assert_eq!(stop.moves_within(0.0, 0.02), (0.0, 0.01));
+    /// ```
+    #[must_use]
+    pub fn moves_within(&self, from_m: f64, duration_s: f64) -> (f64, f64) {
+        let rise = self.to_m - from_m;
+        let takes = |speed: f64| {
+            let time = 2.0 * rise / speed;
+            (time > 0.0 && time < duration_s).then_some(time)
+        };
+        if self.to_m_s == 0.0 {
+            takes(self.from_m_s).map_or((0.0, duration_s), |time| (0.0, time))
+        } else if self.from_m_s == 0.0 {
+            takes(self.to_m_s).map_or((0.0, duration_s), |time| (duration_s - time, time))
+        } else {
+            (0.0, duration_s)
+        }
+    }
+}
+
+/// A displacement history that a strut can be driven with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Displacement at the first sample, m.
+    pub start_m: f64,
+    /// One segment for each sampling interval.
+    pub segments: Vec<Segment>,
+}
+
+/// The cubic through displacement and speed at both ends of an interval: both agree with it at any time inside.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cubic {
+    start_m: f64,
+    duration_s: f64,
+    coefficients: [f64; 3],
+}
+
+impl Cubic {
+    pub fn through(start_m: f64, segment: &Segment, duration_s: f64) -> Self {
+        let (a, b) = (segment.from_m_s * duration_s, segment.to_m_s * duration_s);
+        let rise = segment.to_m - start_m;
+        Self {
+            start_m,
+            duration_s,
+            coefficients: [a, 3.0 * rise - 2.0 * a - b, a + b - 2.0 * rise],
+        }
+    }
+
+    /// Displacement, m, and speed, m/s, after a fraction of the interval.
+    #[inline(always)]
+    pub fn at(&self, fraction: f64) -> (f64, f64) {
+        let [a, c2, c3] = self.coefficients;
+        (
+            self.start_m + fraction * (a + fraction * (c2 + fraction * c3)),
+            (a + fraction * (2.0 * c2 + 3.0 * fraction * c3)) / self.duration_s,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_segment_from_or_to_rest_moves_at_constant_acceleration_within_its_interval() {
+        let s = |from_m_s, to_m_s| Segment {
+            to_m: 1e-3,
+            from_m_s,
+            to_m_s,
+        };
+        assert_eq!(s(0.2, 0.0).moves_within(0.0, 0.02), (0.0, 0.01));
+        assert_eq!(s(0.0, 0.2).moves_within(0.0, 0.02), (0.01, 0.01));
+        for whole in [s(0.08, 0.0), s(0.0, 0.08), s(-0.2, 0.0), s(0.2, 0.2), s(0.0, 0.0)] {
+            assert_eq!(whole.moves_within(0.0, 0.02), (0.0, 0.02), "{whole:?}");
+        }
+    }
+
+    #[test]
+    fn the_cubic_has_displacement_and_speed_at_both_ends() {
+        let segment = Segment {
+            to_m: 3e-3,
+            from_m_s: 0.1,
+            to_m_s: -0.4,
+        };
+        let cubic = Cubic::through(1e-3, &segment, 0.02);
+        let (x, v) = cubic.at(0.0);
+        assert!((x - 1e-3).abs() < 1e-15 && (v - 0.1).abs() < 1e-12);
+        let (x, v) = cubic.at(1.0);
+        assert!((x - 3e-3).abs() < 1e-15 && (v + 0.4).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,209 @@
+//! The main chamber: what volume it takes up when its pressure changes.
+//!
+//! Oil, undissolved air, the mount and an unmodelled compliance take up volume. Oil and air are counted in one of two
+//! ways ([`OilCount`]), so the chamber's volume has two parts: one that is held (a function of pressure and displacement,
+//! which comes back exactly) and one that is counted at the chamber's density of the moment.
+
+use oleo_interface::Gauge;
+
+use super::state::State;
+use crate::strut::model::StrutModel;
+use crate::strut::terms::{ChamberLaws, EntrainedAir, OilCount, held_at_static_density, taken_up_at_chamber_density};
+
+/// The main chamber as the network sees it.
+#[derive(Debug, Clone)]
+pub(in crate::strut) struct Chamber {
+    /// Piston area, m2.
+    pub area_m2: f64,
+    /// Oil volume at displacement zero, m3.
+    pub oil_volume_m3: f64,
+    /// One over the bulk modulus, 1/Pa; 0 for rigid oil.
+    pub compressibility_1_pa: f64,
+    /// Gauge pressure at which the strut stands, Pa.
+    pub static_pa: f64,
+    counts_at_static_density: bool,
+    air: Option<EntrainedAir>,
+    /// Volume that the mount's deflection adds, m3/Pa.
+    mount_m3_pa: f64,
+    laws: ChamberLaws,
+}
+
+/// What the chamber does between the beginning of a stage and a trial pressure at its end.
+pub(super) struct TakenUp {
+    /// Volume taken up since the beginning of the stage, m3.
+    pub volume_m3: f64,
+    /// Its derivative by the pressure, m3/Pa.
+    pub slope: f64,
+    /// `State::held_m3` at the end.
+    pub held_m3: f64,
+    /// Its derivative by the pressure, m3/Pa.
+    pub held_slope: f64,
+    /// `State::compressed` at the end.
+    pub compressed: f64,
+    /// Its derivative by the pressure, 1/Pa.
+    pub compressed_slope: f64,
+}
+
+impl Chamber {
+    pub fn of(model: &StrutModel) -> Self {
+        let effects = &model.effects;
+        let oil = effects.oil_compressibility.as_ref();
+        let area_m2 = model.piston_area_m2();
+        Self {
+            area_m2,
+            oil_volume_m3: model.cylinder.oil_volume_m3,
+            compressibility_1_pa: oil.map_or(0.0, |oil| 1.0 / oil.bulk_modulus_pa),
+            static_pa: model.cylinder.static_pressure_pa,
+            counts_at_static_density: oil.is_some_and(|oil| oil.counted_at == OilCount::Static),
+            air: effects.entrained_air.clone(),
+            mount_m3_pa: (effects.mount_compliance.as_ref())
+                .map_or(0.0, |mount| mount.mount().volume_per_pressure_m3_pa(area_m2)),
+            laws: ChamberLaws::of(&effects.unlisted),
+        }
+    }
+
+    /// Flow that the piston supplies to the chamber at a speed (m/s), less what the chamber loses at the gauge pressure
+    /// from which the stage starts, m3/s.
+    #[inline(always)]
+    pub fn supply_m3_s(&self, speed_m_s: f64, p1_pa: f64) -> f64 {
+        let supply = self.area_m2 * speed_m_s;
+        match self.laws.loss(p1_pa) {
+            Some(loss) => supply - loss,
+            None => supply,
+        }
+    }
+
+    /// Volume that the chamber holds at a gauge pressure beyond what it holds at static pressure, m3, and its derivative.
+    #[inline(always)]
+    pub fn held_m3(&self, p1_pa: f64, displacement_m: f64) -> (f64, f64) {
+        let over = p1_pa - self.static_pa;
+        let (mut volume, mut slope) = (self.mount_m3_pa * over, self.mount_m3_pa);
+        if self.counts_at_static_density {
+            let oil = self.oil_volume_m3 - self.area_m2 * displacement_m;
+            let (held, by_pressure) = held_at_static_density(oil, over, self.compressibility_1_pa);
+            volume += held;
+            slope += by_pressure;
+            if let Some(air) = &self.air {
+                let (left, shrinking) = air.bubbles(Gauge(p1_pa));
+                volume -= self.oil_volume_m3 * left;
+                slope += self.oil_volume_m3 * shrinking;
+            }
+            if let Some((taken_up, by_pressure)) = self.laws.volume(p1_pa) {
+                volume += taken_up;
+                slope += by_pressure;
+            }
+        }
+        (volume, slope)
+    }
+
+    /// Fraction by which the chamber's content has been compressed at a gauge pressure, beyond what a constant bulk
+    /// modulus makes of it, and its derivative, 1/Pa: undissolved air and an unmodelled compliance, where they are counted
+    /// as the recordings' equation counts oil.
+    #[inline(always)]
+    pub fn compressed(&self, p1_pa: f64) -> (f64, f64) {
+        let (mut fraction, mut slope) = (0.0, 0.0);
+        if !self.counts_at_static_density {
+            if let Some(air) = &self.air {
+                let (left, shrinking) = air.bubbles(Gauge(p1_pa));
+                fraction -= left;
+                slope += shrinking;
+            }
+            if let Some((taken_up, by_pressure)) = self.laws.volume(p1_pa) {
+                fraction += taken_up / self.oil_volume_m3;
+                slope += by_pressure / self.oil_volume_m3;
+            }
+        }
+        (fraction, slope)
+    }
+
+    /// What the chamber takes up from `base` to a gauge pressure. Differences of volumes: exact however far it moves.
+    #[inline(always)]
+    pub(super) fn taken_up(&self, base: &State, p1_pa: f64, displacement_m: f64) -> TakenUp {
+        let (held_m3, held_slope) = self.held_m3(p1_pa, displacement_m);
+        let (mut volume_m3, mut slope) = (held_m3 - base.held_m3, held_slope);
+        if !self.counts_at_static_density {
+            let oil = self.oil_volume_m3 - self.area_m2 * displacement_m;
+            let (taken_up, by_pressure) =
+                taken_up_at_chamber_density(oil, p1_pa - base.p1_pa, self.compressibility_1_pa);
+            volume_m3 += taken_up;
+            slope += by_pressure;
+        }
+        let (compressed, compressed_slope) = self.compressed(p1_pa);
+        if compressed_slope != 0.0 {
+            let content = self.oil_volume_m3 - self.area_m2 * displacement_m;
+            volume_m3 += content * (compressed - base.compressed);
+            slope += content * compressed_slope;
+        }
+        TakenUp {
+            volume_m3,
+            slope,
+            held_m3,
+            held_slope,
+            compressed,
+            compressed_slope,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::strut::gas::GasState;
+    use crate::strut::terms::OilCompressibility;
+
+    fn chamber(counted_at: OilCount) -> Chamber {
+        let mut model = StrutModel::defender110(8000.0);
+        model.effects.oil_compressibility = Some(OilCompressibility {
+            bulk_modulus_pa: 1.5e9,
+            counted_at,
+        });
+        Chamber::of(&model)
+    }
+
+    fn at(chamber: &Chamber, p1_pa: f64) -> State {
+        let gas = GasState {
+            volume_m3: 1e-4,
+            temperature_k: 293.15,
+        };
+        State {
+            p1_pa,
+            gas: [gas; 2],
+            held_m3: chamber.held_m3(p1_pa, 0.0).0,
+            compressed: chamber.compressed(p1_pa).0,
+            q2_m3_s: 0.0,
+            shear: [0.0; 2],
+            heat_j: [0.0; 2],
+        }
+    }
+
+    #[test]
+    fn both_ways_of_counting_take_up_the_same_for_a_small_rise_and_the_slope_is_that_of_the_volume() {
+        for counted_at in [OilCount::Chamber, OilCount::Static] {
+            let chamber = chamber(counted_at);
+            let base = at(&chamber, chamber.static_pa);
+            let volume = |p: f64| chamber.taken_up(&base, p, 0.0).volume_m3;
+            assert_eq!(volume(base.p1_pa), 0.0);
+            // Oil alone would be V dp / beta; half a per cent of air at 4 MPa adds less than a thousandth.
+            let stiff = chamber.oil_volume_m3 * 1e4 / 1.5e9;
+            assert!((volume(base.p1_pa + 1e4) / stiff - 1.0).abs() < 0.05);
+            let h = 1e2;
+            let quotient = (volume(base.p1_pa + h) - volume(base.p1_pa - h)) / (2.0 * h);
+            assert!((chamber.taken_up(&base, base.p1_pa, 0.0).slope / quotient - 1.0).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn what_is_counted_at_static_density_comes_back() {
+        let chamber = chamber(OilCount::Static);
+        let base = at(&chamber, chamber.static_pa);
+        let up = chamber.taken_up(&base, 9e6, 0.04);
+        let there = State {
+            p1_pa: 9e6,
+            held_m3: up.held_m3,
+            compressed: up.compressed,
+            ..base
+        };
+        let down = chamber.taken_up(&there, base.p1_pa, 0.0);
+        assert!((up.volume_m3 + down.volume_m3).abs() < 1e-18);
+    }
+}

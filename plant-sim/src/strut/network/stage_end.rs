@@ -1,0 +1,18 @@
+//! When and where a stage of the integrator ends.
+
+use oleo_interface::StrutValves;
+
+/// The end of one implicit stage, as the integrator knows it beforehand.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::strut) struct StageEnd {
+    /// Length of the stage, s.
+    pub duration_s: f64,
+    /// Time since the end of the stage that was solved before, s.
+    pub since_last_s: f64,
+    /// Displacement of the strut, m.
+    pub displacement_m: f64,
+    /// Speed of the strut, m/s.
+    pub speed_m_s: f64,
+    /// Openings of the valves, 0 to 1.
+    pub opening: StrutValves<f64>,
+}

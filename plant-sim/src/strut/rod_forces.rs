@@ -1,0 +1,114 @@
+//! Forces between rod and cylinder beside that of the oil: friction, stops, and unmodelled laws.
+
+use super::friction::{PRESLIDING_STIFFNESS_N_M, advance_friction};
+use super::terms::{BumpStop, Effects, LawPlace, SealFriction, SealLaw, SideLoadFriction};
+
+/// Forces between rod and cylinder beside that of the oil.
+#[derive(Debug, Clone)]
+pub(super) struct RodForces {
+    seal: Option<SealFriction>,
+    side_load: Option<SideLoadFriction>,
+    friction_law: Option<SealLaw>,
+    stops: Option<BumpStop>,
+    force_law: Option<SealLaw>,
+    friction_n: f64,
+}
+
+/// Where the rod is, how fast it moves, and what presses on it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RodState {
+    /// Displacement, m, compression positive.
+    pub displacement_m: f64,
+    /// Speed, m/s.
+    pub speed_m_s: f64,
+    /// Gauge pressure p1, Pa.
+    pub p1_pa: f64,
+    /// Force of the oil on the rod, N.
+    pub oil_force_n: f64,
+}
+
+impl RodForces {
+    /// The forces of a model, on a rod whose friction has been released.
+    pub fn of(effects: &Effects) -> Self {
+        Self {
+            seal: effects.seal_friction.clone(),
+            side_load: effects.side_load_friction.clone(),
+            friction_law: SealLaw::at(&effects.unlisted, LawPlace::MainSealFriction),
+            stops: effects.bump_stop.clone(),
+            force_law: SealLaw::at(&effects.unlisted, LawPlace::MainSeal),
+            friction_n: 0.0,
+        }
+    }
+
+    /// Let the friction follow a stroke (m) that has taken `duration_s` and has led to a state.
+    pub fn follow(&mut self, stroke_m: f64, duration_s: f64, rod: &RodState) {
+        if self.seal.is_none() && self.side_load.is_none() && self.friction_law.is_none() {
+            return;
+        }
+        let mut level_n = self
+            .seal
+            .as_ref()
+            .map_or(0.0, |seal| seal.level_n(stroke_m / duration_s));
+        if let Some(side) = &self.side_load {
+            level_n += side.level_n(rod.oil_force_n, rod.displacement_m);
+        }
+        if let Some(law) = &self.friction_law {
+            level_n += law.value_n(rod.displacement_m, rod.speed_m_s, rod.p1_pa);
+        }
+        let stiffness = (self.seal.as_ref()).map_or(PRESLIDING_STIFFNESS_N_M, |seal| seal.presliding_stiffness_n_m);
+        self.friction_n = advance_friction(self.friction_n, stroke_m, level_n, stiffness);
+    }
+
+    /// Friction, N, positive against jounce.
+    pub fn friction_n(&self) -> f64 {
+        self.friction_n
+    }
+
+    /// Force on the load cell in a state: that of the oil and all of these, N, compression positive.
+    pub fn total_n(&self, rod: &RodState) -> f64 {
+        let mut force_n = rod.oil_force_n + self.friction_n;
+        if let Some(stops) = &self.stops {
+            force_n += stops.force_n(rod.displacement_m);
+        }
+        if let Some(law) = &self.force_law {
+            force_n += law.value_n(rod.displacement_m, rod.speed_m_s, rod.p1_pa);
+        }
+        force_n
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(displacement_m: f64, oil_force_n: f64) -> RodState {
+        RodState {
+            displacement_m,
+            speed_m_s: 0.1,
+            p1_pa: 4e6,
+            oil_force_n,
+        }
+    }
+
+    #[test]
+    fn levels_of_friction_add_and_a_bare_rod_has_none() {
+        let mut bare = RodForces::of(&Effects::default());
+        bare.follow(0.1, 1.0, &at(0.1, 8000.0));
+        assert_eq!(bare.total_n(&at(0.1, 8000.0)), 8000.0);
+        let mut both = RodForces::of(&Effects {
+            seal_friction: Some(SealFriction {
+                coulomb_force_n: 100.0,
+                breakaway_force_n: 100.0,
+                stribeck_speed_m_s: 0.01,
+                presliding_stiffness_n_m: 2e6,
+            }),
+            side_load_friction: Some(SideLoadFriction {
+                coefficient: 0.02,
+                overlap_growth_1_m: 0.0,
+            }),
+            ..Effects::default()
+        });
+        both.follow(0.1, 1.0, &at(0.1, 8000.0));
+        assert!((both.friction_n() - 260.0).abs() < 1e-9);
+    }
+}

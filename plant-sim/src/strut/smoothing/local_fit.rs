@@ -1,0 +1,170 @@
+//! Polynomials over a neighbourhood of a sample, and how wide the neighbourhood may be.
+
+use super::chi_square::largest_chi_square;
+
+/// Window lengths that are tried to one side, samples.
+const LENGTHS: [usize; 13] = [4, 5, 6, 8, 11, 15, 20, 27, 36, 48, 64, 86, 114];
+/// Fewest samples of which a neighbourhood can be made.
+pub(super) const FEWEST_SAMPLES: usize = LENGTHS[0];
+/// Degree of the polynomials next to corners.
+pub(super) const CUBIC: usize = 3;
+/// Degree of the polynomials where the motion is smooth.
+pub(super) const QUINTIC: usize = 5;
+
+/// Orthonormal polynomials on an even grid, by Gram-Schmidt.
+struct Basis {
+    columns: Vec<Vec<f64>>,
+    /// Derivative of the columns at each point, per sample spacing.
+    slopes: Vec<Vec<f64>>,
+}
+
+/// Value and slope (per sample) of a fit, and the variance of the slope for unit noise.
+#[derive(Clone, Copy)]
+pub(super) struct Fit {
+    pub value: f64,
+    pub slope: f64,
+    pub slope_variance: f64,
+}
+
+impl Basis {
+    fn new(length: usize, degree: usize) -> Self {
+        let t: Vec<f64> = (0..length)
+            .map(|i| (2 * i) as f64 / (length - 1) as f64 - 1.0)
+            .collect();
+        let scale = 2.0 / (length - 1) as f64;
+        let (mut columns, mut slopes): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
+        for k in 0..=degree {
+            // t * previous column, made orthogonal to all before; the derivative follows the same recurrence.
+            let (mut v, mut d): (Vec<f64>, Vec<f64>) = if k == 0 {
+                (vec![1.0; length], vec![0.0; length])
+            } else {
+                let (c, s) = (&columns[k - 1], &slopes[k - 1]);
+                (
+                    t.iter().zip(c).map(|(t, c)| t * c).collect(),
+                    t.iter()
+                        .zip(c.iter().zip(s))
+                        .map(|(t, (c, s))| scale * c + t * s)
+                        .collect(),
+                )
+            };
+            for _ in 0..2 {
+                for j in 0..k {
+                    let dot: f64 = v.iter().zip(&columns[j]).map(|(a, b)| a * b).sum();
+                    v.iter_mut().zip(&columns[j]).for_each(|(a, b)| *a -= dot * b);
+                    d.iter_mut().zip(&slopes[j]).for_each(|(a, b)| *a -= dot * b);
+                }
+            }
+            let norm = v.iter().map(|a| a * a).sum::<f64>().sqrt();
+            columns.push(v.iter().map(|a| a / norm).collect());
+            slopes.push(d.iter().map(|a| a / norm).collect());
+        }
+        Self { columns, slopes }
+    }
+
+    /// Fit `x` around point `at`, if the noise explains the residual.
+    fn fit(&self, x: &[f64], at: usize, noise: f64) -> Option<Fit> {
+        let origin = x[at];
+        // The residual's square is that of the data less that of its projections (Bessel).
+        let mut residual: f64 = x.iter().map(|x| (x - origin) * (x - origin)).sum();
+        let total = residual;
+        let mut out = Fit {
+            value: origin,
+            slope: 0.0,
+            slope_variance: 0.0,
+        };
+        for (column, slope) in self.columns.iter().zip(&self.slopes) {
+            let c: f64 = x.iter().zip(column).map(|(x, b)| (x - origin) * b).sum();
+            residual -= c * c;
+            out.value += c * column[at];
+            out.slope += c * slope[at];
+            out.slope_variance += slope[at] * slope[at];
+        }
+        let freedom = (x.len() - self.columns.len()) as f64;
+        let rounding = 1e-13 * total;
+        let limit = noise * noise * largest_chi_square(freedom.max(1.0)) + rounding;
+        (freedom == 0.0 || residual <= limit).then_some(out)
+    }
+}
+
+/// The polynomials of one degree over neighbourhoods of every length that a recording may need.
+pub(super) struct Bases {
+    pub degree: usize,
+    by_length: Vec<Option<Basis>>,
+}
+
+impl Bases {
+    pub fn new(degree: usize) -> Self {
+        let most = 2 * LENGTHS[LENGTHS.len() - 1];
+        let by_length = (0..=most)
+            .map(|l| (l > degree).then(|| Basis::new(l, degree)))
+            .collect();
+        Self { degree, by_length }
+    }
+
+    /// The fit over samples `from..to` around `at`, if the noise explains what it leaves.
+    pub fn fit(&self, x: &[f64], from: usize, to: usize, at: usize, noise: f64) -> Option<Fit> {
+        self.by_length
+            .get(to - from)?
+            .as_ref()?
+            .fit(x.get(from..to)?, at - from, noise)
+    }
+
+    /// Number of samples to one side of `at` that one polynomial explains, at most. The search starts at `hint`, the
+    /// neighbour's answer.
+    pub fn reach(&self, x: &[f64], at: usize, ahead: bool, noise: f64, hint: &mut usize) -> usize {
+        let passes = |k: usize| {
+            let l = LENGTHS[k];
+            let range = if ahead {
+                Some((at, at + l))
+            } else {
+                (at + 1).checked_sub(l).map(|from| (from, at + 1))
+            };
+            l > self.degree && range.is_some_and(|(from, to)| self.fit(x, from, to, at, noise).is_some())
+        };
+        // A degree needs more points than it has coefficients.
+        let least = LENGTHS.iter().position(|l| *l > self.degree).unwrap_or(0);
+        let mut k = (*hint).max(least);
+        if passes(k) {
+            while k + 1 < LENGTHS.len() && passes(k + 1) {
+                k += 1;
+            }
+        } else {
+            while k > least && !passes(k) {
+                k -= 1;
+            }
+        }
+        *hint = k;
+        if passes(k) { LENGTHS[k] - 1 } else { 0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_polynomial_of_the_degree_is_found_again_with_its_slope() {
+        let x: Vec<f64> = (0..40)
+            .map(|i| f64::from(i) * 0.1)
+            .map(|t| 1.0 - 2.0 * t + 0.3 * t * t * t)
+            .collect();
+        for degree in [CUBIC, QUINTIC] {
+            let bases = Bases::new(degree);
+            let fit = bases.fit(&x, 3, 30, 12, 1e-9).expect("exact");
+            let (t, per_sample) = (1.2, 0.1);
+            assert!((fit.value - x[12]).abs() < 1e-12);
+            assert!((fit.slope - per_sample * (-2.0 + 0.9 * t * t)).abs() < 1e-10);
+        }
+    }
+
+    #[test]
+    fn a_neighbourhood_ends_at_a_corner() {
+        let x: Vec<f64> = (0..200)
+            .map(|i| if i < 100 { 0.0 } else { 1e-3 * f64::from(i - 100) })
+            .collect();
+        let bases = Bases::new(CUBIC);
+        let (mut behind, mut ahead) = (0, 0);
+        assert!(bases.reach(&x, 90, true, 5e-6, &mut ahead) <= 12);
+        assert!(bases.reach(&x, 90, false, 5e-6, &mut behind) >= 60);
+    }
+}

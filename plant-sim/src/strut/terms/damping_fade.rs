@@ -1,0 +1,112 @@
+//! The dampers weaken as their oil warms.
+//!
+//! The pressure drop of a pack is divided by `1 + f E`, where `E` is the energy that its oil holds:
+//! `dE/dt = d Q - E / tau`, the power dissipated in the path less what cools away (lumped energy balance; *assumed* form).
+
+use serde::{Deserialize, Serialize};
+
+use crate::model_file::{Checked, Limit, Range};
+use crate::strut::flow_path::FlowPath;
+
+/// Warm dampers are weaker.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DampingFade {
+    /// Relative weakening of pack 1 for each joule held, `f`, 1/J; usually up to 1e-3.
+    #[serde(rename = "fade_1_per_J")]
+    pub fade_1_per_j: f64,
+    /// Relative weakening of pack 2 for each joule held, 1/J.
+    #[serde(rename = "fade_2_per_J")]
+    pub fade_2_per_j: f64,
+    /// Cooling time constant, `tau`, s; usually 10 to 1,000.
+    pub cooling_time_s: f64,
+}
+
+/// Relative weakening for each joule, 1/J.
+const FADE_PER_J: Range = Range::FromTo(0.0, 1e3);
+
+impl Checked for DampingFade {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::one("fade_1_per_J", FADE_PER_J, "1/J", |t| t.fade_1_per_j),
+        Limit::one("fade_2_per_J", FADE_PER_J, "1/J", |t| t.fade_2_per_j),
+        Limit::one("cooling_time_s", Range::FromTo(1e-3, 1e12), "s", |t| t.cooling_time_s),
+    ];
+}
+
+impl DampingFade {
+    /// The fade of the pack of a path.
+    #[must_use]
+    pub fn pack(&self, path: FlowPath) -> PackFade {
+        PackFade {
+            per_j: path.pick(self.fade_1_per_j, self.fade_2_per_j),
+        }
+    }
+
+    /// What is left of the energy held (J) after it has cooled for a while (s), J. One implicit step.
+    #[inline(always)]
+    #[must_use]
+    pub fn cooled(&self, energy_j: f64, duration_s: f64) -> f64 {
+        energy_j * (1.0 / (1.0 + duration_s / self.cooling_time_s))
+    }
+}
+
+/// The fade of one pack; none by default.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PackFade {
+    /// Relative weakening for each joule held, 1/J.
+    pub per_j: f64,
+}
+
+impl PackFade {
+    /// What the pack's pressure drop is divided by while its oil holds an energy (J).
+    #[inline(always)]
+    #[must_use]
+    pub fn weakening(&self, energy_j: f64) -> f64 {
+        1.0 + self.per_j * energy_j
+    }
+
+    /// Energy held, J, after oil has flowed (m3/s) across a pressure drop (Pa) for a while (s). A pack that does not fade
+    /// is not heated.
+    #[inline(always)]
+    #[must_use]
+    pub fn heated(&self, energy_j: f64, duration_s: f64, drop_pa: f64, flow_m3_s: f64) -> f64 {
+        if self.per_j > 0.0 {
+            energy_j + duration_s * drop_pa * flow_m3_s
+        } else {
+            energy_j
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FADE: DampingFade = DampingFade {
+        fade_1_per_j: 1e-4,
+        fade_2_per_j: 0.0,
+        cooling_time_s: 60.0,
+    };
+
+    #[test]
+    fn energy_settles_where_cooling_is_the_power() {
+        // dE/dt = P - E / tau: E = P tau (1 - exp(-t / tau)).
+        let pack = FADE.pack(FlowPath::One);
+        let mut energy = 0.0;
+        for _ in 0..60_000 {
+            energy = FADE.cooled(pack.heated(energy, 1e-3, 1e6, 1e-4), 1e-3);
+        }
+        assert!(
+            (energy / (100.0 * 60.0 * (1.0 - libm::exp(-1.0))) - 1.0).abs() < 1e-4,
+            "{energy}"
+        );
+        assert!((pack.weakening(energy) - (1.0 + 1e-4 * energy)).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_pack_without_fade_holds_nothing() {
+        let pack = FADE.pack(FlowPath::Two);
+        assert_eq!(pack.heated(0.0, 1e-3, 1e6, 1e-4), 0.0);
+        assert_eq!(pack.weakening(1e4), 1.0);
+    }
+}

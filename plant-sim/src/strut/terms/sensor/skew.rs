@@ -1,0 +1,54 @@
+//! `sensor_skew`: an instrument whose clock is late, `y(t) = x(t - s)`.
+
+use super::interpolate::interpolate;
+use crate::model_file::{Quantity, Range};
+use crate::strut::motion::Motion;
+
+/// Time by which a column is late, `s`; negative if it is early.
+pub const SIZE: Quantity = Quantity {
+    key: "sensor_skew",
+    range: Range::FromTo(-1e6, 1e6),
+    unit: "s",
+};
+
+/// What the instrument shows of a true signal.
+pub fn record(late_s: f64, times_s: &[f64], signal: &mut [f64]) {
+    let truth = signal.to_vec();
+    for (shown, t) in signal.iter_mut().zip(times_s) {
+        *shown = interpolate(times_s, &truth, t - late_s);
+    }
+}
+
+/// The motion that the instrument showed late: `x(t) = y(t + s)`.
+pub fn undo(late_s: f64, times_s: &[f64], motion: &mut Motion) {
+    if late_s == 0.0 {
+        return;
+    }
+    let shown = motion.segments.clone();
+    let at_rest = std::iter::once(0.0);
+    let displacement: Vec<f64> = (std::iter::once(motion.start_m))
+        .chain(shown.iter().map(|s| s.to_m))
+        .collect();
+    let before: Vec<f64> = at_rest.clone().chain(shown.iter().map(|s| s.to_m_s)).collect();
+    let after: Vec<f64> = shown.iter().map(|s| s.from_m_s).chain(at_rest).collect();
+    for (segment, time) in motion.segments.iter_mut().zip(times_s.windows(2)) {
+        segment.to_m = interpolate(times_s, &displacement, time[1] + late_s);
+        segment.to_m_s = interpolate(times_s, &before, time[1] + late_s);
+        segment.from_m_s = interpolate(times_s, &after, time[0] + late_s);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shows_what_was_true_a_little_earlier() {
+        let t: Vec<f64> = (0..400).map(|i| 0.002 * f64::from(i)).collect();
+        for late in [0.013, -0.013] {
+            let mut ramp: Vec<f64> = t.iter().map(|t| 3.0 + 5.0 * t).collect();
+            record(late, &t, &mut ramp);
+            assert!((ramp[300] - (3.0 + 5.0 * (t[300] - late))).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! An unmodelled law as a model file holds it: a table at a place, over a measured quantity.
+
+use serde::{Deserialize, Serialize};
+
+use super::argument::LawArgument;
+use super::place::{LawForm, LawPlace};
+use crate::model_file::limits::{as_many, increasing};
+use crate::model_file::{Checked, InvalidValue, Limit, Range};
+use crate::strut::characteristic::Characteristic;
+
+/// An unmodelled law: a table at a place, linear between its points and beyond its ends.
+///
+/// ```
+/// use oleo_plant_sim::strut::{LawArgument, LawPlace, StrutModel, UnlistedLaw};
+/// // Damper 1 is weaker in jounce than its table says: by a tenth at 50 mm.
+/// let law = UnlistedLaw {
+///     place: LawPlace::Pack1,
+///     depends_on: LawArgument::Displacement,
+///     argument: vec![0.0, 0.05],
+///     value: vec![1.0, 0.9],
+/// };
+/// assert!((law.characteristic().value(0.025) - 0.95).abs() < 1e-15);
+/// let mut model = StrutModel::defender110(8000.0);
+/// model.effects.unlisted.push(law);
+/// assert!(model.to_toml().contains("place = \"pack-1\""));
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct UnlistedLaw {
+    /// Where it acts.
+    pub place: LawPlace,
+    /// What it depends on.
+    pub depends_on: LawArgument,
+    /// Values of what it depends on, strictly increasing, at least two; unit as [`LawArgument`] says.
+    pub argument: Vec<f64>,
+    /// Value of the law at each of them; unit and meaning as [`LawPlace`] says.
+    pub value: Vec<f64>,
+}
+
+impl Checked for UnlistedLaw {
+    const LIMITS: &'static [Limit<Self>] = &[
+        Limit::list("argument", Range::Finite, "", |law| &law.argument),
+        Limit::list("value", Range::Finite, "", |law| &law.value),
+    ];
+
+    fn check_together(&self) -> Result<(), InvalidValue> {
+        let known = self.place.arguments();
+        if !known.contains(&self.depends_on) {
+            let what = format!(
+                "is {}, which a law at {} does not depend on: must be {}{}",
+                word(&self.depends_on),
+                word(&self.place),
+                if known.len() == 1 { "" } else { "one of " },
+                known.iter().map(word).collect::<Vec<_>>().join(", ")
+            );
+            return Err(InvalidValue::new("depends_on", what));
+        }
+        increasing("argument", &self.argument)?;
+        as_many("value", &self.value, "argument", &self.argument)?;
+        if self.place.form(self.depends_on) == LawForm::AddedNotFalling
+            && let Some(k) = (1..self.value.len()).find(|&k| self.value[k] < self.value[k - 1])
+        {
+            let what = format!(
+                "is {}: a law at {} must not fall, and the entry before it is {}",
+                self.value[k],
+                word(&self.place),
+                self.value[k - 1]
+            );
+            return Err(InvalidValue::new(k, what).inside("value"));
+        }
+        Ok(())
+    }
+}
+
+/// A place or a quantity as the model file writes it.
+pub(super) fn word(value: &impl Serialize) -> String {
+    toml::Value::try_from(value).map_or_else(|_| String::new(), |value| value.to_string())
+}
+
+impl UnlistedLaw {
+    /// The table as the solver reads it.
+    #[must_use]
+    pub fn characteristic(&self) -> Characteristic {
+        Characteristic::through(&self.argument, &self.value)
+    }
+}
+
+/// Check the laws of a model: each for itself, and that no two act at the same place. A law that stands in the file is
+/// read by the solver, or it is refused here.
+///
+/// # Errors
+/// The first law that is wrong, with its position in the list.
+pub(in crate::strut::terms) fn check_all(laws: &[UnlistedLaw]) -> Result<(), InvalidValue> {
+    for (k, law) in laws.iter().enumerate() {
+        law.check().map_err(|invalid| invalid.inside(k))?;
+        let same = |other: &UnlistedLaw| {
+            other.place == law.place && (law.place.holds_one_law() || other.depends_on == law.depends_on)
+        };
+        if laws.iter().take(k).any(same) {
+            let what = format!("is {}, which has a law already: keep one of them", word(&law.place));
+            return Err(InvalidValue::new("place", what).inside(k));
+        }
+    }
+    Ok(())
+}
+
+/// The table of the law at a place over a quantity, if there is one.
+pub(super) fn law_at(laws: &[UnlistedLaw], place: LawPlace, over: LawArgument) -> Option<Characteristic> {
+    laws.iter()
+        .find(|law| law.place == place && law.depends_on == over)
+        .map(UnlistedLaw::characteristic)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn law(place: LawPlace, depends_on: LawArgument, value: [f64; 2]) -> UnlistedLaw {
+        UnlistedLaw {
+            place,
+            depends_on,
+            argument: vec![0.0, 1.0],
+            value: value.to_vec(),
+        }
+    }
+
+    #[test]
+    fn a_law_that_the_solver_would_not_read_is_refused() {
+        let good = law(LawPlace::Valves, LawArgument::PressureDrop, [1.0, 0.5]);
+        let groove = law(LawPlace::BesidePack1, LawArgument::Displacement, [2e-7, 1e-7]);
+        assert!(check_all(&[good.clone(), groove]).is_ok());
+        let unread = law(LawPlace::Valve1, LawArgument::P1, [1.0, 0.5]);
+        assert_eq!(
+            check_all(&[good.clone(), unread]).unwrap_err().to_string(),
+            "[2] depends_on is \"p1\", which a law at \"valve-1\" does not depend on: must be \"pressure_drop\""
+        );
+        assert!(
+            check_all(&[good.clone(), good])
+                .unwrap_err()
+                .to_string()
+                .contains("has a law already")
+        );
+        let (a, b) = (LawArgument::Speed, LawArgument::P1);
+        let seal = [a, b].map(|over| law(LawPlace::MainSeal, over, [0.0, 1.0]));
+        assert!(check_all(&seal).is_err(), "the seal holds one law of each kind");
+    }
+
+    #[test]
+    fn a_resistance_that_falls_is_refused_where_a_factor_may_fall() {
+        let falls = law(LawPlace::Path2, LawArgument::Flow, [1.0, 0.5]);
+        let complaint = falls.check().unwrap_err().to_string();
+        assert!(complaint.starts_with("value, entry 2, is 0.5"), "{complaint}");
+        assert!(
+            law(LawPlace::Pack2, LawArgument::Displacement, [1.0, 0.5])
+                .check()
+                .is_ok()
+        );
+    }
+}

@@ -1,0 +1,37 @@
+//! Laws that the vocabulary has no name for: tables at places of the network, linear between their points and beyond.
+//!
+//! A table gives a number over one measured quantity. What the number does follows from the place: it is added (a force,
+//! a volume, a flow, a drop), or it multiplies what the model has (a damper's drop, a valve's flow, a gas pressure).
+//! `oleo diagnose` fits such laws; a person may write them into a model file too:
+//!
+//! ```toml
+//! [[effects.unlisted]]
+//! place = "path-1"
+//! depends_on = "flow"
+//! argument = [-1e-3, 0.0, 1e-3]   # m3/s
+//! value = [-4e5, 0.0, 4e5]        # Pa
+//! ```
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `place` | where a law may act, on what it may depend there, and what its value does |
+//! | `argument` | the quantities |
+//! | `law` | the table in a model file and its check |
+//! | `path_laws`, `chamber_laws`, `seal_law` | the tables as the solver reads them, at the places of the network |
+
+mod argument;
+mod chamber_laws;
+mod law;
+mod path_laws;
+mod place;
+mod seal_law;
+
+pub use argument::LawArgument;
+pub use law::UnlistedLaw;
+pub use place::{LawForm, LawPlace};
+
+pub(in crate::strut) use chamber_laws::ChamberLaws;
+pub(in crate::strut) use path_laws::{PathLaws, throttle, throttled};
+pub(in crate::strut) use seal_law::SealLaw;
+
+pub(super) use law::check_all;

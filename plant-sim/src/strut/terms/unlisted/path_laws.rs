@@ -1,0 +1,153 @@
+//! The unmodelled laws of one path as the solver reads them.
+
+use super::argument::LawArgument;
+use super::law::{UnlistedLaw, law_at};
+use super::place::LawPlace;
+use crate::strut::characteristic::Characteristic;
+use crate::strut::flow_path::FlowPath;
+
+/// A factor never falls below this fraction of what the model has: an element does not turn round.
+const LEAST_FACTOR: f64 = 0.01;
+/// The same for the factor on a gas pressure.
+const LEAST_GAS_FACTOR: f64 = 0.1;
+
+/// The laws of one path. Where there is none, each of them is what leaves the model as it is.
+#[derive(Debug, Clone, Default)]
+pub(in crate::strut) struct PathLaws {
+    series: Option<Characteristic>,
+    parallel: Option<Characteristic>,
+    groove: Option<Characteristic>,
+    strength: Option<Characteristic>,
+    throttle: Option<Characteristic>,
+    gas: Option<Characteristic>,
+}
+
+impl PathLaws {
+    /// The laws of a path.
+    pub fn of(laws: &[UnlistedLaw], path: FlowPath) -> Self {
+        Self {
+            series: law_at(laws, LawPlace::in_series(path), LawArgument::Flow),
+            parallel: law_at(laws, LawPlace::beside_pack(path), LawArgument::PressureDrop),
+            groove: law_at(laws, LawPlace::beside_pack(path), LawArgument::Displacement),
+            strength: law_at(laws, LawPlace::pack(path), LawArgument::Displacement),
+            throttle: throttle(laws, path.pick(LawPlace::Valve1, LawPlace::Valve2)),
+            gas: law_at(laws, LawPlace::accumulator(path), LawArgument::RelativeVolume),
+        }
+    }
+
+    /// Drop in series with the path at a flow, Pa, and its derivative by the flow, if there is such a law.
+    #[inline]
+    pub fn series_drop(&self, flow_m3_s: f64) -> Option<(f64, f64)> {
+        self.series.as_ref().map(|law| law.at(flow_m3_s, &mut 0))
+    }
+
+    /// Flow beside the pack at its drop, m3/s, and its derivative by the drop, if there is such a law.
+    #[inline]
+    pub fn parallel_flow(&self, drop_pa: f64) -> Option<(f64, f64)> {
+        self.parallel.as_ref().map(|law| law.at(drop_pa, &mut 0))
+    }
+
+    /// Flow coefficient of a groove beside the pack at a displacement, m3/s/sqrt(Pa).
+    #[inline]
+    pub fn groove(&self, displacement_m: f64) -> f64 {
+        self.groove
+            .as_ref()
+            .map_or(0.0, |law| law.value(displacement_m).max(0.0))
+    }
+
+    /// What the model's drop of the pack is divided by at a displacement.
+    #[inline]
+    pub fn weakening(&self, displacement_m: f64) -> f64 {
+        self.strength
+            .as_ref()
+            .map_or(1.0, |law| 1.0 / law.value(displacement_m).max(LEAST_FACTOR))
+    }
+
+    /// Fraction of the bypass valve's flow that does not pass at a drop.
+    #[inline]
+    pub fn throttled_fraction(&self, drop_pa: f64) -> f64 {
+        self.throttle.as_ref().map_or(0.0, |law| 1.0 - throttled(law, drop_pa))
+    }
+
+    /// Factor on the gas pressure at a gas volume over the static one, if there is such a law.
+    #[inline]
+    pub fn gas_factor(&self, relative_volume: f64) -> Option<f64> {
+        self.gas
+            .as_ref()
+            .map(|law| law.value(relative_volume).max(LEAST_GAS_FACTOR))
+    }
+}
+
+/// The law of a valve is its own or, where it has none, the one of all three.
+pub(in crate::strut) fn throttle(laws: &[UnlistedLaw], valve: LawPlace) -> Option<Characteristic> {
+    [valve, LawPlace::Valves]
+        .into_iter()
+        .find_map(|place| law_at(laws, place, LawArgument::PressureDrop))
+}
+
+/// Factor on a valve's flow at a pressure drop.
+#[inline]
+pub(in crate::strut) fn throttled(law: &Characteristic, drop_pa: f64) -> f64 {
+    law.value(drop_pa.abs()).max(LEAST_FACTOR)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn law(place: LawPlace, depends_on: LawArgument, argument: [f64; 2], value: [f64; 2]) -> UnlistedLaw {
+        UnlistedLaw {
+            place,
+            depends_on,
+            argument: argument.to_vec(),
+            value: value.to_vec(),
+        }
+    }
+
+    #[test]
+    fn without_laws_the_model_is_as_it_was() {
+        let none = PathLaws::of(&[], FlowPath::One);
+        assert_eq!(
+            (none.groove(0.1), none.weakening(0.1), none.throttled_fraction(1e6)),
+            (0.0, 1.0, 0.0)
+        );
+        assert!(
+            none.series_drop(1e-3).is_none() && none.parallel_flow(1e6).is_none() && none.gas_factor(0.5).is_none()
+        );
+    }
+
+    #[test]
+    fn each_law_reads_its_own_table_and_only_its_own_path() {
+        let laws = [
+            law(LawPlace::Path2, LawArgument::Flow, [0.0, 1e-3], [0.0, 5e5]),
+            law(LawPlace::Pack2, LawArgument::Displacement, [0.0, 1.0], [0.5, 0.5]),
+            law(LawPlace::Valve1, LawArgument::PressureDrop, [0.0, 1e6], [1.0, 0.2]),
+            law(LawPlace::Valves, LawArgument::PressureDrop, [0.0, 1e6], [1.0, 0.6]),
+            law(
+                LawPlace::Accumulator2,
+                LawArgument::RelativeVolume,
+                [0.0, 1.0],
+                [2.0, 1.0],
+            ),
+        ];
+        let [one, two] = FlowPath::ALL.map(|path| PathLaws::of(&laws, path));
+        assert_eq!(
+            (one.series_drop(1e-3), one.weakening(0.0), one.gas_factor(0.5)),
+            (None, 1.0, None)
+        );
+        assert_eq!(two.series_drop(5e-4), Some((2.5e5, 5e8)));
+        assert_eq!((two.weakening(0.0), two.gas_factor(0.5)), (2.0, Some(1.5)));
+        assert!(
+            (one.throttled_fraction(-5e5) - 0.4).abs() < 1e-12,
+            "valve 1 has a law of its own"
+        );
+        assert!(
+            (two.throttled_fraction(5e5) - 0.2).abs() < 1e-12,
+            "valve 2 has that of all valves"
+        );
+        assert!(
+            (one.throttled_fraction(1e9) - 0.99).abs() < 1e-12,
+            "a valve never turns its flow round"
+        );
+    }
+}

@@ -1,0 +1,95 @@
+//! What both studies drive, on how many threads, and where finished runs are kept.
+
+use std::path::PathBuf;
+
+use oleo_plant_sim::course::DriverStyle;
+use oleo_plant_sim::study::{Bench, Conditions, Ledger};
+use oleo_plant_sim::vehicle::Load;
+use oleo_report::OutputDirectory;
+
+use crate::commands::parameter_files::parameters;
+use crate::commands::word::word;
+use crate::failure::Failure;
+
+/// What both studies drive.
+#[derive(clap::Args)]
+pub struct Drive {
+    /// Vehicle parameters; without it the built-in defender110
+    #[arg(long, value_name = "VEHICLE.toml")]
+    vehicle: Option<PathBuf>,
+    /// Handling parameters; without it the built-in defender110
+    #[arg(long, value_name = "HANDLING.toml")]
+    handling: Option<PathBuf>,
+    /// Speed on the Belgian block and in the lane change, km/h
+    #[arg(long, value_name = "KM_H", default_value_t = 60.0, allow_negative_numbers = true)]
+    speed_km_h: f64,
+    /// Who drives the lane change: eased or hard
+    #[arg(long, value_name = "eased|hard", default_value = "eased", value_parser = word::<DriverStyle>)]
+    driver: DriverStyle,
+    /// What the vehicle carries: as-sold (nothing), laden (900 kg), roof (150 kg on the roof) or laden-roof (750 and 150 kg)
+    #[arg(long, value_name = "LOAD", default_value = "as-sold", value_parser = word::<Load>)]
+    load: Load,
+    /// Time on the Belgian block, s
+    #[arg(long, value_name = "S", default_value_t = 20.0, allow_negative_numbers = true)]
+    duration_s: f64,
+    /// Phases of the Belgian block
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Threads to use [default: all cores]
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Folder for CSV data, summary.json, report.html and the finished runs; without it only the table is printed
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl Drive {
+    /// The test bench as set.
+    pub fn bench(&self) -> Result<Bench, Failure> {
+        let (vehicle, handling) = parameters(self.vehicle.as_ref(), self.handling.as_ref())?;
+        let range = |option: &str, value: f64, low: f64, high: f64| match value >= low && value <= high {
+            true => Ok(()),
+            false => Err(Failure::new(format!(
+                "{option} {value}: give a value from {low} to {high}"
+            ))),
+        };
+        range("--speed-km-h", self.speed_km_h, 5.0, 200.0)?;
+        range("--duration-s", self.duration_s, 2.0, 600.0)?;
+        let speed = self.speed_km_h / 3.6;
+        let conditions = Conditions {
+            ride_speed_m_s: speed,
+            ride_duration_s: self.duration_s,
+            seed: self.seed,
+            lane_change_speed_m_s: speed,
+            driver: self.driver,
+            ..Conditions::default()
+        };
+        // The study's gas springs are charged for what they carry.
+        Ok(Bench::new(self.load.at_ride_height(&vehicle), handling, conditions)?)
+    }
+
+    /// Runs `work` on the threads asked for.
+    pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+        let threads = self.threads.unwrap_or(0);
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|error| Failure::new(format!("--threads {threads}: {error}")))?;
+        Ok(pool.install(work))
+    }
+
+    /// The finished runs and the staged results. Finished runs are kept in the folder itself, as they end.
+    pub fn results(&self, bench: &Bench) -> Result<(Ledger, Option<OutputDirectory>), Failure> {
+        let Some(out) = &self.out else {
+            return Ok((Ledger::in_memory(bench), None));
+        };
+        // Staged once to be told of a folder that cannot be, and again when it is there.
+        drop(OutputDirectory::stage(out)?);
+        std::fs::create_dir_all(out)
+            .map_err(|error| Failure::new(format!("{}: cannot make the folder: {error}", out.display())))?;
+        Ok((
+            Ledger::open(&out.join("runs.csv"), bench)?,
+            Some(OutputDirectory::stage(out)?),
+        ))
+    }
+}

@@ -90,6 +90,14 @@ fn manoeuvres_go_with_roads_drivers_and_loads() {
         (&"completed".into(), &"completed".into())
     );
     assert!(felt(&rough) > 5.0 * felt(&flat), "{flat} {rough}");
+    let cold = lane_change(
+        "cold",
+        &["--setting", "soft", "--speed-km-h", "50", "--gas-temperature-c", "-20"],
+    );
+    let rise_m = cold["front_rise_m"].as_f64().expect("a number");
+    assert!((-0.045..-0.030).contains(&rise_m), "{cold}");
+    let roll = |run: &serde_json::Value| run["max_roll_deg"].as_f64().expect("a number");
+    assert!(roll(&cold) < roll(&flat), "cold gas is stiffer: {cold} {flat}");
     let slope = &[
         "--setting",
         "baseline",
@@ -131,6 +139,20 @@ fn bad_input_is_one_line_and_nothing_written() {
                 "o",
             ],
             "--side-slope-percent",
+        ),
+        (
+            &[
+                "drive",
+                "--manoeuvre",
+                "straight",
+                "--setting",
+                "baseline",
+                "--gas-temperature-c",
+                "0",
+                "--out",
+                "o",
+            ],
+            "no gas",
         ),
         (
             &["drive", "--manoeuvre", "belgian", "--speed-km-h", "-3", "--out", "o"],

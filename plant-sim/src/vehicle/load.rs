@@ -4,10 +4,10 @@
 //! its ride height whatever it carries, because each strut is charged for its load; on coil springs it sinks, which brings the
 //! centre of mass down and the bump stops nearer.
 
-use oleo_interface::Axle;
+use oleo_interface::{Axle, Axles};
 use strum::{EnumString, IntoStaticStr, VariantArray};
 
-use super::parameters::{SeatParameters, VehicleParameters};
+use super::parameters::VehicleParameters;
 
 /// What is put on the vehicle. Masses and places of the cargo are for a Defender 110.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, IntoStaticStr, EnumString, VariantArray)]
@@ -80,20 +80,14 @@ impl Load {
     /// The vehicle with this load on its coil springs, which it compresses further. Axles, tyres and roll centres keep their
     /// heights.
     pub fn on_coil_springs(self, vehicle: &VehicleParameters) -> VehicleParameters {
-        let mut loaded = self.at_ride_height(vehicle);
+        let loaded = self.at_ride_height(vehicle);
         let (before, now) = (vehicle.static_strut_load_n(), loaded.static_strut_load_n());
         let sinks_m = |axle: Axle| {
             let ([now_n, _], [before_n, _]) = (now.of_axle(axle), before.of_axle(axle));
             (now_n - before_n) / vehicle.baseline(axle).coil_stiffness_n_m
         };
         let (front_m, rear_m) = (sinks_m(Axle::Front), sinks_m(Axle::Rear));
-        let wheelbase_m = loaded.layout.wheelbase_m;
-        let at = |behind_m: f64| front_m + (rear_m - front_m) * behind_m / wheelbase_m;
-        let body_m = at(loaded.body_cg_behind_front_axle_m());
-        loaded.body.vehicle_cg_height_m -= body_m * loaded.body.sprung_mass_kg / loaded.total_mass_kg();
-        let lower = |seat: &mut SeatParameters| seat.above_ground_m -= at(seat.behind_front_axle_m);
-        lower(&mut loaded.driver_seat);
-        lower(&mut loaded.passenger_seat);
+        let mut loaded = loaded.raised(Axles::new(-front_m, -rear_m));
         for (baseline, sinks_m) in [
             (&mut loaded.front_baseline, front_m),
             (&mut loaded.rear_baseline, rear_m),
@@ -106,8 +100,8 @@ impl Load {
     }
 }
 
-/// Adds a box to the body. The product of inertia that a load off the centre makes is left out: the model's principal axes lie
-/// along and across the body.
+/// Adds a box to the body; a negative mass takes it away. The product of inertia that a load off the centre makes is left out:
+/// the model's principal axes lie along and across the body.
 fn put(vehicle: &mut VehicleParameters, cargo: &Cargo) {
     let wheelbase_m = vehicle.layout.wheelbase_m;
     let total_kg = vehicle.total_mass_kg();

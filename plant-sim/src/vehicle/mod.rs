@@ -14,6 +14,8 @@
 
 mod contact;
 pub mod equations;
+mod gas_temperature;
+mod levelling;
 pub mod linear;
 mod load;
 mod parameters;
@@ -21,6 +23,8 @@ mod ride;
 mod seat;
 pub mod suspension;
 
+pub use gas_temperature::TemperedStrut;
+pub use levelling::{LevelledStrut, Levelling, LevellingLimits};
 pub use load::Load;
 pub use parameters::{
     AxleParameters, BaselineParameters, BodyParameters, GRAVITY_M_S2, LayoutParameters, SeatParameters,

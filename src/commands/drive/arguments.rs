@@ -16,6 +16,7 @@ use crate::commands::word::word;
                   oleo drive --manoeuvre belgian --model both --setting baseline --out figures-2-to-5\n  \
                   oleo drive --manoeuvre lane-change --road iso-d --driver hard --load laden --setting baseline\n  \
                   oleo drive --manoeuvre straight --side-slope-percent 10 --setting soft\n  \
+                  oleo drive --manoeuvre belgian --gas-temperature-c -20 --setting soft\n  \
                   oleo drive --manoeuvre bump --speed-km-h 10 --model both --setting baseline\n\n\
                   Steer, yaw and lateral values are positive to the left, roll with the left side up, pitch with the nose down."
 )]
@@ -45,6 +46,9 @@ pub struct Args {
     /// What the vehicle carries: as-sold (nothing), laden (900 kg), roof (150 kg on the roof) or laden-roof (750 and 150 kg)
     #[arg(long, value_name = "LOAD", default_value = "as-sold", value_parser = word::<Load>)]
     pub load: Load,
+    /// Temperature of the struts' gas, degrees Celsius; they were charged at 20
+    #[arg(long, value_name = "CELSIUS", allow_negative_numbers = true)]
+    pub gas_temperature_c: Option<f64>,
     /// Time to drive, s [default: 20; lane changes end behind the last cones]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub duration_s: Option<f64>,

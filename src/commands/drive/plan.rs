@@ -2,13 +2,16 @@
 
 use std::sync::Arc;
 
-use oleo_interface::Corners;
 use oleo_interface::tick::TICK_S;
+use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::course::{Course, Drive, LaneChange, Manoeuvre, Run, Sample, Signals, Track};
 use oleo_plant_sim::handling::{HandlingParameters, HandlingVehicle};
 use oleo_plant_sim::road::{self, Bend, SideSlope};
+use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::vehicle::suspension::{CoilElement, StrutElement, SuspensionElement};
-use oleo_plant_sim::vehicle::{BaselineVehicle, RideModel, RideVehicle, SeatAcceleration, Seats, VehicleParameters};
+use oleo_plant_sim::vehicle::{
+    BaselineVehicle, RideModel, RideVehicle, SeatAcceleration, Seats, TemperedStrut, VehicleParameters,
+};
 
 use super::arguments::{Args, Kind, Model, Setting};
 use super::suspension::{Valves, struts};
@@ -18,6 +21,8 @@ use crate::failure::Failure;
 const BEGIN_S: f64 = 1.0;
 /// Time to settle in the bend before braking in it, s.
 const SETTLED_IN_BEND_S: f64 = 8.0;
+/// Temperature at which the struts were charged, degrees Celsius.
+const CHARGED_AT_C: f64 = 20.0;
 /// Station at which a side slope begins, m.
 const SLOPE_FROM_M: f64 = 5.0;
 
@@ -27,6 +32,7 @@ pub struct Plan {
     pub track: Track,
     pub vehicle: VehicleParameters,
     handling: HandlingParameters,
+    struts: Corners<TemperedStrut>,
     pub road_name: String,
 }
 
@@ -61,9 +67,20 @@ impl Plan {
         if let Some(radius_m) = manoeuvre.radius_m() {
             surface = Arc::new(Bend::new(surface, radius_m));
         }
+        if args.setting == Setting::Baseline && args.gas_temperature_c.is_some() {
+            return Err(Failure::new(
+                "--gas-temperature-c: coil springs have no gas; take another --setting",
+            ));
+        }
+        let celsius = args.gas_temperature_c.unwrap_or(CHARGED_AT_C);
+        within("--gas-temperature-c", celsius, -60.0, 120.0)?;
+        let levelled = args.load.at_ride_height(&vehicle);
+        let struts = levelled
+            .static_strut_load_n()
+            .map(|load_n| TemperedStrut::new(&StrutModel::defender110(load_n), celsius + 273.15));
         let vehicle = match args.setting {
             Setting::Baseline => args.load.on_coil_springs(&vehicle),
-            _ => args.load.at_ride_height(&vehicle),
+            _ => levelled.raised(struts.each_ref().by_axle().map(|(left, _)| left.rise_m)),
         };
         Ok(Self {
             title: kind.title(),
@@ -75,8 +92,20 @@ impl Plan {
             track,
             vehicle,
             handling,
+            struts,
             road_name,
         })
+    }
+
+    /// How much the gas's temperature raises the body in front and at the rear, m.
+    pub fn rise_m(&self) -> (f64, f64) {
+        let rise = self.struts.each_ref().map(|strut| strut.rise_m);
+        (rise[Corner::FrontLeft], rise[Corner::RearLeft])
+    }
+
+    /// Displacements as sensors say that were set to zero when the struts were charged.
+    fn sensed_m(&self, displacement_m: Corners<f64>) -> Corners<f64> {
+        Corners::from_fn(|corner| displacement_m[corner] - self.struts[corner].rise_m)
     }
 
     /// With the handling model.
@@ -87,9 +116,9 @@ impl Plan {
             return Ok(drive.to_end(|_| Default::default(), |_| {})?);
         }
         let mut valves = Valves::new(setting);
-        let elements = struts(vehicle, valves.at_start())?.map(StrutElement::new);
+        let elements = struts(&self.struts, valves.at_start())?.map(StrutElement::new);
         let decide = |model: &HandlingVehicle| {
-            let signals = valves.decide(model.strut_displacement_m(), model.strut_output());
+            let signals = valves.decide(self.sensed_m(model.strut_displacement_m()), model.strut_output());
             (signals, signals)
         };
         Ok(Drive::begin(&self.course, vehicle, handling, elements)?.to_end(decide, |_| {})?)
@@ -104,10 +133,10 @@ impl Plan {
             return Ok(self.ride_out(&mut model, |_| Default::default()));
         }
         let mut valves = Valves::new(setting);
-        let struts = struts(&self.vehicle, valves.at_start())?;
+        let struts = struts(&self.struts, valves.at_start())?;
         let mut model = RideVehicle::new(&self.vehicle, struts, road, speed_m_s)?;
         let decide = |model: &RideVehicle| {
-            let signals = valves.decide(model.strut_displacement_m(), model.strut_output());
+            let signals = valves.decide(self.sensed_m(model.strut_displacement_m()), model.strut_output());
             (signals, signals)
         };
         Ok(self.ride_out(&mut model, decide))

@@ -117,6 +117,21 @@ fn measures(plan: &Plan, run: &Run, score_from_s: f64) -> Vec<(&'static str, &'s
             "degrees",
         ));
     }
+    let rise_m = plan.rise_m();
+    if rise_m != (0.0, 0.0) {
+        list.push((
+            "front_rise_m",
+            "ride height by the gas's temperature, front",
+            rise_m.0,
+            "m",
+        ));
+        list.push((
+            "rear_rise_m",
+            "ride height by the gas's temperature, rear",
+            rise_m.1,
+            "m",
+        ));
+    }
     if let Some(margin) = run.cone_margin_m {
         list.push(("cone_margin_m", "least room to the cones (negative: hit)", margin, "m"));
     }

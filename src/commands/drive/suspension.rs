@@ -4,8 +4,8 @@ use oleo_controller::{Configuration, Inputs, State, tick};
 use oleo_interface::{Corners, Gauge, StrutPressures, StrutValves};
 use oleo_plant_sim::course::Signals;
 use oleo_plant_sim::model_file::InvalidValue;
-use oleo_plant_sim::strut::{Strut, StrutModel, StrutOutput};
-use oleo_plant_sim::vehicle::VehicleParameters;
+use oleo_plant_sim::strut::{Strut, StrutOutput};
+use oleo_plant_sim::vehicle::TemperedStrut;
 
 use super::arguments::Setting;
 
@@ -49,9 +49,9 @@ impl Valves {
     }
 }
 
-/// Four struts of the preset, each for its corner's static load.
-pub fn struts(parameters: &VehicleParameters, signals: StrutValves<bool>) -> Result<Corners<Strut>, InvalidValue> {
-    let [a, b, c, d] = parameters.static_strut_load_n().into_array();
-    let strut = |load_n: f64| Strut::at_rest(&StrutModel::defender110(load_n), signals);
+/// Four struts at rest.
+pub fn struts(models: &Corners<TemperedStrut>, signals: StrutValves<bool>) -> Result<Corners<Strut>, InvalidValue> {
+    let [a, b, c, d] = models.each_ref().into_array();
+    let strut = |strut: &TemperedStrut| Strut::at_rest(&strut.model, signals);
     Ok(Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]))
 }

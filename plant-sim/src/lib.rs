@@ -20,4 +20,5 @@ pub mod specimen;
 pub mod strut;
 pub mod strut_first;
 pub mod study;
+pub mod variation;
 pub mod vehicle;

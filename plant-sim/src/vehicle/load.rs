@@ -25,12 +25,12 @@ pub enum Load {
 }
 
 /// A box of even density. Places are assumed: no drawing of the load bay could be reached.
-struct Cargo {
-    mass_kg: f64,
-    behind_front_axle_m: f64,
-    above_ground_m: f64,
+pub(crate) struct Cargo {
+    pub(crate) mass_kg: f64,
+    pub(crate) behind_front_axle_m: f64,
+    pub(crate) above_ground_m: f64,
     /// Length, width, height, m.
-    size_m: [f64; 3],
+    pub(crate) size_m: [f64; 3],
 }
 
 /// In the load bay and on the rear seats, near the rear axle: the rear axle then carries its permitted 1,850 kg.
@@ -102,7 +102,7 @@ impl Load {
 
 /// Adds a box to the body; a negative mass takes it away. The product of inertia that a load off the centre makes is left out:
 /// the model's principal axes lie along and across the body.
-fn put(vehicle: &mut VehicleParameters, cargo: &Cargo) {
+pub(crate) fn put(vehicle: &mut VehicleParameters, cargo: &Cargo) {
     let wheelbase_m = vehicle.layout.wheelbase_m;
     let total_kg = vehicle.total_mass_kg();
     let body = &vehicle.body;

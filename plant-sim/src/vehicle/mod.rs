@@ -26,6 +26,7 @@ pub mod suspension;
 pub use gas_temperature::TemperedStrut;
 pub use levelling::{LevelledStrut, Levelling, LevellingLimits};
 pub use load::Load;
+pub(crate) use load::{Cargo, put};
 pub use parameters::{
     AxleParameters, BaselineParameters, BodyParameters, GRAVITY_M_S2, LayoutParameters, SeatParameters,
     SolverParameters, TyreParameters, VehicleParameters,

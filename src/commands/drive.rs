@@ -1,6 +1,7 @@
 //! `oleo drive`: the vehicle through a manoeuvre, with the ride model, the handling model or both.
 
 mod arguments;
+mod measures;
 mod plan;
 mod sheet;
 mod suspension;

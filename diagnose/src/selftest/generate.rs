@@ -103,11 +103,12 @@ pub fn generate(name: &str, wanted: &[(EffectId, f64)]) -> Result<Generated, Dia
 fn concealed(wanted: &[(EffectId, f64)], complete: &StrutModel, draw: &mut Draw) -> Vec<(Hidden, f64)> {
     let mut all: Vec<(Hidden, f64)> = Vec::new();
     for &(id, size) in wanted {
-        let mut hidden = Hidden::draw(id, complete, draw);
-        while hidden.column().is_some() && all.iter().any(|(h, _)| h.column() == hidden.column()) {
-            hidden = Hidden::draw(id, complete, draw);
+        let mut drawn = Hidden::draw(id, complete, draw);
+        let taken = |h: &Hidden| h.column().is_some() && all.iter().any(|(other, _)| other.column() == h.column());
+        while drawn.as_ref().is_some_and(taken) {
+            drawn = Hidden::draw(id, complete, draw);
         }
-        all.push((hidden, size));
+        all.extend(drawn.map(|hidden| (hidden, size)));
     }
     all
 }

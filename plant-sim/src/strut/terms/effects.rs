@@ -7,6 +7,7 @@ use super::bump_stop::BumpStop;
 use super::damper_leakage::DamperLeakage;
 use super::damping_fade::DampingFade;
 use super::entrained_air::EntrainedAir;
+use super::equation::Equation;
 use super::gas_charge_error::GasChargeError;
 use super::gas_heat_transfer::GasHeatTransfer;
 use super::id::TermId;
@@ -230,6 +231,44 @@ impl TermId {
     }
 }
 
+impl TermId {
+    /// The equation of a term as the solver computes it, and its source.
+    ///
+    /// ```
+    /// use oleo_plant_sim::strut::TermId;
+    /// assert_eq!(TermId::SideLoadFriction.equation().text, "g = mu |F| / (1 + s x)");
+    /// ```
+    #[must_use]
+    pub const fn equation(self) -> Equation {
+        match self {
+            Self::OilCompressibility => super::oil_compressibility::EQUATION,
+            Self::EntrainedAir => super::entrained_air::EQUATION,
+            Self::GasHeatTransfer => super::gas_heat_transfer::EQUATION,
+            Self::RealGas => super::real_gas::EQUATION,
+            Self::GasChargeError => super::gas_charge_error::EQUATION,
+            Self::SealFriction => super::seal_friction::EQUATION,
+            Self::SideLoadFriction => super::side_load_friction::EQUATION,
+            Self::AccumulatorPistonFriction => super::accumulator_piston_friction::EQUATION,
+            Self::DamperLeakage => super::damper_leakage::EQUATION,
+            Self::LineResistance => super::line_resistance::EQUATION,
+            Self::LineInertance => super::line_inertance::EQUATION,
+            Self::ValveDelay => super::valve_delay::EQUATION,
+            Self::ValveTransition => super::valve_transition::EQUATION,
+            Self::Valve3Leakage => super::valve3_leakage::EQUATION,
+            Self::BumpStop => super::bump_stop::EQUATION,
+            Self::MountCompliance => super::mount_compliance::EQUATION,
+            Self::DampingFade => super::damping_fade::EQUATION,
+            Self::SensorLag => sensor::lag::EQUATION,
+            Self::SensorGain => sensor::gain::EQUATION,
+            Self::SensorDrift => sensor::drift::EQUATION,
+            Self::SensorSkew => sensor::skew::EQUATION,
+            Self::SensorSign => sensor::sign::EQUATION,
+            Self::SensorOffset => sensor::offset::EQUATION,
+            Self::Unlisted => unlisted::EQUATION,
+        }
+    }
+}
+
 impl Checked for Effects {
     const LIMITS: &'static [Limit<Self>] = &[];
 
@@ -293,6 +332,20 @@ mod tests {
         assert_eq!(keys, ids);
         assert_eq!(toml::from_str::<Effects>(&toml::to_string(&all).unwrap()).unwrap(), all);
         assert_eq!(all.check(), Ok(()));
+    }
+
+    #[test]
+    fn the_heading_of_every_file_has_the_equation_that_pages_print() {
+        for id in TermId::ALL.iter().filter(|id| **id != TermId::Unlisted) {
+            let file = id.key().replace("sensor_", "sensor/");
+            let path = format!("{}/src/strut/terms/{file}.rs", env!("CARGO_MANIFEST_DIR"));
+            let text = std::fs::read_to_string(path).unwrap();
+            let heading: Vec<&str> = text.lines().map_while(|line| line.strip_prefix("//!")).collect();
+            let heading = heading.join("");
+            for part in id.equation().text.split(", ") {
+                assert!(heading.contains(part), "{file}: {part} is not in its heading");
+            }
+        }
     }
 
     #[test]

@@ -213,7 +213,7 @@ fn candidate(index: usize) -> Candidate {
         ),
     };
     Candidate {
-        group: (id == EffectId::SealFriction).then_some(ExclusionGroup(EffectId::DampingFade)),
+        group: (id == EffectId::SealFriction).then_some(ExclusionGroup(EffectId::SealFriction)),
         label: if index == TABLE {
             "force over displacement".into()
         } else {

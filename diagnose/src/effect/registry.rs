@@ -3,11 +3,6 @@
 use strum::VariantArray;
 
 use super::contract::Effect;
-use super::{
-    accumulator_piston_friction as accumulator_piston, bump_stop, damper_leakage, damping_fade, entrained_air,
-    gas_charge_error, gas_heat_transfer, line_inertance, line_resistance, mount_compliance, oil_compressibility,
-    real_gas, seal_friction, sensor, side_load_friction, unlisted, valve_delay, valve_transition, valve3_leakage,
-};
 use crate::vocabulary::EffectId;
 
 /// The ids of all effects, in the order of the vocabulary.
@@ -17,29 +12,29 @@ pub const ALL: &[EffectId] = EffectId::VARIANTS;
 #[must_use]
 pub fn of(id: EffectId) -> &'static dyn Effect {
     match id {
-        EffectId::OilCompressibility => &oil_compressibility::OilCompressibility,
-        EffectId::EntrainedAir => &entrained_air::EntrainedAir,
-        EffectId::GasHeatTransfer => &gas_heat_transfer::GasHeatTransfer,
-        EffectId::RealGas => &real_gas::RealGas,
-        EffectId::GasChargeError => &gas_charge_error::GasChargeError,
-        EffectId::SealFriction => &seal_friction::SealFriction,
-        EffectId::SideLoadFriction => &side_load_friction::SideLoadFriction,
-        EffectId::AccumulatorPistonFriction => &accumulator_piston::AccumulatorPistonFriction,
-        EffectId::DamperLeakage => &damper_leakage::DamperLeakage,
-        EffectId::LineResistance => &line_resistance::LineResistance,
-        EffectId::LineInertance => &line_inertance::LineInertance,
-        EffectId::ValveDelay => &valve_delay::ValveDelay,
-        EffectId::ValveTransition => &valve_transition::ValveTransition,
-        EffectId::Valve3Leakage => &valve3_leakage::Valve3Leakage,
-        EffectId::BumpStop => &bump_stop::BumpStop,
-        EffectId::MountCompliance => &mount_compliance::MountCompliance,
-        EffectId::DampingFade => &damping_fade::DampingFade,
-        EffectId::SensorLag => &sensor::LAG,
-        EffectId::SensorGain => &sensor::GAIN,
-        EffectId::SensorDrift => &sensor::DRIFT,
-        EffectId::SensorSkew => &sensor::SKEW,
-        EffectId::SensorSign => &sensor::SIGN,
-        EffectId::Unlisted => &unlisted::Unlisted,
+        EffectId::OilCompressibility => &super::oil_compressibility::OilCompressibility,
+        EffectId::EntrainedAir => &super::entrained_air::EntrainedAir,
+        EffectId::GasHeatTransfer => &super::gas_heat_transfer::GasHeatTransfer,
+        EffectId::RealGas => &super::real_gas::RealGas,
+        EffectId::GasChargeError => &super::gas_charge_error::GasChargeError,
+        EffectId::SealFriction => &super::seal_friction::SealFriction,
+        EffectId::SideLoadFriction => &super::side_load_friction::SideLoadFriction,
+        EffectId::AccumulatorPistonFriction => &super::accumulator_piston_friction::AccumulatorPistonFriction,
+        EffectId::DamperLeakage => &super::damper_leakage::DamperLeakage,
+        EffectId::LineResistance => &super::line_resistance::LineResistance,
+        EffectId::LineInertance => &super::line_inertance::LineInertance,
+        EffectId::ValveDelay => &super::valve_delay::ValveDelay,
+        EffectId::ValveTransition => &super::valve_transition::ValveTransition,
+        EffectId::Valve3Leakage => &super::valve3_leakage::Valve3Leakage,
+        EffectId::BumpStop => &super::bump_stop::BumpStop,
+        EffectId::MountCompliance => &super::mount_compliance::MountCompliance,
+        EffectId::DampingFade => &super::damping_fade::DampingFade,
+        EffectId::SensorLag => &super::sensor::LAG,
+        EffectId::SensorGain => &super::sensor::GAIN,
+        EffectId::SensorDrift => &super::sensor::DRIFT,
+        EffectId::SensorSkew => &super::sensor::SKEW,
+        EffectId::SensorSign => &super::sensor::SIGN,
+        EffectId::Unlisted => &super::unlisted::Unlisted,
     }
 }
 

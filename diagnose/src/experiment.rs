@@ -17,7 +17,7 @@ pub fn separate(kind: SpecimenKind, a: &Candidate, b: &Candidate) -> String {
         None
     };
     let how = how.map_or_else(|| in_turn(kind, a, b), str::to_owned);
-    format!("To separate {} from {}: {how}.", a.name(), b.name())
+    format!("To separate {} from {}, record {how}.", a.name(), b.name())
 }
 
 /// The experiments of two effects one after the other, and what each does in its own.
@@ -25,13 +25,18 @@ fn in_turn(kind: SpecimenKind, a: &Candidate, b: &Candidate) -> String {
     let own = |c: &Candidate| of(c.id).experiment_in(kind);
     let name = |c: &Candidate| of(c.id).named(kind, &c.label);
     match (own(a), own(b)) {
+        (Some(first), _) if a.id == b.id && a.place == b.place => format!(
+            "{}: each of the two laws follows its own quantity ({}; {})",
+            first.record, a.label, b.label
+        ),
         (Some(first), _) if a.id == b.id => format!(
-            "{}; {} {} in the channels next to the place where it acts, which are others at {} than at {}",
+            "{}: {} {}; if it acts at {there}, the channels next to {there} show it, and if it acts at {elsewhere}, those next \
+             to {elsewhere} do",
             first.record,
             name(a),
             first.shows,
-            a.place_and_label(),
-            b.place_and_label()
+            there = a.place,
+            elsewhere = b.place
         ),
         (Some(first), Some(second)) if first.record == second.record => format!(
             "{}: {} {}; {} {}",
@@ -42,7 +47,7 @@ fn in_turn(kind: SpecimenKind, a: &Candidate, b: &Candidate) -> String {
             second.shows
         ),
         (Some(first), Some(second)) => format!(
-            "{}: there {} {}; and {}: there {} {}",
+            "{}: there {} {}. Record also {}: there {} {}",
             first.record,
             name(a),
             first.shows,
@@ -68,8 +73,8 @@ pub fn isolate(specimen: &dyn Specimen, left: &Location) -> String {
     );
     if left.condition.decays {
         return format!(
-            "{place} Record the step before it alone, held ten times as long ({:.0} s), in both directions, at once and half the \
-             amplitude and at once and a tenth of the speed{}.",
+            "{place} Record the step before it alone, held ten times as long ({:.0} s), in both directions, at 1x and 0.5x \
+             amplitude and at 1x and 0.1x speed{}.",
             10.0 * (left.t_s[1] - left.t_s[0]),
             valves(specimen, r, left.t_s).map_or(String::new(), |v| format!(", {v}"))
         );

@@ -165,6 +165,7 @@ fn every_pair_has_an_experiment_that_says_what_each_of_the_two_does() {
             for b in &all[k + 1..] {
                 let text = crate::experiment::separate(kind, a, b);
                 assert!(text.contains(&a.name()) && text.contains(&b.name()), "{text}");
+                assert!(a.name() != b.name(), "{text}");
                 assert!(!text.contains("do not occur"), "{text}");
                 if kind == SpecimenKind::TwoStageStrut {
                     // Slow moves are given in mm/s.

@@ -140,20 +140,7 @@ fn blank_recording(m: &Move) -> Recording {
 /// A model without what its displacement sensor does: [`replay`] takes motion for a reading, and here it is the truth.
 fn with_true_motion(model: &StrutModel) -> StrutModel {
     let mut model = model.clone();
-    let e = &mut model.effects;
-    for fault in [
-        &mut e.sensor_lag,
-        &mut e.sensor_gain,
-        &mut e.sensor_drift,
-        &mut e.sensor_skew,
-        &mut e.sensor_sign,
-        &mut e.sensor_offset,
-    ]
-    .into_iter()
-    .flatten()
-    {
-        fault.remove(COLUMNS[0]);
-    }
+    model.effects.retain_sensor_faults(|column| column != COLUMNS[0]);
     model
 }
 

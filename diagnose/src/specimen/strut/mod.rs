@@ -9,7 +9,7 @@ mod relations;
 use std::sync::OnceLock;
 
 use oleo_interface::{StrutValves, Valve};
-use oleo_plant_sim::strut::{COLUMNS, Effects, Inputs, StrutModel, record_column, replay};
+use oleo_plant_sim::strut::{COLUMNS, Inputs, StrutModel, record_column, replay};
 use rayon::prelude::*;
 
 use calibration::Calibration;
@@ -175,7 +175,8 @@ impl Specimen for TwoStageStrut {
 
     fn simulate(&self, hypothesis: &Hypothesis, recording: usize) -> Result<Series, String> {
         let mut model = self.applied(hypothesis);
-        keep_displacement_faults(&mut model.effects);
+        // Faults of the displacement sensor change the motion; all other instruments are applied afterwards.
+        model.effects.retain_sensor_faults(|column| column == COLUMNS[0]);
         let p = replay(&model, &self.inputs[recording]).map_err(|e| e.to_string())?;
         let [p1, p2, p3, p4] = p.pressure_pa;
         let series = vec![p.force_n, p1, p2, p3, p4];
@@ -289,21 +290,4 @@ fn candidates(model: &StrutModel, excitation: &excitation::Strut) -> Vec<Candida
     (physics.chain(faults).chain(nameless))
         .map(|candidate| candidate.testable_unless(excitation.still()))
         .collect()
-}
-
-/// Faults of the displacement sensor change the motion; all other instruments are applied afterwards.
-fn keep_displacement_faults(effects: &mut Effects) {
-    for fault in [
-        &mut effects.sensor_lag,
-        &mut effects.sensor_gain,
-        &mut effects.sensor_drift,
-        &mut effects.sensor_skew,
-        &mut effects.sensor_sign,
-        &mut effects.sensor_offset,
-    ]
-    .into_iter()
-    .flatten()
-    {
-        fault.retain(|column, _| column == COLUMNS[0]);
-    }
 }

@@ -162,6 +162,15 @@ impl Effects {
         }
     }
 
+    /// Keeps the faults of those instruments whose column is wanted and takes out all others.
+    pub fn retain_sensor_faults(&mut self, wanted: impl Fn(&str) -> bool) {
+        for &id in TermId::ALL {
+            if let Some(Some(faults)) = self.sensor_fault_mut(id) {
+                faults.retain(|column, _| wanted(column));
+            }
+        }
+    }
+
     /// Check the numbers of one term, where the model has it.
     fn check_term(&self, id: TermId) -> Result<(), InvalidValue> {
         fn term(term: Option<&impl Checked>) -> Result<(), InvalidValue> {
@@ -332,6 +341,24 @@ mod tests {
         assert_eq!(keys, ids);
         assert_eq!(toml::from_str::<Effects>(&toml::to_string(&all).unwrap()).unwrap(), all);
         assert_eq!(all.check(), Ok(()));
+    }
+
+    #[test]
+    fn faults_of_other_instruments_are_taken_out_whatever_they_are() {
+        let mut effects = every_term();
+        effects.retain_sensor_faults(|column| column == "displacement_m");
+        assert_eq!(
+            effects.sensor_lag,
+            Some(SensorEffect::from([("displacement_m".to_owned(), 0.001)]))
+        );
+        for id in TermId::ALL.iter().filter(|id| **id != TermId::SensorLag) {
+            assert!(
+                effects
+                    .sensor_fault_mut(*id)
+                    .is_none_or(|faults| faults.as_ref().is_some_and(SensorEffect::is_empty))
+            );
+        }
+        assert!(effects.damping_fade.is_some());
     }
 
     #[test]

@@ -18,6 +18,9 @@ mod level;
 mod rises;
 mod rising;
 
+#[cfg(test)]
+mod tests;
+
 pub use added::Added;
 pub use bell::Bell;
 pub use choke::Choke;

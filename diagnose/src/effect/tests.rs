@@ -3,6 +3,8 @@
 use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, SmoothedMotion};
 use oleo_plant_sim::strut::{Effects, Equation, StrutModel, TermId};
 
+use strum::VariantArray;
+
 use super::*;
 use crate::excitation;
 use crate::recording::Recording;
@@ -72,11 +74,7 @@ fn candidates(kind: SpecimenKind) -> Vec<Candidate> {
     }
 }
 
-const KINDS: [SpecimenKind; 3] = [
-    SpecimenKind::TwoStageStrut,
-    SpecimenKind::GasSpring,
-    SpecimenKind::Cylinder,
-];
+const KINDS: &[SpecimenKind] = <SpecimenKind as VariantArray>::VARIANTS;
 
 /// Key under which a parameter is reported.
 fn reported_key(parameter: &crate::parameter::Parameter) -> &str {
@@ -111,7 +109,7 @@ fn every_effect_has_words_and_candidates_where_it_occurs() {
         let effect = of(id);
         assert!(!effect.name().is_empty() && !effect.meaning().is_empty(), "{id}");
         let mut occurs = false;
-        for kind in KINDS {
+        for &kind in KINDS {
             let there = candidates(kind).iter().any(|c| c.id == id);
             occurs |= there;
             assert_eq!(effect.equation_in(kind, "").is_some(), there, "{id} in a {kind}");
@@ -132,7 +130,7 @@ fn has_symbol(equation: Equation, symbol: &str) -> bool {
 
 #[test]
 fn every_number_of_an_effect_has_a_symbol_in_its_equation() {
-    for kind in KINDS {
+    for &kind in KINDS {
         for candidate in candidates(kind).iter().filter(|c| !c.is_unlisted()) {
             let effect = of(candidate.id);
             let equation = effect.equation_in(kind, "").expect("an equation");
@@ -159,7 +157,7 @@ fn every_number_of_an_effect_has_a_symbol_in_its_equation() {
 
 #[test]
 fn every_pair_has_an_experiment_that_says_what_each_of_the_two_does() {
-    for kind in KINDS {
+    for &kind in KINDS {
         let all = candidates(kind);
         for (k, a) in all.iter().enumerate() {
             for b in &all[k + 1..] {

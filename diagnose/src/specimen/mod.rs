@@ -10,7 +10,9 @@
 //!
 //! What a model may lack is not here: each effect says what it does in each kind of specimen ([`crate::effect`]).
 //!
-//! A new kind is a folder, a variant of [`SpecimenKind`](crate::vocabulary::SpecimenKind) and the arm of [`ModelFile::read`] that the compiler then asks for.
+//! A new kind is a folder, a variant of [`SpecimenKind`](crate::vocabulary::SpecimenKind), a [`Kind`](crate::effect::Kind) with
+//! what its recordings excite, and the arms that the compiler then asks for: in [`ModelFile::read`] and in
+//! [`Effect`](crate::effect::Effect).
 //! A kind with one compared channel implements [`single_output::SingleOutput`] instead of the whole trait.
 
 pub mod channel;

@@ -150,3 +150,36 @@ impl SingleOutput for Cylinder {
         d.svg()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_place_where_something_may_be_missing_is_drawn() {
+        let wave = |size: f64| {
+            (0..200)
+                .map(|k| size * libm::sin(0.1 * f64::from(k)))
+                .collect::<Vec<f64>>()
+        };
+        let recording = Recording {
+            name: "strokes".into(),
+            time_s: (0..200).map(|k| 0.01 * f64::from(k)).collect(),
+            columns: vec![wave(0.1), wave(500.0), wave(1e6)],
+            notes: vec![],
+        };
+        let text = "[specimen]\nname = \"a\"\nkind = \"cylinder\"\n[[chamber]]\ncolumn = \"p_Pa\"\narea_m2 = 4.9e-4\n";
+        let model = CylinderModel::from_toml(text, "model.toml").expect("a model");
+        let motions = vec![smooth_motion(&recording.time_s, &recording.columns[0], 0.05)];
+        let all = candidates(&model, &excitation::Cylinder::of(&model, &[recording], &motions));
+        let cylinder = Cylinder { model, motions };
+        assert!(all.len() > 8 && !cylinder.drawing(&[]).contains("found\""));
+        for candidate in all {
+            assert!(
+                cylinder.drawing(&[&candidate.place]).contains("found\""),
+                "{}",
+                candidate.name()
+            );
+        }
+    }
+}

@@ -163,3 +163,36 @@ impl SingleOutput for GasSpring {
         d.svg()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_place_where_something_may_be_missing_is_drawn() {
+        let wave = |size: f64| {
+            (0..200)
+                .map(|k| size * libm::sin(0.1 * f64::from(k)))
+                .collect::<Vec<f64>>()
+        };
+        let recording = Recording {
+            name: "strokes".into(),
+            time_s: (0..200).map(|k| 0.01 * f64::from(k)).collect(),
+            columns: vec![wave(0.1), wave(500.0), wave(1e6)],
+            notes: vec![],
+        };
+        let text = "[specimen]\nname = \"a\"\nkind = \"gas spring\"\n[chamber]\narea_m2 = 0.01\nvolume_at_zero_m3 = 0.05\n\
+                    [gas]\nspecies = \"nitrogen\"\nprocess = \"adiabatic\"\ntemperature_K = 293.15\n";
+        let model = GasSpringModel::from_toml(text, "model.toml").expect("a model");
+        let all = candidates(&model, &excitation::GasSpring::of(&[recording], 690.0, vec![]));
+        let spring = GasSpring { model, clocks: vec![] };
+        assert!(all.len() > 5 && !spring.drawing(&[]).contains("found\""));
+        for candidate in all {
+            assert!(
+                spring.drawing(&[&candidate.place]).contains("found\""),
+                "{}",
+                candidate.name()
+            );
+        }
+    }
+}

@@ -1,8 +1,9 @@
 //! The terms a strut model may have: the vocabulary of the recordings, one file for each effect.
 //!
 //! A file holds everything about its effect on the plant's side: the struct as it stands in `[effects]` of `model.toml`,
-//! the limits of its numbers, its equation as pages print it ([`Equation`]) and as the solver uses it (with the derivative where the solver needs one), its
-//! source, and tests of the equation against a closed form. The network and the integrator only call it.
+//! the limits of its numbers, its equation and source as pages print them ([`Equation`]), the equation as the solver uses it
+//! (with the derivative where the solver needs one), and tests of it against a closed form. The network and the integrator
+//! only call it.
 //!
 //! A term that is absent is physics left out, never a default value.
 //!
@@ -13,6 +14,8 @@
 //!    do not compile until the new one stands in each of them.
 //! 3. The place in `network`, `integrator` or `rod_forces` where the equation acts.
 //! 4. A test of the whole strut in `plant-sim/tests/strut_terms.rs`, and a line in `docs/physics.md`.
+//!
+//! `docs/adding-physics.md` walks through it, up to the effect that `oleo diagnose` finds; `./test adding-physics` follows.
 
 mod accumulator_piston_friction;
 mod bump_stop;

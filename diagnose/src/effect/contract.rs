@@ -24,6 +24,15 @@ pub trait Effect: Sync {
     /// `time_constant_i_s`. Numbers that only say where an equation begins to hold have no symbol.
     fn symbols(&self) -> &'static [(&'static str, &'static str)];
 
+    /// The symbol of a reported number; empty where the equation has none.
+    fn symbol(&self, key: &str) -> Option<&'static str> {
+        let counted = |known: &str| ["_1", "_2"].iter().any(|count| known.replace("_i", count) == key);
+        let mut symbols = self.symbols().iter();
+        symbols
+            .find(|(known, _)| *known == key || counted(known))
+            .map(|(_, symbol)| *symbol)
+    }
+
     /// In which channels it shows.
     fn shows_in(&self) -> ShowsIn {
         ShowsIn::NextToItsPlace

@@ -22,13 +22,13 @@ impl Effect for SealFriction {
     }
 
     fn meaning(&self) -> &'static str {
-        "F_c is the Coulomb force, F_s the breakaway force, v_s the Stribeck speed, k the presliding stiffness"
+        "the seal shears with the presliding stiffness k until it slides at the level g"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
         &[
             ("coulomb_force_N", "F_c"),
-            ("breakaway_over_coulomb", "F_s"),
+            ("breakaway_over_coulomb", "F_s/F_c"),
             ("stribeck_speed_m_s", "v_s"),
         ]
     }

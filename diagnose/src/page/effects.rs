@@ -60,6 +60,10 @@ fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
         for p in &e.parameters {
             let (name, unit) = words::quantity(&p.key);
             let (value, interval) = words::value_and_interval(p.value, p.ci95);
+            let name = match known.symbol(&p.key) {
+                None | Some("") => name,
+                Some(symbol) => format!("{name}, {symbol}"),
+            };
             table.row([name, value, interval, unit]);
         }
         page.table(table);

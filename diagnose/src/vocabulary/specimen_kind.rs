@@ -1,9 +1,9 @@
 //! The kinds of specimen, as `specimen.kind` of a model file names them.
 
-use strum::{Display, EnumString, IntoStaticStr, VariantNames};
+use strum::{Display, EnumString, IntoStaticStr, VariantArray, VariantNames};
 
 /// A kind of specimen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Display, EnumString, IntoStaticStr, VariantNames)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Display, EnumString, IntoStaticStr, VariantNames, VariantArray)]
 pub enum SpecimenKind {
     /// Hydropneumatic strut with two accumulators, two dampers and three valves, on a test rig.
     #[strum(serialize = "two-stage hydropneumatic strut")]

@@ -1,7 +1,7 @@
-//! Candidates: what a model may lack, and a model with some of it added.
+//! Candidates: an effect at a place with the numbers to fit.
 
 use crate::parameter::Parameter;
-use crate::vocabulary::{EffectId, Place};
+use crate::vocabulary::{EffectId, Place, Site};
 
 /// A law or an instrument fault that the model may lack: a kind of element at a place.
 #[derive(Debug, Clone)]
@@ -22,18 +22,58 @@ pub struct Candidate {
     pub untestable: Option<String>,
 }
 
-/// Candidates that stand for the same thing in different forms, of which a model can hold one.
+/// Candidates of which a model can hold one: they stand in the place of one effect in different forms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ExclusionGroup {
-    /// One damper or both fade.
-    DampingFade,
-    /// What the gas does with its heat.
-    GasProcess,
-    /// Laws without a name.
-    Unlisted,
-}
+pub struct ExclusionGroup(pub EffectId);
 
 impl Candidate {
+    /// An effect at a site of a specimen with the numbers to fit.
+    #[must_use]
+    pub fn new(id: EffectId, site: Site, parameters: Vec<Parameter>) -> Self {
+        Self {
+            id,
+            place: site.into(),
+            label: String::new(),
+            parameters,
+            starts: vec![],
+            group: None,
+            untestable: None,
+        }
+    }
+
+    /// The same with a label.
+    #[must_use]
+    pub fn labelled(self, label: &str) -> Self {
+        Self {
+            label: label.to_owned(),
+            ..self
+        }
+    }
+
+    /// The same with starting points beside the parameters' own.
+    #[must_use]
+    pub fn starting_at(self, starts: Vec<Vec<f64>>) -> Self {
+        Self { starts, ..self }
+    }
+
+    /// The same in the group of what stands in the place of an effect.
+    #[must_use]
+    pub fn in_place_of(self, id: EffectId) -> Self {
+        Self {
+            group: Some(ExclusionGroup(id)),
+            ..self
+        }
+    }
+
+    /// The same with the reason why the recordings cannot show it, where there is one. Of several the last is told.
+    #[must_use]
+    pub fn testable_unless(self, reason: Option<String>) -> Self {
+        Self {
+            untestable: reason.or(self.untestable),
+            ..self
+        }
+    }
+
     /// True for a law that the vocabulary does not name.
     #[must_use]
     pub fn is_unlisted(&self) -> bool {
@@ -79,13 +119,4 @@ impl Candidate {
             format!("{} ({})", self.place, self.label)
         }
     }
-}
-
-/// A model to simulate: values of the calibration, and the effects that are present with the values of their parameters.
-#[derive(Debug, Clone, Default)]
-pub struct Hypothesis {
-    /// Values of the specimen's calibration parameters, in their order.
-    pub calibration: Vec<f64>,
-    /// Index of each candidate that is present, and the values of its parameters.
-    pub effects: Vec<(usize, Vec<f64>)>,
 }

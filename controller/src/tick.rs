@@ -1,7 +1,8 @@
 //! One period of the controller, from inputs to valve command.
 //!
 //! The order of the calls is the flow of data: find out which readings may be used, estimate the motion from them, decide what
-//! is wanted, and let the mode machine take out what it does not permit. Nothing else keeps state between ticks.
+//! is wanted, let the mode machine take out what it does not permit, and limit how often valves switch. Nothing else keeps state
+//! between ticks.
 
 use oleo_interface::{Corners, StrutValves, Valve};
 
@@ -13,6 +14,7 @@ use crate::plausibility;
 use crate::reading::Inputs;
 use crate::spring::Springs;
 use crate::strategy::{self, Urgency};
+use crate::switching::SwitchingLimit;
 use crate::valves::ValveCommand;
 
 /// All memory of the controller. One belongs to one vehicle; a new one is a restart.
@@ -31,6 +33,7 @@ pub struct State {
     springs: Springs,
     dwell: Dwell,
     failsafe: failsafe::State,
+    switching: SwitchingLimit,
 }
 
 impl State {
@@ -129,7 +132,8 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
         .map(|(bypass, (spring, valve_2))| {
             StrutValves::new(bypass[Valve::Bypass1], bypass[Valve::Bypass2] && valve_2, spring)
         });
-    let command = failsafe::permitted(mode, health.affected, ValveCommand::from_corners(struts));
+    let permitted = failsafe::permitted(mode, state.failsafe.restricted(), ValveCommand::from_corners(struts));
+    let command = state.switching.step(permitted);
     Outputs {
         command,
         mode,

@@ -10,7 +10,7 @@
 //! which holds for any valve position and any load, also with oil trapped behind valve 3. The charge pressure `k` is not
 //! configured. It is learnt from the same equation while the controller starts, and then follows the gas temperature slowly
 //! (60 s). The residual, lagged by 1 s, is expected to stay within 25 mm (gas that is 30 K warmer: 10 % of 0.255 m). At 40 mm for
-//! 40 ticks the displacement reading is called wrong, and so it is if the charge is outside 0.3 to 15 MPa, which no suspension
+//! 40 ticks the displacement reading is called wrong (until it is below 25 mm again; the charge is not learnt meanwhile), and so it is if the charge is outside 0.3 to 15 MPa, which no suspension
 //! has.
 
 use oleo_interface::{Absolute, Gauge, StrutPressures};
@@ -21,6 +21,8 @@ use crate::filter::{LowPass, at_least};
 use crate::vehicle::VehicleDescription;
 
 const WRONG_M: f32 = 0.04;
+/// Residual below which a displacement that was called wrong is believed again.
+const RIGHT_M: f32 = 0.025;
 const CONFIRM_TICKS: u8 = 40;
 const CHARGE_PA: (f32, f32) = (0.3e6, 15.0e6);
 /// Lowest pressure that is counted with, Pa absolute. It keeps the quotient finite where an accumulator is empty.
@@ -90,14 +92,19 @@ impl OilBalance {
                 c.charge_start.step(&mut self.charge_pa, now_pa);
                 self.residual_m = 0.0;
             } else {
-                c.charge_drift.step(&mut self.charge_pa, now_pa);
+                // What a wrong reading says about the charge must not be learnt, or the fault would explain itself away.
+                if !self.flagged {
+                    c.charge_drift.step(&mut self.charge_pa, now_pa);
+                }
                 c.residual.step(&mut self.residual_m, residual);
             }
             let wrong = self.residual_m.abs() > WRONG_M || self.charge_pa < CHARGE_PA.0 || self.charge_pa > CHARGE_PA.1;
             self.wrong = if wrong {
                 self.wrong.saturating_add(1).min(CONFIRM_TICKS)
-            } else {
+            } else if !self.flagged || self.residual_m.abs() < RIGHT_M {
                 self.wrong.saturating_sub(1)
+            } else {
+                self.wrong
             };
             if self.wrong == CONFIRM_TICKS {
                 self.flagged = true;

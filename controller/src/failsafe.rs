@@ -118,20 +118,22 @@ pub enum FaultCode {
     SensorVote = 4,
     /// Displacement and gas volumes of a strut disagree.
     OilBalance = 5,
+    /// Oil moves through a valve 3 that is commanded closed.
+    ValveStuck = 6,
     /// A sensor message is late or not trustworthy.
-    MessageLost = 6,
+    MessageLost = 7,
     /// No sensor message arrives any more.
-    BusSilent = 7,
+    BusSilent = 8,
     /// Somebody else sends under an identifier of the controller.
-    ForeignSender = 8,
+    ForeignSender = 9,
     /// A solenoid could not be switched.
-    Solenoid = 9,
+    Solenoid = 10,
     /// The controller's own arithmetic gave something that is not a finite number.
-    Internal = 10,
+    Internal = 11,
 }
 
 impl FaultCode {
-    /// Number on the bus, 0 to 10.
+    /// Number on the bus, 0 to 11.
     pub const fn raw(self) -> u8 {
         self as u8
     }

@@ -63,6 +63,11 @@ impl Default for SwitchingLimit {
 }
 
 impl SwitchingLimit {
+    /// What the last tick returned.
+    pub fn command(&self) -> ValveCommand {
+        self.command
+    }
+
     /// One tick: returns `permitted` without the openings that come too soon.
     pub fn step(&mut self, permitted: ValveCommand) -> ValveCommand {
         self.now = self.now.wrapping_add(1);

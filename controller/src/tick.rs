@@ -94,6 +94,7 @@ pub struct Outputs {
 pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     let context = plausibility::Context {
         spring_settled_open: state.springs.settled_open(),
+        spring_commanded_closed: state.switching.command().corners().map(|strut| !strut[Valve::Spring]),
         learning: !state.failsafe.was_normal(),
     };
     let trusted = state.plausibility.step(&c.plausibility, inputs, &context);
@@ -143,5 +144,31 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
         invalid_readings: trusted.invalid_readings,
         trapped_shift_m: state.springs.trapped_shift_m(),
         estimate,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use oleo_interface::{Gauge, StrutPressures};
+
+    /// No input leads to a number that is not finite, so the memory is damaged by hand.
+    #[test]
+    fn arithmetic_that_is_not_finite_latches_in_the_same_tick() {
+        let (configuration, mut state) = (Configuration::defender110(), State::new());
+        let inputs = Inputs::from_values(Corners::splat(0.0), Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
+        for _ in 0..200 {
+            tick(&configuration, &mut state, &inputs);
+        }
+        state.estimate = estimate::State::damaged();
+        for _ in 0..400 {
+            let outputs = tick(&configuration, &mut state, &inputs);
+            assert_eq!(
+                (outputs.mode, outputs.fault, outputs.command),
+                (Mode::Latched, FaultCode::Internal, ValveCommand::SAFE)
+            );
+            assert!(outputs.estimate.is_finite(), "nothing else leaves the controller");
+            state.estimate = estimate::State::default();
+        }
     }
 }

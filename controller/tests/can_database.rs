@@ -229,7 +229,7 @@ proptest! {
     }
 
     #[test]
-    fn commands(word in 0u16..4096, echo_tick: u8, challenge: u8, mode in 0u8..5, fault in 0u8..11) {
+    fn commands(word in 0u16..4096, echo_tick: u8, challenge: u8, mode in 0u8..5, fault in 0u8..12) {
         let dbc = database();
         let message = message(&dbc, COMMAND.id);
         let sent = CommandMessage {
@@ -255,7 +255,7 @@ proptest! {
     }
 
     #[test]
-    fn status(mode in 0u8..5, fault in 0u8..11, handling: bool, rollover_guard: bool,
+    fn status(mode in 0u8..5, fault in 0u8..12, handling: bool, rollover_guard: bool,
               lateral in 0u32..1024, vertical in 0u32..1024, invalid_readings in 0u8..21, lost_messages in 0u8..64) {
         let dbc = database();
         let message = message(&dbc, STATUS.id);

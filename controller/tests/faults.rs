@@ -1,7 +1,7 @@
 //! Every fault on every message and reading: detected within N ticks, reacted to within M, and the valve pattern then.
 //!
 //! N is the tick in which the mode first leaves normal, M the tick of the first command that shows it; the tables here are the
-//! ones of `docs/controller.md`.
+//! ones of `docs/safety.md`.
 
 mod common;
 

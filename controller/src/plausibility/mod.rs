@@ -11,7 +11,7 @@
 //! | vote | a pressure that is off by over 1 MPa | about 2 s / offset (MPa) | `vote` |
 //! | trapped oil | oil that moves through a closed valve 3 | 260 in motion | `trapped_oil` |
 //! | oil balance | a displacement that disagrees with the gas volumes by over 40 mm, a charge that drifts | 600 | `oil_balance` |
-//! | oil motion | a displacement that does not move as the gas does | 300 in motion | `oil_motion` |
+//! | oil motion | a displacement that does not move as the gas does | 400 in motion | `oil_motion` |
 //! | link (from the node) | a late or untrusted message | at once | `reading_check` |
 //!
 //! While a check is undecided, the last good value is used. After that a displacement follows from the other three (the body is

@@ -289,7 +289,11 @@ fn a_model_that_is_wrong() {
         (
             "\"gas spring\"",
             "\"gas strut\"",
-            &["model.toml", "specimen.kind", "'gas strut' is not known"],
+            &[
+                "model.toml:",
+                "[specimen] kind is \"gas strut\"",
+                "did you mean gas spring?",
+            ],
         ),
         ("[chamber]", "[chamber", &["model.toml:4: this is not TOML"]),
         (

@@ -38,6 +38,9 @@ fn every_manoeuvre_leaves_table_data_summary_and_page() {
         ),
         ("bump", &["--model", "both", "--setting", "soft", "--speed-km-h", "10"]),
         ("straight", &["--model", "ride", "--road", "iso-d", "--duration-s", "3"]),
+        ("braking", &["--setting", "soft", "--speed-km-h", "40"]),
+        ("braking-in-bend", &["--setting", "baseline", "--road", "iso-c"]),
+        ("acceleration", &["--setting", "baseline", "--duration-s", "3"]),
     ] {
         let arguments = [&["drive", "--manoeuvre", name, "--out", name], more].concat();
         let run = oleo(folder.path(), &arguments);
@@ -57,6 +60,57 @@ fn every_manoeuvre_leaves_table_data_summary_and_page() {
     }
 }
 
+/// Any manoeuvre on any road, by any driver and with any load; a vehicle that rolls over is an outcome, told as one.
+#[test]
+fn manoeuvres_go_with_roads_drivers_and_loads() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let lane_change = |name: &str, more: &[&str]| {
+        let arguments = [&["drive", "--manoeuvre", "lane-change-2", "--out", name], more].concat();
+        let run = oleo(folder.path(), &arguments);
+        assert!(run.status.success(), "{name}: {}", text(&run.stderr));
+        summary(&folder.path().join(name))["handling_model"].clone()
+    };
+    let felt = |run: &serde_json::Value| run["driver_weighted_rms_m_s2"].as_f64().expect("a number");
+    let flat = lane_change("flat", &["--setting", "soft", "--speed-km-h", "50"]);
+    let rough = lane_change(
+        "rough",
+        &[
+            "--setting",
+            "soft",
+            "--speed-km-h",
+            "50",
+            "--road",
+            "belgian",
+            "--entry-m",
+            "60",
+        ],
+    );
+    assert_eq!(
+        (&flat["ending"], &rough["ending"]),
+        (&"completed".into(), &"completed".into())
+    );
+    assert!(felt(&rough) > 5.0 * felt(&flat), "{flat} {rough}");
+    let cold = lane_change(
+        "cold",
+        &["--setting", "soft", "--speed-km-h", "50", "--gas-temperature-c", "-20"],
+    );
+    let rise_m = cold["front_rise_m"].as_f64().expect("a number");
+    assert!((-0.045..-0.030).contains(&rise_m), "{cold}");
+    let roll = |run: &serde_json::Value| run["max_roll_deg"].as_f64().expect("a number");
+    assert!(roll(&cold) < roll(&flat), "cold gas is stiffer: {cold} {flat}");
+    let slope = &[
+        "--setting",
+        "baseline",
+        "--side-slope-percent",
+        "-10",
+        "--speed-km-h",
+        "40",
+    ];
+    assert_eq!(lane_change("slope", slope)["ending"], "completed");
+    let hard = &["--setting", "baseline", "--driver", "hard", "--load", "roof"];
+    assert_eq!(lane_change("hard", hard)["ending"], "rolled over");
+}
+
 #[test]
 fn bad_input_is_one_line_and_nothing_written() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -64,11 +118,41 @@ fn bad_input_is_one_line_and_nothing_written() {
     for (arguments, says) in [
         (
             &["drive", "--manoeuvre", "lane-change", "--model", "ride", "--out", "o"][..],
-            "does not steer",
+            "neither steers",
         ),
         (
             &["drive", "--manoeuvre", "straight", "--road", "mars", "--out", "o"],
             "mars",
+        ),
+        (
+            &["drive", "--manoeuvre", "bump", "--road", "iso-c", "--out", "o"],
+            "has its own",
+        ),
+        (
+            &[
+                "drive",
+                "--manoeuvre",
+                "straight",
+                "--side-slope-percent",
+                "90",
+                "--out",
+                "o",
+            ],
+            "--side-slope-percent",
+        ),
+        (
+            &[
+                "drive",
+                "--manoeuvre",
+                "straight",
+                "--setting",
+                "baseline",
+                "--gas-temperature-c",
+                "0",
+                "--out",
+                "o",
+            ],
+            "no gas",
         ),
         (
             &["drive", "--manoeuvre", "belgian", "--speed-km-h", "-3", "--out", "o"],

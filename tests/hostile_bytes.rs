@@ -78,7 +78,7 @@ fn can_frames() {
     use oleo_interface::{Corners, Gauge, StrutPressures};
     let pressure = Corners::splat(StrutPressures::splat(Gauge(4.0e6)));
     let inputs = Inputs::from_values(Corners::splat(0.01), pressure);
-    let mut plant = oleo_controller::can::PlantEnd::new();
+    let mut plant = oleo_controller::PlantEnd::new();
     let mut proper = Vec::new();
     for tick in 0..40 {
         for (index, frame) in plant.encode(tick, &inputs).iter().enumerate() {

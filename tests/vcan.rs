@@ -92,6 +92,29 @@ fn one_process_commands_what_the_bus_in_memory_commands() {
     });
 }
 
+/// Two senders under one identifier, and readings that are late: the checks of these scenarios hold on a real bus too.
+#[test]
+fn doubled_and_late_frames_close_the_valves() {
+    on_vcan(|bus| {
+        let folder = tempfile::tempdir().unwrap();
+        for scenario in ["doubled-frames", "held-up-bus"] {
+            let out = folder.path().join(scenario);
+            let output = run(&[
+                "hil",
+                "--scenario",
+                scenario,
+                "--bus",
+                bus,
+                "--out",
+                out.to_str().unwrap(),
+            ]);
+            no_panic(&output);
+            let text = String::from_utf8_lossy(&output.stdout);
+            assert_eq!(output.status.code(), Some(0), "{scenario}\n{text}");
+        }
+    });
+}
+
 #[test]
 fn two_processes_in_either_order_with_a_stranger_on_the_bus() {
     on_vcan(|bus| {

@@ -4,9 +4,9 @@
 //! vehicle at rest. After 1 s the cable of the rear left pressures is cut for 0.5 s, and between 3 s and 3.2 s nothing arrives
 //! at all. A line is printed whenever the command frame says something new.
 
-use oleo_controller::can::{CommandMessage, PlantEnd};
+use oleo_controller::can::CommandMessage;
 use oleo_controller::interface::tick::{TICK_S, TICKS_PER_SECOND};
-use oleo_controller::{Configuration, Corner, Corners, Gauge, Inputs, Node, SensorMessage, StrutPressures};
+use oleo_controller::{Configuration, Corner, Corners, Gauge, Inputs, Node, PlantEnd, SensorMessage, StrutPressures};
 
 /// Whether a message reaches the controller at a time.
 fn arrives(message: SensorMessage, time_s: f64) -> bool {
@@ -35,13 +35,16 @@ fn main() {
         // One period. Each tick sends a command, and every twentieth a status as well.
         let (_, frames) = node.tick();
         for frame in frames {
-            // `plant` checks what comes back as an output stage would, and gives the content of commands only.
-            let Some((_, Some(command))) = plant.receive(frame.id, &frame.data) else {
+            // `plant` checks commands as an output stage does, and echoes them in its next frames.
+            if plant.receive(frame.id, &frame.data).is_none() {
+                continue;
+            }
+            let Some(CommandMessage {
+                command, mode, fault, ..
+            }) = CommandMessage::decode(&frame.data)
+            else {
                 continue;
             };
-            let CommandMessage {
-                command, mode, fault, ..
-            } = command;
             if before != Some((command, mode, fault)) {
                 println!(
                     "{time_s:7.3}  {:<9} {:<13} {:012b}",
@@ -52,6 +55,7 @@ fn main() {
                 before = Some((command, mode, fault));
             }
         }
+        plant.end_of_tick();
     }
     let counters = node.counters();
     println!(

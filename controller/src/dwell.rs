@@ -7,14 +7,13 @@
 use oleo_interface::{Corner, Corners, StrutValves, Valve};
 
 use crate::timing::ticks;
-use crate::valves::ValveCommand;
+use crate::valves::{BYPASS_BITS, ValveCommand};
 
 /// Shortest time between two changes of one valve, ticks.
 const BYPASS_DWELL_TICKS: u32 = ticks(100) as u32;
 
 /// The valves that rest: 1 and 2 of every strut.
 const BYPASS_VALVES: [Valve; 2] = [Valve::Bypass1, Valve::Bypass2];
-const BYPASS_BITS: u16 = 0b011_011_011_011;
 
 /// State of the eight bypass signals.
 #[derive(Clone, Copy, Debug, Default)]

@@ -282,6 +282,18 @@ impl State {
     }
 }
 
+#[cfg(test)]
+impl State {
+    /// A state whose memory was damaged, as no input can do.
+    pub(crate) fn damaged() -> Self {
+        Self {
+            started: true,
+            lateral_bias: f32::NAN,
+            ..Self::default()
+        }
+    }
+}
+
 /// Motion of the body relative to the axles: positions from strut displacements, or rates from strut speeds.
 struct Relative {
     heave_m: f32,

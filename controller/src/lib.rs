@@ -12,8 +12,9 @@
 //! | one period with CAN frames | [`Node::receive`] any number of times, then [`Node::tick`] |
 //! | the same on a CAN peripheral | [`Port`], over `embedded_can::nb::Can` |
 //! | switch the valves | [`Solenoids`], over `embedded_hal::digital::OutputPin` |
+//! | obey the command at the other end of a bus | [`OutputStage`] |
 //! | another vehicle or another tuning | [`Builder`] |
-//! | stand at the other end of the bus | [`can::PlantEnd`] |
+//! | stand at the other end of the bus | [`PlantEnd`] |
 //!
 //! The caller owns time: one call is one period, and nothing here reads a clock. The crate has no heap, needs no std and
 //! never panics. It computes in `f32` with the same `libm` on every machine, so that the sequence of valve commands is the
@@ -30,7 +31,10 @@ mod dwell;
 pub mod estimate;
 pub mod failsafe;
 mod filter;
+mod freshness;
 mod node;
+mod output_stage;
+mod plant_end;
 pub mod plausibility;
 mod port;
 mod range;
@@ -40,6 +44,7 @@ mod sensor_message;
 mod solenoids;
 pub mod spring;
 pub mod strategy;
+mod switching;
 mod tick;
 mod timing;
 mod valves;
@@ -53,6 +58,8 @@ pub use oleo_interface as interface;
 pub use oleo_interface::{
     Absolute, Axle, Axles, Corner, Corners, Gauge, PressurePoint, Side, StrutPressures, StrutValves, Valve,
 };
+pub use output_stage::OutputStage;
+pub use plant_end::PlantEnd;
 pub use port::{Port, PortCounters};
 pub use range::{ConfigurationError, Hysteresis};
 pub use reading::{Inputs, Reading};

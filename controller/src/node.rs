@@ -3,21 +3,23 @@
 //! The node owns what the pure [`tick()`](crate::tick()) must not know: counters, check values, how old a message is. Hosts, the
 //! firmware and the tests all use this one, so a rule about messages exists once.
 //!
-//! A message is *lost* when no usable frame came for its contract's `timeout_ticks`; until then its last values are used. It
-//! is *untrusted* when frames with a wrong CRC, repeated frames or frames out of sequence outnumber right ones: a counter
-//! goes up by one with each bad frame and down by one with each good frame, and it saturates at five. There trust ends until
-//! the counter is back at zero (after opendbc's `wrong_counters`, with hysteresis). The readings of a lost or untrusted
-//! message are invalid.
+//! A message is *lost* when no usable frame came for its contract's `timeout_ticks`; until then its last values are used. It is
+//! also lost while it is not trusted: `receiver` judges how many and which frames came in each tick, `can::state_machine` the
+//! last sixteen ticks, and `freshness` how old the readings are. The readings of a lost message are invalid.
+//!
+//! A frame with one of the controller's own identifiers, the command's or the status', comes from somebody else. That is a fault
+//! of its own in the tick in which it is heard (after opendbc's check of relays).
 
 use heapless::Vec;
 use oleo_interface::tick::TICK_MS;
-use oleo_interface::{Axle, Side, StrutPressures};
+use oleo_interface::{Axles, Side, StrutPressures};
 
 use crate::can::{
     COMMAND, CheckStatus, CommandMessage, DISPLACEMENT, DisplacementMessage, FRAME_BYTES, Frame, PRESSURE,
     PressureMessage, Protector, STATUS, StatusMessage, sensor_message,
 };
 use crate::configuration::Configuration;
+use crate::freshness::{Freshness, counter};
 use crate::reading::{Inputs, Reading};
 use crate::receiver::Receiver;
 use crate::sensor_message::{MessageSet, PerSensorMessage, SensorMessage};
@@ -44,6 +46,8 @@ pub struct BusCounters {
     pub received: u32,
     /// Frames with other identifiers, which are ignored.
     pub foreign: u32,
+    /// Frames with the controller's own identifiers, which somebody else has sent.
+    pub own: u32,
     /// Frames with a wrong length or CRC.
     pub wrong_crc: u32,
     /// Frames that were repeated or out of sequence.
@@ -55,8 +59,7 @@ pub struct BusCounters {
 /// A controller with its configuration and state, behind both directions of the bus.
 ///
 /// ```
-/// use oleo_controller::can::PlantEnd;
-/// use oleo_controller::{Configuration, Corners, Gauge, Inputs, Mode, Node, StrutPressures};
+/// use oleo_controller::{Configuration, Corners, Gauge, Inputs, Mode, Node, PlantEnd, StrutPressures};
 /// let mut node = Node::new(Configuration::defender110());
 /// let mut plant = PlantEnd::new(); // stands for the sensors and the output stage
 /// let at_rest = Inputs::from_values(Corners::splat(0.0), Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
@@ -69,6 +72,7 @@ pub struct BusCounters {
 ///     for frame in frames {
 ///         plant.receive(frame.id, &frame.data);
 ///     }
+///     plant.end_of_tick();
 ///     mode = outputs.mode;
 /// }
 /// assert_eq!(mode, Mode::Normal);
@@ -78,8 +82,9 @@ pub struct Node {
     configuration: Configuration,
     state: State,
     receivers: PerSensorMessage<Receiver>,
+    freshness: Freshness,
     inputs: Inputs,
-    echo_tick: u16,
+    echo_tick: u8,
     command: Protector,
     status: Protector,
     status_countdown: u32,
@@ -96,6 +101,7 @@ impl Node {
                 pressure: PRESSURE.map(|contract| Receiver::new(&contract)),
                 displacement: DISPLACEMENT.map(|contract| Receiver::new(&contract)),
             },
+            freshness: Freshness::default(),
             inputs: Inputs::default(),
             echo_tick: 0,
             command: Protector::new(&COMMAND),
@@ -107,13 +113,15 @@ impl Node {
 
     /// Takes a frame from the bus: its standard identifier, 0 to 0x7FF, and its data. Call it any number of times between
     /// ticks; frames with other identifiers are counted and ignored.
-    ///
-    /// Returns the sender's tick if the frame is a rear displacement message with the right CRC. That message is the last
-    /// of a tick, so a simulation in lockstep knows that the readings are complete.
-    pub fn receive(&mut self, id: u16, data: &[u8]) -> Option<u16> {
+    pub fn receive(&mut self, id: u16, data: &[u8]) {
         let Some(message) = sensor_message(id) else {
-            self.counters.foreign = self.counters.foreign.wrapping_add(1);
-            return None;
+            if id == COMMAND.id || id == STATUS.id {
+                self.counters.own = self.counters.own.wrapping_add(1);
+                self.inputs.foreign_sender = true;
+            } else {
+                self.counters.foreign = self.counters.foreign.wrapping_add(1);
+            }
+            return;
         };
         self.counters.received = self.counters.received.wrapping_add(1);
         // A frame of the wrong length cannot carry the right CRC: it has the same consequence.
@@ -122,7 +130,7 @@ impl Node {
         match status {
             CheckStatus::WrongCrc => {
                 self.counters.wrong_crc = self.counters.wrong_crc.wrapping_add(1);
-                return None;
+                return;
             }
             CheckStatus::Repeated | CheckStatus::WrongSequence => {
                 self.counters.wrong_sequence = self.counters.wrong_sequence.wrapping_add(1);
@@ -130,26 +138,9 @@ impl Node {
             CheckStatus::OkSomeLost => self.counters.gaps = self.counters.gaps.wrapping_add(1),
             CheckStatus::Ok | CheckStatus::Initial | CheckStatus::Sync => {}
         }
-        match message {
-            SensorMessage::Pressure(corner) => {
-                if status.is_usable() {
-                    self.inputs.pressure[corner] = PressureMessage::decode(data).pressure;
-                }
-                None
-            }
-            SensorMessage::Displacement(axle) => {
-                let message = DisplacementMessage::decode(data);
-                if status.is_usable() {
-                    self.inputs.displacement[axle.corner(Side::Left)] = message.left;
-                    self.inputs.displacement[axle.corner(Side::Right)] = message.right;
-                }
-                if axle == Axle::Front {
-                    return None;
-                }
-                // The echo only says which frame was seen; it needs no sequence.
-                self.echo_tick = message.plant_tick;
-                Some(message.plant_tick)
-            }
+        if matches!(message, SensorMessage::Displacement(_)) {
+            // The echo only says which frame was seen; it needs no sequence.
+            self.echo_tick = DisplacementMessage::decode(data).plant_tick;
         }
     }
 
@@ -162,6 +153,7 @@ impl Node {
     pub fn tick(&mut self) -> (Outputs, Vec<Frame, MAX_SENT>) {
         self.end_of_reception();
         let outputs = tick(&self.configuration, &mut self.state, &self.inputs);
+        self.inputs.foreign_sender = false;
 
         let mut frames = Vec::new();
         let mut send = |id: u16, mut data: [u8; FRAME_BYTES], protector: &mut Protector| {
@@ -172,6 +164,7 @@ impl Node {
         let command = CommandMessage {
             command: outputs.command,
             echo_tick: self.echo_tick,
+            challenge: self.freshness.challenge(),
             mode: outputs.mode,
             fault: outputs.fault,
         };
@@ -185,22 +178,47 @@ impl Node {
         (outputs, frames)
     }
 
-    /// Makes the readings of lost messages invalid. A message's next usable frame brings new ones.
+    /// Takes over what the messages of this tick say, and makes the readings of lost messages invalid.
     fn end_of_reception(&mut self) {
         let inputs = &mut self.inputs;
+        let displacement = &mut self.receivers.displacement;
+        let fresh = self.freshness.displacements(Axles::from_fn(|axle| {
+            let data = displacement[axle].candidate()?;
+            Some((DisplacementMessage::decode(data), counter(data)))
+        }));
         inputs.lost_messages = MessageSet::EMPTY;
-        for (corner, receiver) in self.receivers.pressure.iter_mut() {
-            if receiver.end_of_tick() {
-                inputs.lost_messages.insert(SensorMessage::Pressure(corner));
-                inputs.pressure[corner] = StrutPressures::splat(Reading::INVALID);
+        for (axle, receiver) in displacement.iter_mut() {
+            if receiver.candidate().is_some() && !fresh[axle] {
+                receiver.distrust();
             }
-        }
-        for (axle, receiver) in self.receivers.displacement.iter_mut() {
-            if receiver.end_of_tick() {
-                inputs.lost_messages.insert(SensorMessage::Displacement(axle));
-                for side in Side::ALL {
-                    inputs.displacement[axle.corner(side)] = Reading::INVALID;
+            let left_and_right = match receiver.end_of_tick() {
+                Some(data) => {
+                    let DisplacementMessage { left, right, .. } = DisplacementMessage::decode(&data);
+                    (left, right)
                 }
+                None if receiver.is_lost() => {
+                    inputs.lost_messages.insert(SensorMessage::Displacement(axle));
+                    (Reading::INVALID, Reading::INVALID)
+                }
+                None => continue,
+            };
+            (
+                inputs.displacement[axle.corner(Side::Left)],
+                inputs.displacement[axle.corner(Side::Right)],
+            ) = left_and_right;
+        }
+        for (corner, receiver) in self.receivers.pressure.iter_mut() {
+            let late = |data| !self.freshness.is_in_step(counter(data));
+            if receiver.candidate().is_some_and(late) {
+                receiver.distrust();
+            }
+            match receiver.end_of_tick() {
+                Some(data) => inputs.pressure[corner] = PressureMessage::decode(&data).pressure,
+                None if receiver.is_lost() => {
+                    inputs.lost_messages.insert(SensorMessage::Pressure(corner));
+                    inputs.pressure[corner] = StrutPressures::splat(Reading::INVALID);
+                }
+                None => {}
             }
         }
     }

@@ -192,8 +192,8 @@ fn to_peripheral<C: Can>(id: u16, data: &[u8; FRAME_BYTES]) -> Option<C::Frame> 
 mod tests {
     extern crate std;
     use super::*;
-    use crate::can::{COMMAND, PlantEnd};
-    use crate::{Configuration, Corners, Gauge, Inputs, Mode, StrutPressures};
+    use crate::can::COMMAND;
+    use crate::{Configuration, Corners, Gauge, Inputs, Mode, PlantEnd, StrutPressures};
     use std::collections::VecDeque;
     use std::vec::Vec;
 
@@ -272,20 +272,19 @@ mod tests {
         let (mut port, mut plant) = (port(), PlantEnd::new());
         let inputs = Inputs::from_values(Corners::splat(0.0), Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
         let mut mode = Mode::StartUp;
+        let command_id = Id::Standard(StandardId::new(COMMAND.id).unwrap());
         for n in 0..60 {
             for frame in plant.encode(n, &inputs) {
                 let frame = TestFrame::new(StandardId::new(frame.id).unwrap(), &frame.data).unwrap();
                 port.can_mut().incoming.push_back(Ok(frame));
             }
             mode = port.tick().mode;
+            if let Some(command) = port.can_mut().sent.iter().rfind(|frame| frame.id == command_id) {
+                plant.receive(COMMAND.id, &command.data);
+            }
         }
         assert_eq!(mode, Mode::Normal);
-        let commands = port
-            .can
-            .sent
-            .iter()
-            .filter(|f| f.id == Id::Standard(StandardId::new(COMMAND.id).unwrap()))
-            .count();
+        let commands = port.can.sent.iter().filter(|f| f.id == command_id).count();
         assert_eq!((commands, port.can.sent.len()), (60, 63));
     }
 

@@ -58,6 +58,8 @@ pub struct Inputs {
     /// Sensor messages that are late or not trusted at present; none where no bus is in between. The set names the
     /// cause; the readings of such a message are invalid anyway.
     pub lost_messages: MessageSet,
+    /// A frame with one of the controller's own identifiers was heard: somebody else sends commands.
+    pub foreign_sender: bool,
     /// The output stage could not switch a solenoid in the last tick.
     pub solenoid_failed: bool,
 }
@@ -78,6 +80,7 @@ impl Inputs {
             displacement: displacement_m.map(Reading::new),
             pressure: pressure.map(|strut| strut.map(|point| Reading::new(point.pa()))),
             lost_messages: MessageSet::EMPTY,
+            foreign_sender: false,
             solenoid_failed: false,
         }
     }

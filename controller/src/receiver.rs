@@ -1,20 +1,41 @@
-//! Receive side of one sensor message: how old it is, and whether it is trusted.
+//! Receive side of one message: what it said in this tick, how old that is, and whether it is trusted.
+//!
+//! A sender sends one frame a tick. More than one means that somebody else sends under its identifier, and no check value says
+//! which of them is right. So the frames of a tick are judged together: only a tick that brought what one sender sends brings
+//! new data, and any other counts as wrong. A frame that was held up by the bus arrives together with the next one; so after a
+//! tick without a frame one more is accepted.
 
-use crate::can::{CheckStatus, Checker, Contract, FRAME_BYTES};
+use crate::can::{CheckStatus, Checker, Contract, FRAME_BYTES, Period, StateMachine};
 
-/// Number of bad frames, less the good ones, at which a message is no longer trusted.
-const TRUST_LIMIT: u8 = 5;
+/// What a tick's frames say together.
+#[derive(Clone, Copy, Debug)]
+struct Gathered {
+    frames: u8,
+    worst: Period,
+    /// The youngest frame that passed its check.
+    data: Option<[u8; FRAME_BYTES]>,
+}
 
-/// What is known of one sensor message.
+impl Gathered {
+    const NOTHING: Self = Self {
+        frames: 0,
+        worst: Period::Ok,
+        data: None,
+    };
+}
+
+/// What is known of one message.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
     checker: Checker,
+    trust: StateMachine,
+    trusted: bool,
+    gathered: Gathered,
     timeout_ticks: u8,
-    /// Ticks since the last usable frame, saturating.
+    /// Ticks since the last new data, saturating.
     age: u8,
-    fresh: bool,
-    bad: u8,
-    untrusted: bool,
+    /// Number of ticks without a frame for which a late one may still come.
+    owed: u8,
 }
 
 impl Receiver {
@@ -22,47 +43,99 @@ impl Receiver {
     pub const fn new(contract: &Contract) -> Self {
         Self {
             checker: Checker::new(contract),
+            trust: StateMachine::new(),
+            trusted: false,
+            gathered: Gathered::NOTHING,
             timeout_ticks: contract.timeout_ticks,
             age: contract.timeout_ticks,
-            fresh: false,
-            bad: 0,
-            untrusted: false,
+            owed: 0,
         }
     }
 
-    /// Checks one frame and counts it for or against the message.
+    /// Takes a frame of this tick.
     pub fn receive(&mut self, data: &[u8; FRAME_BYTES]) -> CheckStatus {
         let status = self.checker.check(data);
-        if status.is_usable() {
-            self.fresh = true;
-            self.age = 0;
-            self.bad = self.bad.saturating_sub(1);
-            if self.bad == 0 {
-                self.untrusted = false;
+        let gathered = &mut self.gathered;
+        gathered.frames = gathered.frames.saturating_add(1);
+        let period = match status {
+            CheckStatus::Ok | CheckStatus::OkSomeLost => {
+                gathered.data = Some(*data);
+                Period::Ok
             }
-        } else if status.is_error() {
-            self.bad = self.bad.saturating_add(1).min(TRUST_LIMIT);
-            if self.bad == TRUST_LIMIT {
-                self.untrusted = true;
-            }
+            // In sequence again, but not yet for long enough to be used.
+            CheckStatus::Sync => Period::Ok,
+            CheckStatus::Repeated => Period::Repeated,
+            CheckStatus::Initial | CheckStatus::WrongSequence => Period::WrongSequence,
+            CheckStatus::WrongCrc => Period::Error,
+        };
+        if period > gathered.worst {
+            gathered.worst = period;
         }
         status
     }
 
-    /// Ends the reception of a tick. Whether the message is lost: its content must not be used.
-    pub fn end_of_tick(&mut self) -> bool {
-        if !core::mem::take(&mut self.fresh) {
-            self.checker.no_new_data();
-            self.age = self.age.saturating_add(1);
+    /// Notes that the message or its sender is not to be trusted in this tick, for a reason that its frames do not show.
+    pub fn distrust(&mut self) {
+        self.gathered.worst = Period::Error;
+    }
+
+    /// What the message says in this tick, as far as its own frames tell.
+    pub fn candidate(&self) -> Option<&[u8; FRAME_BYTES]> {
+        if self.is_crowded() || self.gathered.worst == Period::Error {
+            return None;
         }
-        self.untrusted || self.age >= self.timeout_ticks
+        self.gathered.data.as_ref()
+    }
+
+    /// Ends the tick; returns the new data if there is any and the message is trusted.
+    pub fn end_of_tick(&mut self) -> Option<[u8; FRAME_BYTES]> {
+        let crowded = self.is_crowded();
+        let Gathered { frames, worst, data } = core::mem::replace(&mut self.gathered, Gathered::NOTHING);
+        let period = if crowded {
+            Period::Error
+        } else if frames == 0 && worst == Period::Ok {
+            Period::NoNewData
+        } else {
+            worst
+        };
+        self.owed = match frames {
+            0 => self.owed.saturating_add(1).min(self.timeout_ticks),
+            more => self.owed.saturating_sub(more - 1),
+        };
+        if frames == 0 {
+            self.checker.no_new_data();
+        }
+        self.trusted = self.trust.step(period);
+        let data = data.filter(|_| self.trusted && period != Period::Error);
+        self.age = if data.is_some() { 0 } else { self.age.saturating_add(1) };
+        data
+    }
+
+    /// Whether the last data of the message must not be used any more.
+    pub fn is_lost(&self) -> bool {
+        !self.trusted || self.age >= self.timeout_ticks
+    }
+
+    /// Number of ticks since the last new data; it saturates.
+    pub fn age(&self) -> u8 {
+        self.age
+    }
+
+    /// Whether more frames came than one sender sends.
+    fn is_crowded(&self) -> bool {
+        self.gathered.frames > self.owed.saturating_add(1)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
     use super::*;
+    use crate::can::{PRESSURE, Protector};
     use crate::sensor_message::SensorMessage;
+    use std::vec::Vec;
+
+    const MESSAGE: Contract = PRESSURE.as_array()[0];
 
     /// A frame of another length is checked as if it were this one.
     #[test]
@@ -73,6 +146,89 @@ mod tests {
                 receiver.receive(&[0xFF; FRAME_BYTES]),
                 CheckStatus::WrongCrc,
                 "{message:?}"
+            );
+        }
+    }
+
+    fn sealed(count: usize) -> Vec<[u8; FRAME_BYTES]> {
+        let mut protector = Protector::new(&MESSAGE);
+        (0..count)
+            .map(|n| {
+                let mut data = [0, 0, n as u8, 0, 0, 0, 0, 0];
+                protector.protect(&mut data);
+                data
+            })
+            .collect()
+    }
+
+    /// A receiver that has had 32 good ticks, and the frames that follow.
+    fn settled() -> (Receiver, Vec<[u8; FRAME_BYTES]>) {
+        let (mut receiver, mut frames) = (Receiver::new(&MESSAGE), sealed(100));
+        let rest = frames.split_off(32);
+        for (n, frame) in frames.iter().enumerate() {
+            receiver.receive(frame);
+            assert_eq!(
+                receiver.end_of_tick().is_some(),
+                n > 0,
+                "the first one is only compared with"
+            );
+        }
+        (receiver, rest)
+    }
+
+    #[test]
+    fn two_senders_are_never_believed_and_soon_not_trusted() {
+        let (mut receiver, frames) = settled();
+        for n in 0..3 {
+            // One counter ahead of the right one, as an attacker would: the right frame is then called repeated.
+            receiver.receive(&frames[n]);
+            receiver.receive(&frames[n + 1]);
+            assert_eq!(receiver.candidate(), None);
+            assert_eq!(receiver.end_of_tick(), None);
+            assert_eq!(receiver.is_lost(), n == 2, "tick {n}");
+        }
+    }
+
+    #[test]
+    fn a_late_frame_may_come_with_the_next_but_not_twice() {
+        let (mut receiver, frames) = settled();
+        assert_eq!(receiver.end_of_tick(), None);
+        receiver.receive(&frames[0]);
+        receiver.receive(&frames[1]);
+        assert_eq!(receiver.end_of_tick(), Some(frames[1]), "the younger one");
+        receiver.receive(&frames[2]);
+        receiver.receive(&frames[3]);
+        assert_eq!(receiver.end_of_tick(), None, "nothing was late");
+    }
+
+    #[test]
+    fn silence_is_bridged_for_three_ticks() {
+        let (mut receiver, frames) = settled();
+        let lost: Vec<bool> = (0..5)
+            .map(|_| {
+                receiver.end_of_tick();
+                receiver.is_lost()
+            })
+            .collect();
+        assert_eq!(lost, [false, false, false, true, true]);
+        assert!(frames.len() > 60);
+    }
+
+    #[test]
+    fn distrust_counts_as_a_wrong_tick() {
+        let (mut receiver, frames) = settled();
+        for frame in &frames[..3] {
+            receiver.receive(frame);
+            receiver.distrust();
+            assert_eq!(receiver.end_of_tick(), None);
+        }
+        assert!(receiver.is_lost());
+        for (n, frame) in frames[3..19].iter().enumerate() {
+            receiver.receive(frame);
+            assert_eq!(
+                receiver.end_of_tick().is_some(),
+                n == 15,
+                "trusted again after sixteen clean ticks"
             );
         }
     }

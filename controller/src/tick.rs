@@ -1,7 +1,8 @@
 //! One period of the controller, from inputs to valve command.
 //!
 //! The order of the calls is the flow of data: find out which readings may be used, estimate the motion from them, decide what
-//! is wanted, and let the mode machine take out what it does not permit. Nothing else keeps state between ticks.
+//! is wanted, let the mode machine take out what it does not permit, and limit how often valves switch. Nothing else keeps state
+//! between ticks.
 
 use oleo_interface::{Corners, StrutValves, Valve};
 
@@ -13,6 +14,7 @@ use crate::plausibility;
 use crate::reading::Inputs;
 use crate::spring::Springs;
 use crate::strategy::{self, Urgency};
+use crate::switching::SwitchingLimit;
 use crate::valves::ValveCommand;
 
 /// All memory of the controller. One belongs to one vehicle; a new one is a restart.
@@ -31,6 +33,7 @@ pub struct State {
     springs: Springs,
     dwell: Dwell,
     failsafe: failsafe::State,
+    switching: SwitchingLimit,
 }
 
 impl State {
@@ -91,6 +94,7 @@ pub struct Outputs {
 pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     let context = plausibility::Context {
         spring_settled_open: state.springs.settled_open(),
+        spring_commanded_closed: state.switching.command().corners().map(|strut| !strut[Valve::Spring]),
         learning: !state.failsafe.was_normal(),
     };
     let trusted = state.plausibility.step(&c.plausibility, inputs, &context);
@@ -129,7 +133,8 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
         .map(|(bypass, (spring, valve_2))| {
             StrutValves::new(bypass[Valve::Bypass1], bypass[Valve::Bypass2] && valve_2, spring)
         });
-    let command = failsafe::permitted(mode, health.affected, ValveCommand::from_corners(struts));
+    let permitted = failsafe::permitted(mode, state.failsafe.restricted(), ValveCommand::from_corners(struts));
+    let command = state.switching.step(permitted);
     Outputs {
         command,
         mode,
@@ -139,5 +144,31 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
         invalid_readings: trusted.invalid_readings,
         trapped_shift_m: state.springs.trapped_shift_m(),
         estimate,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use oleo_interface::{Gauge, StrutPressures};
+
+    /// No input leads to a number that is not finite, so the memory is damaged by hand.
+    #[test]
+    fn arithmetic_that_is_not_finite_latches_in_the_same_tick() {
+        let (configuration, mut state) = (Configuration::defender110(), State::new());
+        let inputs = Inputs::from_values(Corners::splat(0.0), Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
+        for _ in 0..200 {
+            tick(&configuration, &mut state, &inputs);
+        }
+        state.estimate = estimate::State::damaged();
+        for _ in 0..400 {
+            let outputs = tick(&configuration, &mut state, &inputs);
+            assert_eq!(
+                (outputs.mode, outputs.fault, outputs.command),
+                (Mode::Latched, FaultCode::Internal, ValveCommand::SAFE)
+            );
+            assert!(outputs.estimate.is_finite(), "nothing else leaves the controller");
+            state.estimate = estimate::State::default();
+        }
     }
 }

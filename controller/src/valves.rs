@@ -5,6 +5,9 @@
 
 use oleo_interface::{Corner, Corners, StrutValves, Valve};
 
+/// The bits of the bypass valves 1 and 2 of every strut.
+pub(crate) const BYPASS_BITS: u16 = 0b011_011_011_011;
+
 /// Commanded positions of the twelve valves: bit `3 * corner + valve`, 1 open (energised), 0 closed.
 ///
 /// ```

@@ -209,16 +209,17 @@ proptest! {
     }
 
     #[test]
-    fn displacements(tick: u16, left: i16, right: i16, status in 0u8..4, axle in prop::sample::select(&Axle::ALL[..])) {
+    fn displacements(tick: u8, answer: u8, left: i16, right: i16, status in 0u8..4, axle in prop::sample::select(&Axle::ALL[..])) {
         let dbc = database();
         let message = message(&dbc, DISPLACEMENT[axle].id);
         let mut frame = [0; 8];
         insert(&mut frame, signal(message, "PlantTick"), i64::from(tick));
+        insert(&mut frame, signal(message, "Answer"), i64::from(answer));
         insert(&mut frame, signal(message, "DisplacementLeft"), i64::from(left));
         insert(&mut frame, signal(message, "DisplacementRight"), i64::from(right));
         insert(&mut frame, signal(message, "StatusRight"), i64::from(status));
         let decoded = DisplacementMessage::decode(&frame);
-        prop_assert_eq!(decoded.plant_tick, tick);
+        prop_assert_eq!((decoded.plant_tick, decoded.answer), (tick, answer));
         let expected = physical(&frame, signal(message, "DisplacementLeft"));
         prop_assert!((f64::from(decoded.left.value().unwrap()) - expected).abs() < 1e-7);
         prop_assert_eq!(decoded.right.is_valid(), status == 0);
@@ -228,12 +229,13 @@ proptest! {
     }
 
     #[test]
-    fn commands(word in 0u16..4096, echo_tick: u16, mode in 0u8..5, fault in 0u8..10) {
+    fn commands(word in 0u16..4096, echo_tick: u8, challenge: u8, mode in 0u8..5, fault in 0u8..12) {
         let dbc = database();
         let message = message(&dbc, COMMAND.id);
         let sent = CommandMessage {
             command: ValveCommand::from_word(word),
             echo_tick,
+            challenge,
             mode: Mode::from_repr(mode).unwrap(),
             fault: FaultCode::from_repr(fault).unwrap(),
         };
@@ -246,13 +248,14 @@ proptest! {
         }
         prop_assert_eq!(extract(&frame, signal(message, "ValveWordComplement")), i64::from(!word & 0xFFF));
         prop_assert_eq!(extract(&frame, signal(message, "EchoTick")), i64::from(echo_tick));
+        prop_assert_eq!(extract(&frame, signal(message, "Challenge")), i64::from(challenge));
         prop_assert_eq!(extract(&frame, signal(message, "Mode")), i64::from(mode));
         prop_assert_eq!(extract(&frame, signal(message, "Fault")), i64::from(fault));
         prop_assert_eq!(CommandMessage::decode(&frame), Some(sent));
     }
 
     #[test]
-    fn status(mode in 0u8..5, fault in 0u8..10, handling: bool, rollover_guard: bool,
+    fn status(mode in 0u8..5, fault in 0u8..12, handling: bool, rollover_guard: bool,
               lateral in 0u32..1024, vertical in 0u32..1024, invalid_readings in 0u8..21, lost_messages in 0u8..64) {
         let dbc = database();
         let message = message(&dbc, STATUS.id);
@@ -287,7 +290,7 @@ proptest! {
         if let Some(p) = p.value() {
             prop_assert!((p - value).abs() <= 2_501.0);
         }
-        let both = DisplacementMessage { plant_tick: 0, left: Reading::new(value), right: Reading::new(value) };
+        let both = DisplacementMessage { plant_tick: 0, answer: 0, left: Reading::new(value), right: Reading::new(value) };
         let x = DisplacementMessage::decode(&both.encode()).left;
         prop_assert!(!x.is_valid() || (x.value().unwrap() - value).abs() <= 5.1e-6);
         prop_assert!(x.is_valid() || !value.is_finite() || value.abs() > 0.3276);

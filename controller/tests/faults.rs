@@ -1,7 +1,7 @@
 //! Every fault on every message and reading: detected within N ticks, reacted to within M, and the valve pattern then.
 //!
 //! N is the tick in which the mode first leaves normal, M the tick of the first command that shows it; the tables here are the
-//! ones of `docs/controller.md`.
+//! ones of `docs/safety.md`.
 
 mod common;
 
@@ -117,7 +117,7 @@ fn every_message_corrupted() {
         let (n, outputs) = until_reaction(&mut it, 20, |_| {}, corrupt);
         assert_eq!(
             (n, outputs.mode, outputs.fault),
-            (4, Mode::Degraded, FaultCode::MessageLost),
+            (3, Mode::Degraded, FaultCode::MessageLost),
             "{}",
             contract.name
         );
@@ -153,48 +153,6 @@ fn every_message_frozen_in_a_gateway() {
 }
 
 #[test]
-fn a_foreign_sender_on_our_identifiers() {
-    // Two forged frames for each right one: the right ones are there, but the message is not trusted.
-    for contract in SensorMessage::ALL.map(SensorMessage::contract) {
-        let mut it = soft_loop();
-        let (n, outputs) = until_reaction(
-            &mut it,
-            20,
-            |_| {},
-            |frames| {
-                for _ in 0..2 {
-                    frames.insert(
-                        0,
-                        Frame {
-                            id: contract.id,
-                            data: [0xAA; 8],
-                        },
-                    );
-                }
-            },
-        );
-        assert!(n <= 5, "{}: {n}", contract.name);
-        assert_eq!((outputs.mode, outputs.fault), (Mode::Degraded, FaultCode::MessageLost));
-    }
-    // One forged frame for each right one is only counted.
-    let mut it = soft_loop();
-    for _ in 0..200 {
-        let outputs = it.step(
-            rough_road(it.tick),
-            |_| {},
-            |frames| {
-                frames.push(Frame {
-                    id: 0x110,
-                    data: [0x55; 8],
-                })
-            },
-        );
-        assert_eq!(outputs.mode, Mode::Normal);
-    }
-    assert_eq!(it.node.counters().wrong_crc, 200);
-}
-
-#[test]
 fn bus_silence_and_its_end() {
     let mut it = soft_loop();
     let (n, outputs) = until_reaction(&mut it, 20, |_| {}, Vec::clear);
@@ -202,14 +160,14 @@ fn bus_silence_and_its_end() {
         (n, outputs.mode, outputs.fault, outputs.command.word()),
         (4, Mode::Safe, FaultCode::BusSilent, 0)
     );
-    // Back: resynchronised and healthy for 1 s, then start-up, then normal.
+    // Back: trusted and healthy for 1 s, then normal.
     let mut back = 0;
     while it.run(1).mode != Mode::Normal {
         assert_eq!(it.command.word(), 0);
         back += 1;
         assert!(back < 300, "does not recover");
     }
-    assert!(back >= 220, "{back}");
+    assert!((210..230).contains(&back), "{back}");
 }
 
 #[test]
@@ -226,15 +184,22 @@ fn long_silence_and_repeated_silence_latch() {
     assert_eq!(last, Mode::Latched);
     assert_eq!(it.run(2000).mode, Mode::Latched, "health does not help");
 
+    // The recovery takes longer each time; the fifth silence within a minute of the one before latches.
     let mut it = soft_loop();
-    for entry in 1..=3 {
+    for (entry, recovery) in [(1, 1.0), (2, 4.0), (3, 16.0), (4, 64.0), (5, 64.0)] {
         for _ in 0..10 {
             it.step(rough_road(it.tick), |_| {}, Vec::clear);
         }
-        let outputs = it.run(400);
+        let just_before = it.run((recovery * 200.0) as u32);
+        assert_eq!(
+            just_before.mode,
+            if entry < 5 { Mode::Safe } else { Mode::Latched },
+            "entry {entry}"
+        );
+        let outputs = it.run(40);
         assert_eq!(
             outputs.mode,
-            if entry < 3 { Mode::Normal } else { Mode::Latched },
+            if entry < 5 { Mode::Normal } else { Mode::Latched },
             "entry {entry}"
         );
     }

@@ -10,10 +10,11 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
+use crate::effect::{Candidate, ExclusionGroup};
 use crate::parameter::Parameter;
 use crate::recording::Recording;
-use crate::specimen::{Candidate, Channel, ExclusionGroup, Hypothesis, Series, Specimen, SpecimenKind, StateSeries};
-use crate::vocabulary::{Column, EffectId, Place, Site, State};
+use crate::specimen::{Channel, Hypothesis, Series, Specimen, StateSeries};
+use crate::vocabulary::{Column, EffectId, Place, Site, SpecimenKind, State};
 
 /// Never asks to stop.
 pub static RUN: AtomicBool = AtomicBool::new(false);
@@ -174,15 +175,15 @@ fn candidate(index: usize) -> Candidate {
     let amount = |key: &str| Parameter::linear(key, 0.0, 0.05, (-5.0, 5.0));
     let positive = |key: &str| Parameter::amount(key, 0.05, 5.0);
     let (id, place, parameters): (EffectId, Place, Vec<Parameter>) = match index {
-        CUBIC => (EffectId::Stiffness, Site::Mount.into(), vec![amount("cubic")]),
-        NEARLY_CUBIC => (EffectId::GasSpring, Site::Chamber.into(), vec![amount("nearly_cubic")]),
+        CUBIC => (EffectId::MountCompliance, Site::Mount.into(), vec![amount("cubic")]),
+        NEARLY_CUBIC => (EffectId::RealGas, Site::Chamber.into(), vec![amount("nearly_cubic")]),
         FRICTION => (
-            EffectId::CoulombFriction,
+            EffectId::SealFriction,
             Site::MainSeal.into(),
             vec![positive("coulomb_force_N")],
         ),
         VIBRATION => (
-            EffectId::Backlash,
+            EffectId::LineInertance,
             Site::EndStop.into(),
             vec![
                 amount("amplitude"),
@@ -190,7 +191,7 @@ fn candidate(index: usize) -> Candidate {
             ],
         ),
         FORTY_SINES => (
-            EffectId::Inertia,
+            EffectId::OilCompressibility,
             Site::Unknown.into(),
             (0..40).map(|k| amount(&format!("sine_{k}"))).collect(),
         ),
@@ -206,13 +207,13 @@ fn candidate(index: usize) -> Candidate {
         ),
         FRAGILE => (EffectId::BumpStop, Site::EndStop.into(), vec![positive("stress")]),
         _ => (
-            EffectId::CoulombFriction,
+            EffectId::SealFriction,
             Site::MainSeal.into(),
             vec![positive("first_N"), positive("second_N")],
         ),
     };
     Candidate {
-        group: (id == EffectId::CoulombFriction).then_some(ExclusionGroup::DampingFade),
+        group: (id == EffectId::SealFriction).then_some(ExclusionGroup(EffectId::SealFriction)),
         label: if index == TABLE {
             "force over displacement".into()
         } else {

@@ -2,17 +2,19 @@
 //!
 //! The user's words: *when simulation and real recordings differ, the tool should locate the mismatch, say what physics
 //! was left out, model it and show the fit improve.* [`Campaign`] reads recordings and the belief about a specimen;
-//! [`select::select`] finds what is missing; the report says where, what, and how much better the model became.
+//! [`search`] finds what is missing; the report says where, what, and how much better the model became.
 //!
 //! ```text
-//! recording --> campaign --> specimen (strut | gas spring | cylinder: one trait)
+//! recording --> campaign --> specimen (strut | gas spring | cylinder: one trait) <-- effect (what may be missing: one file each)
 //!                               |
-//!              problem (blocks, residuals in noise units, sensitivities of free runs)
+//!              estimation (residuals in noise units, sensitivities of free runs, fits with calibration within tolerance)
 //!                               |
-//!              fit (calibration within tolerance, always) --> screen (all candidates) --> select (held-out blocks)
+//!              search (screen all candidates, select on held-out blocks, compare with rivals)
 //!                               |
-//!              locate (which relation, when, under which condition) --> report (json, page, model.toml)
+//!              locate (which relation, when, under which condition) --> diagnosis --> json, page, model.toml
 //! ```
+//!
+//! `docs/architecture.md` draws who may know whom, and the way of a column through all of it.
 
 #[cfg(test)]
 mod analytic;
@@ -20,8 +22,10 @@ pub mod campaign;
 pub mod confidence;
 pub mod criteria;
 pub mod diagnosis;
+pub mod effect;
 pub mod error;
 pub mod estimation;
+pub mod excitation;
 mod experiment;
 pub mod json;
 pub mod locate;

@@ -4,8 +4,7 @@
 //! Driven by libFuzzer (`fuzz_targets/`, coverage-guided, as long as one likes) and by `tests/hostile_bytes.rs` of the
 //! root package (mutated valid files, seconds, every test run).
 
-use oleo_controller::can::PlantEnd;
-use oleo_controller::{Configuration, Node, SensorMessage};
+use oleo_controller::{Configuration, Node, PlantEnd, SensorMessage};
 use oleo_diagnose::recording::{ColumnKind, ColumnSpec, GapPolicy, parse};
 use oleo_hil::bus::{SlcanDecoder, slcan_encode};
 use oleo_hil::candump::{parse_line, write_line};
@@ -38,6 +37,7 @@ pub fn can_frames(bytes: &[u8]) {
             for frame in frames {
                 let _ = plant.receive(frame.id, &frame.data);
             }
+            assert!(plant.end_of_tick().word() < 1 << 12);
         }
     }
 }

@@ -1,20 +1,15 @@
-//! The plant's electronics: its sensors and its output stage, with their faults.
+//! The plant's electronics with their faults: its sensors, and valves that do not follow.
 //!
 //! ```text
 //!   vehicle -> Instruments (sensor faults) -> frames
-//!   frames -> OutputStage (end-to-end check, watchdog, stuck valves) -> switching signals -> vehicle
+//!   frames -> oleo_controller::OutputStage (what may be obeyed) -> StuckValves -> switching signals -> vehicle
 //! ```
 
-use oleo_controller::can::{COMMAND, CheckStatus, CommandMessage};
 use oleo_controller::{Inputs, ValveCommand};
 use oleo_interface::{Corners, Gauge, StrutPressures};
 use oleo_plant_sim::strut::StrutOutput;
 
 use crate::scenario::fault::{Fault, FaultKind, Sensor, SensorFault, SensorPlace, ValvePlace};
-
-/// Number of ticks without a usable command after which the output stage de-energises all valves. It is the time-out of the
-/// command's contract.
-pub const WATCHDOG_TICKS: u32 = COMMAND.timeout_ticks as u32;
 
 /// The four displacement sensors and sixteen pressure sensors.
 #[derive(Clone, Debug)]
@@ -58,78 +53,30 @@ impl Instruments {
     }
 }
 
-/// The twelve solenoid drivers, behind a watchdog.
+/// Valves that do not follow their signals.
 #[derive(Clone, Debug)]
-pub struct OutputStage {
-    command: ValveCommand,
-    age: u32,
-    fresh: bool,
-    errors: u64,
+pub struct StuckValves {
     stuck: Vec<(Fault, ValvePlace, bool)>,
 }
 
-impl OutputStage {
-    /// A de-energised output stage that has the solenoid faults among `faults`.
+impl StuckValves {
+    /// The solenoid faults among `faults`.
     pub fn new(faults: &[Fault]) -> Self {
         let of_solenoids = |fault: &Fault| match fault.kind {
             FaultKind::SolenoidStuck { place, open } => Some((*fault, place, open)),
             _ => None,
         };
-        let stuck = faults.iter().filter_map(of_solenoids).collect();
         Self {
-            command: ValveCommand::SAFE,
-            age: WATCHDOG_TICKS,
-            fresh: false,
-            errors: 0,
-            stuck,
+            stuck: faults.iter().filter_map(of_solenoids).collect(),
         }
     }
 
-    /// Takes a received command with the outcome of its check.
-    pub fn receive(&mut self, status: CheckStatus, message: Option<CommandMessage>) {
-        self.errors += u64::from(status.is_error());
-        if let Some(message) = message
-            && (status.is_usable() || status == CheckStatus::Initial)
-        {
-            self.command = message.command;
-            self.fresh = true;
-        }
-    }
-
-    /// Ends the reception of a tick; returns whether a usable command came.
-    pub fn end_of_tick(&mut self) -> bool {
-        if std::mem::take(&mut self.fresh) {
-            self.age = 0;
-            return true;
-        }
-        self.age = self.age.saturating_add(1);
-        if self.age >= WATCHDOG_TICKS {
-            self.command = ValveCommand::SAFE;
-        }
-        false
-    }
-
-    /// The command that the drivers obey.
-    pub fn command(&self) -> ValveCommand {
-        self.command
-    }
-
-    /// Positions of the valves' signals, stuck valves included.
-    pub fn energised(&self, tick: u32) -> ValveCommand {
+    /// Positions of the valves' signals under a command, stuck valves included.
+    pub fn energised(&self, tick: u32, command: ValveCommand) -> ValveCommand {
         let active = self.stuck.iter().filter(|(fault, ..)| fault.is_active(tick));
-        active.fold(self.command, |word, (_, place, open)| {
+        active.fold(command, |word, (_, place, open)| {
             word.with(place.corner, place.valve, *open)
         })
-    }
-
-    /// Number of ticks since the last usable command.
-    pub fn ticks_without_command(&self) -> u32 {
-        self.age
-    }
-
-    /// Number of commands that failed their end-to-end check.
-    pub fn errors(&self) -> u64 {
-        self.errors
     }
 }
 
@@ -192,34 +139,13 @@ mod tests {
     }
 
     #[test]
-    fn the_watchdog_closes_the_valves() {
-        let mut stage = OutputStage::new(&[]);
-        let open = CommandMessage {
-            command: ValveCommand::SOFT,
-            ..CommandMessage::default()
-        };
-        stage.receive(CheckStatus::Initial, Some(open));
-        assert!(stage.end_of_tick());
-        for _ in 1..WATCHDOG_TICKS {
-            stage.receive(CheckStatus::WrongCrc, None);
-            assert!(!stage.end_of_tick());
-            assert_eq!(stage.command(), ValveCommand::SOFT);
-        }
-        stage.receive(CheckStatus::Repeated, Some(open));
-        assert!(!stage.end_of_tick());
-        assert_eq!(stage.command(), ValveCommand::SAFE);
-        assert_eq!(stage.errors(), u64::from(WATCHDOG_TICKS));
-    }
-
-    #[test]
     fn a_stuck_valve_does_not_follow() {
         let place = ValvePlace {
             corner: Corner::FrontLeft,
             valve: Valve::Spring,
         };
-        let stage = OutputStage::new(&[fault(FaultKind::SolenoidStuck { place, open: true })]);
-        assert_eq!(stage.energised(1).word(), 0);
-        assert_eq!(stage.energised(2).word(), 0b100);
-        assert_eq!(stage.command().word(), 0);
+        let stuck = StuckValves::new(&[fault(FaultKind::SolenoidStuck { place, open: true })]);
+        assert_eq!(stuck.energised(1, ValveCommand::SAFE).word(), 0);
+        assert_eq!(stuck.energised(2, ValveCommand::SAFE).word(), 0b100);
     }
 }

@@ -5,14 +5,13 @@
 
 use std::time::Duration;
 
-use oleo_controller::can::PlantEnd;
+use oleo_controller::PlantEnd;
 use oleo_interface::tick::TICK_S;
-use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
 
 use crate::Frame;
 use crate::bus::{Bus, BusError, FaultInjector, Trace};
-use crate::instruments::{Instruments, OutputStage};
+use crate::instruments::{Instruments, StuckValves};
 use crate::record::{Recording, Sample};
 use crate::scenario::Scenario;
 use crate::sync::{Role, Sync};
@@ -34,7 +33,8 @@ pub struct PlantNode<B> {
     steps_per_tick: u32,
     seats: [(f64, f64); 2],
     instruments: Instruments,
-    output: OutputStage,
+    stuck: StuckValves,
+    ticks_without_command: u32,
     recording: Recording,
     tick: u32,
     controller_sent: u16,
@@ -69,7 +69,8 @@ impl<B: Bus> PlantNode<B> {
             steps_per_tick,
             seats,
             instruments: Instruments::new(&scenario.faults),
-            output: OutputStage::new(&scenario.faults),
+            stuck: StuckValves::new(&scenario.faults),
+            ticks_without_command: 0,
             tick: 0,
             controller_sent: 0,
             tally: (0, 0),
@@ -84,8 +85,8 @@ impl<B: Bus> PlantNode<B> {
     /// Begins a tick: reads the sensors and sends them.
     pub fn send_sensors(&mut self) -> Result<(), BusError> {
         self.bus.begin_tick(self.tick);
-        let displacement_m = Corners::from_array(self.vehicle.strut_displacement_m());
-        let struts = Corners::from_array(self.vehicle.strut_output());
+        let displacement_m = self.vehicle.strut_displacement_m();
+        let struts = self.vehicle.strut_output();
         let inputs = self.instruments.read(self.tick, displacement_m, struts);
         for frame in self.end.encode(self.tick as u16, &inputs) {
             self.bus.send(&frame.into())?;
@@ -122,29 +123,29 @@ impl<B: Bus> PlantNode<B> {
     }
 
     fn take(&mut self, frame: &Frame) {
-        if let Some(id) = frame.standard_id()
-            && let Some((status, message)) = self.end.receive(id, frame.data())
-        {
-            self.output.receive(status, message);
+        if let Some(id) = frame.standard_id() {
+            self.end.receive(id, frame.data());
         }
     }
 
     /// Ends the tick: drives for 5 ms under the command that came.
     pub fn advance(&mut self) {
-        if !self.output.end_of_tick() {
-            self.end.no_command();
-        }
-        let energised = self.output.energised(self.tick);
+        let command = self.end.end_of_tick();
+        self.ticks_without_command = match self.end.output().ticks_without_command() {
+            0 => 0,
+            _ => self.ticks_without_command.saturating_add(1),
+        };
+        let energised = self.stuck.energised(self.tick, command);
         self.recording.samples.push(Sample {
             station_m: self.vehicle.station_m(),
             body: self.vehicle.body(),
-            displacement_m: Corners::from_array(self.vehicle.strut_displacement_m()),
-            strut: Corners::from_array(self.vehicle.strut_output()),
-            wheel: Corners::from_array(self.vehicle.wheels()),
-            command: self.output.command(),
+            displacement_m: self.vehicle.strut_displacement_m(),
+            strut: self.vehicle.strut_output(),
+            wheel: self.vehicle.wheels(),
+            command,
             energised,
         });
-        let signals = energised.corners().map(StrutValves::into_array).into_array();
+        let signals = energised.corners();
         for _ in 0..self.steps_per_tick {
             self.vehicle.step(signals);
             let felt = self
@@ -161,9 +162,9 @@ impl<B: Bus> PlantNode<B> {
         self.bus.send(&Sync::End { sent }.encode(Role::Plant))
     }
 
-    /// Number of ticks since the last usable command.
+    /// Number of ticks since a command was last obeyed.
     pub fn ticks_without_command(&self) -> u32 {
-        self.output.ticks_without_command()
+        self.ticks_without_command
     }
 
     /// The node's bus.
@@ -182,7 +183,7 @@ impl<B: Bus> PlantNode<B> {
             bus_frames_lost: bus_lost,
             foreign_frames: trace.foreign(),
             trace: trace.take_entries(),
-            e2e_errors: self.output.errors() + u64::from(e2e_by_controller),
+            e2e_errors: u64::from(self.end.output().errors()) + u64::from(e2e_by_controller),
             injected: self.bus.counts(),
             counters: self.bus.counters(),
             recording: self.recording,

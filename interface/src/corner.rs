@@ -163,6 +163,12 @@ impl<T> Corners<T> {
         Self(Corner::ALL.map(value))
     }
 
+    /// From the values on the left and on the right of each axle.
+    pub fn from_left_right(axles: Axles<[T; 2]>) -> Self {
+        let ([front_left, front_right], [rear_left, rear_right]) = (axles.front, axles.rear);
+        Self([front_left, front_right, rear_left, rear_right])
+    }
+
     /// The same value at both corners of an axle.
     pub const fn from_axles(values: Axles<T>) -> Self
     where
@@ -174,6 +180,15 @@ impl<T> Corners<T> {
     /// The values in the order of [`Corner::ALL`].
     pub fn into_array(self) -> [T; 4] {
         self.0
+    }
+
+    /// References to the values on the left and on the right of an axle.
+    pub const fn of_axle(&self, axle: Axle) -> [&T; 2] {
+        let [front_left, front_right, rear_left, rear_right] = &self.0;
+        match axle {
+            Axle::Front => [front_left, front_right],
+            Axle::Rear => [rear_left, rear_right],
+        }
     }
 
     /// The values in the order of [`Corner::ALL`], borrowed.
@@ -303,6 +318,14 @@ impl<T> Axles<T> {
         }
     }
 
+    /// References to the values.
+    pub const fn each_ref(&self) -> Axles<&T> {
+        Axles {
+            front: &self.front,
+            rear: &self.rear,
+        }
+    }
+
     /// The values, front first.
     pub fn into_array(self) -> [T; 2] {
         [self.front, self.rear]
@@ -361,6 +384,8 @@ mod tests {
         }
         let axles = Axles::from_fn(|axle| axle);
         assert!(Axle::ALL.into_iter().all(|axle| axles[axle] == axle));
+        let again = Corners::from_left_right(Axles::from_fn(|axle| positions.of_axle(axle).map(|i| *i)));
+        assert_eq!(again, positions);
     }
 
     #[test]

@@ -3,62 +3,72 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use oleo_interface::StrutValves;
-use oleo_plant_sim::handling::{HandlingParameters, HandlingVehicle, Manoeuvre, Track};
+use oleo_interface::{Corners, StrutValves};
+use oleo_plant_sim::course::{Course, Drive, DriverStyle, LaneChange, Manoeuvre};
+use oleo_plant_sim::handling::HandlingParameters;
 use oleo_plant_sim::road::{Flat, Road, belgian};
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::VehicleParameters;
+use oleo_plant_sim::vehicle::suspension::StrutElement;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let parameters = VehicleParameters::defender110();
     let handling = HandlingParameters::defender110();
-    let load = parameters.static_strut_load_n();
+    let [a, b, c, d] = parameters.static_strut_load_n().into_array();
     let speed_m_s = 60.0 / 3.6;
     let belgian: Arc<dyn Road> = Arc::new(belgian::belgian_block(500.0, 1)?);
-    for (name, road, track, open) in [
+    let lane_change = |kind| Manoeuvre::LaneChange {
+        kind,
+        speed_m_s,
+        entry_m: 25.0,
+    };
+    let straight = Manoeuvre::Straight {
+        speed_m_s,
+        duration_s: 20.0,
+    };
+    let flat = || Arc::new(Flat) as Arc<dyn Road>;
+    for (name, road, manoeuvre, driver, open) in [
         (
             "lane change soft",
-            Arc::new(Flat) as Arc<dyn Road>,
-            Track::severe_lane_change(1.79),
+            flat(),
+            lane_change(LaneChange::Severe),
+            DriverStyle::Eased,
             true,
         ),
         (
             "lane change stiff",
-            Arc::new(Flat) as Arc<dyn Road>,
-            Track::severe_lane_change(1.79),
+            flat(),
+            lane_change(LaneChange::Severe),
+            DriverStyle::Hard,
             false,
         ),
         (
             "ISO 3888-2 stiff",
-            Arc::new(Flat) as Arc<dyn Road>,
-            Track::obstacle_avoidance(1.79),
+            flat(),
+            lane_change(LaneChange::ObstacleAvoidance),
+            DriverStyle::Eased,
             false,
         ),
-        ("belgian soft", Arc::clone(&belgian), Track::straight(), true),
-        ("belgian stiff", belgian, Track::straight(), false),
+        ("belgian soft", Arc::clone(&belgian), straight, DriverStyle::Eased, true),
+        ("belgian stiff", belgian, straight, DriverStyle::Eased, false),
     ] {
-        let signals = [open; 3];
-        let mut struts = Vec::new();
-        for load in load {
-            struts.push(Strut::at_rest(
-                &StrutModel::defender110(load),
-                StrutValves::from_array(signals),
-            )?);
-        }
-        let struts: [Strut; 4] = struts.try_into().map_err(|_| "four struts")?;
-        let mut model = HandlingVehicle::new(&parameters, &handling, struts, road, speed_m_s)?;
-        let manoeuvre = Manoeuvre::Follow {
-            track,
-            speed_m_s,
-            duration_s: 20.0,
+        let signals = StrutValves::splat(open);
+        let strut = |load_n| Strut::at_rest(&StrutModel::defender110(load_n), signals);
+        let struts = Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]).map(StrutElement::new);
+        let signals = Corners::splat(signals);
+        let course = Course {
+            manoeuvre,
+            driver,
+            road,
         };
+        let drive = Drive::begin(&course, &parameters, &handling, struts)?;
         let begin = Instant::now();
-        let run = manoeuvre.drive(&mut model, &parameters, &handling, |_| ([signals; 4], 0), |_| {})?;
+        let run = drive.to_end(|_| (signals, signals), |_| {})?;
         let wall = begin.elapsed().as_secs_f64();
+        let time_s = run.history.last().map_or(0.0, |sample| sample.time_s);
         println!(
-            "{name}: {:.1} s in {wall:.3} s = {:.0} x real time; {}; roll {:.2} deg, lateral {:.2} m/s2, cones {:?} m",
-            model.time_s(),
-            model.time_s() / wall,
+            "{name}: {time_s:.1} s in {wall:.3} s = {:.0} x real time; {}; roll {:.2} deg, lateral {:.2} m/s2, cones {:?} m",
+            time_s / wall,
             run.ending.word(),
             run.max_roll_rad.to_degrees(),
             run.max_lateral_m_s2,

@@ -6,7 +6,7 @@ use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
 
-use oleo_interface::StrutValves;
+use oleo_interface::{Corner, Corners, StrutValves};
 use oleo_plant_sim::measures::RideMeter;
 use oleo_plant_sim::road::{Road, belgian, from_name_or_path, spectrum::SpectrumEstimator};
 use oleo_plant_sim::strut::{Strut, StrutModel};
@@ -14,8 +14,8 @@ use oleo_plant_sim::vehicle::linear::Linearisation;
 use oleo_plant_sim::vehicle::suspension::LinearElement;
 use oleo_plant_sim::vehicle::{BaselineVehicle, RideModel, RideVehicle, VehicleParameters};
 
-const SOFT: [bool; 3] = [true, true, true];
-const STIFF: [bool; 3] = [false, false, false];
+const SOFT: StrutValves<bool> = StrutValves::new(true, true, true);
+const STIFF: StrutValves<bool> = StrutValves::new(false, false, false);
 
 fn main() -> Result<(), Box<dyn Error>> {
     let parameters = VehicleParameters::defender110();
@@ -27,20 +27,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn struts(parameters: &VehicleParameters, signals: [bool; 3]) -> Result<[Strut; 4], Box<dyn Error>> {
-    let load = parameters.static_strut_load_n();
-    let mut struts = Vec::new();
-    for load_n in load {
-        struts.push(Strut::at_rest(
-            &StrutModel::defender110(load_n),
-            StrutValves::from_array(signals),
-        )?);
-    }
-    Ok(struts.try_into().map_err(|_| "four struts")?)
+fn struts(parameters: &VehicleParameters, signals: StrutValves<bool>) -> Result<Corners<Strut>, Box<dyn Error>> {
+    let [a, b, c, d] = parameters.static_strut_load_n().into_array();
+    let strut = |load_n| Strut::at_rest(&StrutModel::defender110(load_n), signals);
+    Ok(Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]))
 }
 
 fn eigenfrequencies(parameters: &VehicleParameters) {
-    let coil = [33e3, 33e3, 55e3, 55e3];
+    let coil = Corners::from_array([33e3, 33e3, 55e3, 55e3]);
     let load = parameters.static_strut_load_n();
     // Isothermal rate of a gas spring at its static state: k = p A^2 / V = (F / A + p_atm) A^2 / V.
     let area = core::f64::consts::PI / 4.0 * 0.05 * 0.05;
@@ -52,8 +46,8 @@ fn eigenfrequencies(parameters: &VehicleParameters) {
     ] {
         println!(
             "eigenfrequencies, {name} ({:.1} / {:.1} kN/m):",
-            rates[0] / 1e3,
-            rates[2] / 1e3
+            rates[Corner::FrontLeft] / 1e3,
+            rates[Corner::RearLeft] / 1e3
         );
         for mode in Linearisation::new(parameters, rates).modes() {
             println!("  {:7.3} Hz  {}", mode.frequency_hz, mode.name());
@@ -87,15 +81,15 @@ fn drive<E: oleo_plant_sim::vehicle::suspension::SuspensionElement>(
     let mut meters = [RideMeter::new(vehicle.step_s()), RideMeter::new(vehicle.step_s())];
     let (mut low, mut high, mut airborne): (f64, f64, u32) = (0.0, 0.0, 0);
     for _ in 0..20_000 {
-        vehicle.step([signal; 4]);
+        vehicle.step(Corners::from_array([signal; 4]));
         for (meter, (x, y)) in meters.iter_mut().zip([driver, passenger]) {
             meter.add(vehicle.vertical_acceleration_at(x, y));
         }
-        for x in vehicle.strut_displacement_m() {
+        for x in vehicle.strut_displacement_m().into_array() {
             low = low.min(x);
             high = high.max(x);
         }
-        airborne += u32::from(vehicle.wheels().iter().any(|wheel| wheel.force_n == 0.0));
+        airborne += u32::from(vehicle.wheels().values().any(|wheel| wheel.force_n == 0.0));
     }
     let [driver, passenger] = meters.map(|meter| meter.measures());
     format!(
@@ -118,8 +112,8 @@ fn obstacle(parameters: &VehicleParameters) -> Result<(), Box<dyn Error>> {
             let mut vehicle = RideVehicle::new(parameters, struts(parameters, signals)?, Arc::clone(&road), speed)?;
             let (mut low, mut high, mut roll): (f64, f64, f64) = (0.0, 0.0, 0.0);
             while vehicle.station_m() < 20.0 {
-                vehicle.step([signals; 4]);
-                for x in vehicle.strut_displacement_m() {
+                vehicle.step(Corners::from_array([signals; 4]));
+                for x in vehicle.strut_displacement_m().into_array() {
                     low = low.min(x);
                     high = high.max(x);
                 }
@@ -169,10 +163,10 @@ fn step_time(parameters: &VehicleParameters) -> Result<(), Box<dyn Error>> {
     let mut full = RideVehicle::new(parameters, struts(parameters, SOFT)?, road, 16.7)?;
     let steps = 100_000;
     let started = Instant::now();
-    (0..steps).for_each(|_| bare.step([(); 4]));
+    (0..steps).for_each(|_| bare.step(Corners::default()));
     let bare_ns = started.elapsed().as_nanos() as f64 / f64::from(steps);
     let started = Instant::now();
-    (0..steps).for_each(|_| full.step([SOFT; 4]));
+    (0..steps).for_each(|_| full.step(Corners::from_array([SOFT; 4])));
     let full_ns = started.elapsed().as_nanos() as f64 / f64::from(steps);
     println!("one step: {bare_ns:.0} ns without struts, {full_ns:.0} ns with four struts");
     Ok(())

@@ -2,21 +2,21 @@
 
 use std::sync::Arc;
 
-use oleo_interface::StrutValves;
+use oleo_interface::{Axle, Corner, Corners, Side, StrutValves};
 use oleo_plant_sim::measures::RideMeter;
-use oleo_plant_sim::road::{ApgObstacle, Flat, Road, Side, from_name_or_path};
+use oleo_plant_sim::road::{ApgObstacle, Flat, Road, from_name_or_path};
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::{RideError, RideVehicle, VehicleParameters};
 
-const SOFT: [bool; 3] = [true, true, true];
-const STIFF: [bool; 3] = [false, false, false];
+const SOFT: StrutValves<bool> = StrutValves::new(true, true, true);
+const STIFF: StrutValves<bool> = StrutValves::new(false, false, false);
 
-fn vehicle(step_s: f64, signals: [bool; 3], road: Arc<dyn Road>, speed_km_h: f64) -> RideVehicle {
+fn vehicle(step_s: f64, signals: StrutValves<bool>, road: Arc<dyn Road>, speed_km_h: f64) -> RideVehicle {
     let mut parameters = VehicleParameters::defender110();
     parameters.solver.step_s = step_s;
     let struts = parameters
         .static_strut_load_n()
-        .map(|load| Strut::at_rest(&StrutModel::defender110(load), StrutValves::from_array(signals)).unwrap());
+        .map(|load| Strut::at_rest(&StrutModel::defender110(load), signals).unwrap());
     RideVehicle::new(&parameters, struts, road, speed_km_h / 3.6).unwrap()
 }
 
@@ -25,14 +25,14 @@ fn rests_on_its_struts() {
     for signals in [SOFT, STIFF] {
         let mut model = vehicle(1e-3, signals, Arc::new(Flat), 60.0);
         for _ in 0..3000 {
-            model.step([signals; 4]);
+            model.step(Corners::from_array([signals; 4]));
         }
         let (q, rate) = model.state();
         assert!(
             q.to_array().iter().chain(&rate.to_array()).all(|x| x.abs() < 1e-6),
             "{q:?} {rate:?}"
         );
-        let carried: f64 = model.strut_output().iter().map(|out| out.force_n).sum();
+        let carried: f64 = model.strut_output().values().map(|out| out.force_n).sum();
         assert!((carried / (1600.0 * 9.80665) - 1.0).abs() < 1e-6);
     }
 }
@@ -40,12 +40,17 @@ fn rests_on_its_struts() {
 #[test]
 fn a_strut_charged_for_a_truck_is_refused_in_one_line() {
     let parameters = VehicleParameters::defender110();
-    let struts =
-        [16e3; 4].map(|load| Strut::at_rest(&StrutModel::defender110(load), StrutValves::from_array(SOFT)).unwrap());
+    let struts = Corners::from_fn(|_| Strut::at_rest(&StrutModel::defender110(16e3), SOFT).unwrap());
     let error = RideVehicle::new(&parameters, struts, Arc::new(Flat), 1.0)
         .err()
         .unwrap();
-    assert!(matches!(error, RideError::StaticLoad { corner: 0, .. }));
+    assert!(matches!(
+        error,
+        RideError::StaticLoad {
+            corner: Corner::FrontLeft,
+            ..
+        }
+    ));
     assert!(!error.to_string().contains('\n'));
 }
 
@@ -63,10 +68,10 @@ fn apg_obstacle_is_crossed_to_the_end() {
         let mut travel: f64 = 0.0;
         let mut roll: f64 = 0.0;
         for _ in 0..12_000 {
-            model.step([signals; 4]);
+            model.step(Corners::from_array([signals; 4]));
             travel = model
                 .strut_displacement_m()
-                .iter()
+                .values()
                 .fold(travel, |most, x| most.max(x.abs()));
             roll = if model.body().roll_rad.abs() > roll.abs() {
                 model.body().roll_rad
@@ -91,18 +96,24 @@ fn apg_obstacle_is_crossed_to_the_end() {
 
 #[test]
 fn mirrored_obstacles_give_mirrored_bits() {
-    let on = |side| vehicle(1e-3, SOFT, Arc::new(ApgObstacle { start_m: 1.0, side }), 15.0);
+    let on = |side| {
+        let side = Some(side);
+        vehicle(1e-3, SOFT, Arc::new(ApgObstacle { start_m: 1.0, side }), 15.0)
+    };
     let (mut left, mut right) = (on(Side::Left), on(Side::Right));
     for step in 0..1500 {
         let signals = if (step / 200) % 2 == 0 { SOFT } else { STIFF };
-        left.step([signals; 4]);
-        right.step([signals; 4]);
+        left.step(Corners::from_array([signals; 4]));
+        right.step(Corners::from_array([signals; 4]));
         assert_eq!(left.body().heave_m.to_bits(), right.body().heave_m.to_bits());
         assert_eq!(left.body().roll_rad, -right.body().roll_rad);
         let (a, b) = (left.strut_output(), right.strut_output());
-        for (one, other) in [(0, 1), (1, 0), (2, 3), (3, 2)] {
-            assert_eq!(a[one].force_n.to_bits(), b[other].force_n.to_bits());
-            assert_eq!(a[one].pressure_pa, b[other].pressure_pa);
+        for axle in Axle::ALL {
+            for (side, other) in [(Side::Left, Side::Right), (Side::Right, Side::Left)] {
+                let (a, b) = (a[axle.corner(side)], b[axle.corner(other)]);
+                assert_eq!(a.force_n.to_bits(), b.force_n.to_bits());
+                assert_eq!(a.pressure_pa, b.pressure_pa);
+            }
         }
     }
 }
@@ -113,12 +124,12 @@ fn a_millisecond_is_short_enough() {
     let road = from_name_or_path("belgian", 120.0, 1).unwrap();
     let parameters = VehicleParameters::defender110();
     let (x, y) = parameters.seat_position_m(&parameters.driver_seat);
-    let weighted = |step_s: f64, signals: [bool; 3]| {
+    let weighted = |step_s: f64, signals: StrutValves<bool>| {
         let mut model = vehicle(step_s, signals, Arc::clone(&road), 60.0);
         let mut meter = RideMeter::new(1e-3);
         let each = (1e-3 / step_s).round() as u32;
         for step in 1..=5000 * each {
-            model.step([signals; 4]);
+            model.step(Corners::from_array([signals; 4]));
             if step % each == 0 {
                 meter.add(model.vertical_acceleration_at(x, y));
             }
@@ -139,7 +150,7 @@ fn a_run_is_its_bits() {
     let run = || {
         let mut model = vehicle(1e-3, SOFT, from_name_or_path("belgian", 60.0, 9).unwrap(), 60.0);
         for _ in 0..1000 {
-            model.step([SOFT; 4]);
+            model.step(Corners::from_array([SOFT; 4]));
         }
         model.state().0.to_array().map(f64::to_bits)
     };

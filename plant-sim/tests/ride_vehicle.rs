@@ -3,13 +3,14 @@
 
 use std::sync::Arc;
 
+use oleo_interface::{Axle, Corner, Corners, Side};
 use oleo_plant_sim::road::{Flat, Road};
 use oleo_plant_sim::vehicle::equations::{Coordinates, Equations};
 use oleo_plant_sim::vehicle::linear::Linearisation;
 use oleo_plant_sim::vehicle::suspension::LinearElement;
 use oleo_plant_sim::vehicle::{BaselineVehicle, RideError, RideModel, VehicleParameters};
 
-const STIFFNESS_N_M: [f64; 4] = [33e3, 33e3, 55e3, 55e3];
+const STIFFNESS_N_M: Corners<f64> = Corners::from_array([33e3, 33e3, 55e3, 55e3]);
 
 /// Defender on linear springs and dampers.
 fn linear(
@@ -19,7 +20,7 @@ fn linear(
     speed_m_s: f64,
 ) -> RideModel<LinearElement> {
     let load = parameters.static_strut_load_n();
-    let elements = [0, 1, 2, 3].map(|i: usize| LinearElement::new(load[i], STIFFNESS_N_M[i], damping_n_s_m));
+    let elements = Corners::from_fn(|corner| LinearElement::new(load[corner], STIFFNESS_N_M[corner], damping_n_s_m));
     RideModel::with_elements(parameters, elements, road, speed_m_s).unwrap()
 }
 
@@ -46,10 +47,10 @@ fn spring_energy_j(model: &RideModel<LinearElement>, parameters: &VehicleParamet
     let load = parameters.static_strut_load_n();
     let wheel_load = parameters.static_wheel_load_n();
     let mut energy = 0.0;
-    for (i, x) in model.strut_displacement_m().into_iter().enumerate() {
+    for (i, x) in model.strut_displacement_m().iter() {
         energy += load[i] * x + 0.5 * STIFFNESS_N_M[i] * x * x;
     }
-    for (i, wheel) in model.wheels().iter().enumerate() {
+    for (i, wheel) in model.wheels().iter() {
         let deflection = wheel.road_height_m - wheel.height_m;
         let rate = parameters.axle_of(i).tyre_stiffness_n_m;
         // A tyre off the ground stores nothing.
@@ -82,11 +83,11 @@ fn undamped_drift_j(step_s: f64) -> f64 {
     let (q, rate) = shaken();
     model.set_state(q, rate);
     // The first step brings the springs to the state that was set.
-    model.step([(); 4]);
+    model.step(Corners::default());
     let start = energy_j(&model, &parameters);
     let mut worst: f64 = 0.0;
     for _ in 0..(2.0 / step_s).round() as u32 {
-        model.step([(); 4]);
+        model.step(Corners::default());
         worst = worst.max((energy_j(&model, &parameters) - start).abs());
     }
     worst
@@ -110,19 +111,19 @@ fn damped_balance_j(step_s: f64) -> (f64, f64) {
         let (_, rate) = model.state();
         let mut work = 0.0;
         let mut lost = 0.0;
-        for (i, wheel) in model.wheels().iter().enumerate() {
+        for (i, wheel) in model.wheels().iter() {
             work += wheel.force_n * wheel.road_height_rate_m_s;
             let squash = wheel.road_height_rate_m_s - wheel.height_rate_m_s;
             lost += parameters.axle_of(i).tyre_damping_n_s_m * squash * squash;
         }
-        for extension_rate in model.equations().extension(&rate) {
+        for extension_rate in model.equations().extension(&rate).into_array() {
             lost += damping * extension_rate * extension_rate;
         }
         (work, lost)
     };
     let mut before = power(&model);
     for _ in 0..(3.0 / step_s).round() as u32 {
-        model.step([(); 4]);
+        model.step(Corners::default());
         let now = power(&model);
         work += 0.5 * step_s * (before.0 + now.0);
         lost += 0.5 * step_s * (before.1 + now.1);
@@ -151,8 +152,8 @@ fn linearisation_is_the_derivative_of_the_equations() {
     let acceleration = |q: &Coordinates| {
         let extension = equations.extension(q);
         let wheel = equations.wheel_height(q);
-        let tension = [0, 1, 2, 3].map(|i: usize| -load[i] + STIFFNESS_N_M[i] * extension[i]);
-        let road = [0, 1, 2, 3].map(|i: usize| wheel_load[i] - parameters.axle_of(i).tyre_stiffness_n_m * wheel[i]);
+        let tension = Corners::from_fn(|i| -load[i] + STIFFNESS_N_M[i] * extension[i]);
+        let road = Corners::from_fn(|i| wheel_load[i] - parameters.axle_of(i).tyre_stiffness_n_m * wheel[i]);
         equations
             .acceleration(q, &Coordinates::default(), tension, road)
             .to_array()
@@ -186,7 +187,7 @@ fn time_simulation_swings_at_the_eigenfrequencies() {
         let mut crossings = Vec::new();
         let mut last = 0.0;
         while crossings.len() < 21 {
-            model.step([(); 4]);
+            model.step(Corners::default());
             let now = model.state().0.to_array()[moving];
             if last < 0.0 && now >= 0.0 {
                 crossings.push(model.time_s() - model.step_s() * now / (now - last));
@@ -210,7 +211,7 @@ fn symmetric_vehicle_has_the_quarter_car_s_frequencies() {
     parameters.rear_axle = parameters.front_axle;
     parameters.body.sprung_mass_kg = 1600.0;
     let k = 40e3;
-    let modes = Linearisation::new(&parameters, [k; 4]).modes();
+    let modes = Linearisation::new(&parameters, Corners::from_array([k; 4])).modes();
     let (ms, mu, kt) = (
         400.0,
         parameters.front_axle.mass_kg / 2.0,
@@ -240,15 +241,18 @@ fn a_mirrored_road_gives_mirrored_bits() {
     let mut one = BaselineVehicle::baseline(&parameters, Arc::new(Waves), 10.0).unwrap();
     let mut other = BaselineVehicle::baseline(&parameters, Arc::new(Mirrored(Waves)), 10.0).unwrap();
     for _ in 0..3000 {
-        one.step([(); 4]);
-        other.step([(); 4]);
+        one.step(Corners::default());
+        other.step(Corners::default());
         let (a, b) = (one.body(), other.body());
         assert_eq!(a.heave_m.to_bits(), b.heave_m.to_bits());
         assert_eq!(a.pitch_rate_rad_s.to_bits(), b.pitch_rate_rad_s.to_bits());
         assert_eq!(a.roll_rad, -b.roll_rad);
         assert_eq!(a.roll_acceleration_rad_s2, -b.roll_acceleration_rad_s2);
         let (a, b) = (one.strut_displacement_m(), other.strut_displacement_m());
-        assert_eq!([a[0], a[1], a[2], a[3]], [b[1], b[0], b[3], b[2]]);
+        for axle in Axle::ALL {
+            let [left, right] = Side::ALL.map(|side| axle.corner(side));
+            assert_eq!((a[left], a[right]), (b[right], b[left]));
+        }
     }
     assert!(one.body().roll_rad.abs() > 1e-4, "the road rolls it");
 }
@@ -264,7 +268,7 @@ fn static_equilibrium_stays_still_wherever_the_road_s_zero_is() {
     let parameters = VehicleParameters::defender110();
     let mut model = BaselineVehicle::baseline(&parameters, Arc::new(Plateau), 20.0).unwrap();
     for _ in 0..10_000 {
-        model.step([(); 4]);
+        model.step(Corners::default());
     }
     assert!(model.state().0.to_array().iter().all(|x| x.abs() < 1e-9));
     assert!(model.vertical_acceleration_at(1.0, 0.5).abs() < 1e-9);
@@ -284,14 +288,14 @@ fn wheels_leave_the_ground_and_fall_freely() {
     let mut airborne = 0;
     let mut centre_acceleration: f64 = 0.0;
     for _ in 0..600 {
-        model.step([(); 4]);
+        model.step(Corners::default());
         let wheels = model.wheels();
-        assert!(wheels.iter().all(|wheel| wheel.force_n >= 0.0));
-        if wheels.iter().all(|wheel| wheel.force_n == 0.0) {
+        assert!(wheels.values().all(|wheel| wheel.force_n >= 0.0));
+        if wheels.values().all(|wheel| wheel.force_n == 0.0) {
             airborne += 1;
             let (mass, a) = (parameters.total_mass_kg(), model.body().heave_acceleration_m_s2);
             // Internal forces cancel: in the air the whole vehicle's centre of mass falls with g.
-            let struts: f64 = model.suspension_force_n().iter().sum();
+            let struts: f64 = model.suspension_force_n().values().sum();
             let axles = -struts - (mass - parameters.body.sprung_mass_kg) * 9.80665;
             centre_acceleration = (parameters.body.sprung_mass_kg * a + axles) / mass;
             assert!((centre_acceleration + 9.80665).abs() < 1e-9);
@@ -303,11 +307,20 @@ fn wheels_leave_the_ground_and_fall_freely() {
 #[test]
 fn suspension_for_another_vehicle_and_bad_speeds_are_refused() {
     let parameters = VehicleParameters::defender110();
-    let elements = [8000.0, 4000.0, 4000.0, 4000.0].map(|load| LinearElement::new(load, 4e4, 0.0));
+    let elements = Corners::from_array([8000.0, 4000.0, 4000.0, 4000.0]).map(|load| LinearElement::new(load, 4e4, 0.0));
     let error = RideModel::with_elements(&parameters, elements, Arc::new(Flat), 1.0)
         .err()
         .unwrap();
-    assert!(matches!(error, RideError::StaticLoad { corner: 0, .. }), "{error}");
+    assert!(
+        matches!(
+            error,
+            RideError::StaticLoad {
+                corner: Corner::FrontLeft,
+                ..
+            }
+        ),
+        "{error}"
+    );
     for speed in [-1.0, f64::NAN, f64::INFINITY] {
         assert!(matches!(
             BaselineVehicle::baseline(&parameters, Arc::new(Flat), speed),
@@ -338,12 +351,18 @@ mod library {
             let v = Coordinates::from_array(core::array::from_fn(|i| x[7 + i]));
             let (stretch, stretch_rate) = (equations.extension(&q), equations.extension(&v));
             let (height, height_rate) = (equations.wheel_height(&q), equations.wheel_height(&v));
-            let mut tension = [0.0; 4];
-            let mut road = [0.0; 4];
-            for i in 0..4 {
+            let mut tension = Corners::default();
+            let mut road = Corners::default();
+            for i in Corner::ALL {
                 tension[i] = -load[i] + STIFFNESS_N_M[i] * stretch[i] + damping_n_s_m * stretch_rate[i];
-                let station = speed_m_s * t - if i < 2 { 0.0 } else { wheelbase };
-                let side = if i % 2 == 0 { half_track } else { -half_track };
+                let station = match i.axle() {
+                    Axle::Front => speed_m_s * t,
+                    Axle::Rear => speed_m_s * t - wheelbase,
+                };
+                let side = match i.side() {
+                    Side::Left => half_track,
+                    Side::Right => -half_track,
+                };
                 let rise = (Waves.height_m(station + 1e-5, side) - Waves.height_m(station - 1e-5, side)) / 2e-5;
                 road[i] = wheel_load[i]
                     + kt * (Waves.height_m(station, side) - height[i])
@@ -392,7 +411,7 @@ fn fixed_step_converges_to_the_library_s_solution() {
         let parameters = with_step(step_s);
         let mut model = linear(&parameters, damping, Arc::new(Waves), speed);
         for _ in 0..(end_s / step_s).round() as u32 {
-            model.step([(); 4]);
+            model.step(Corners::default());
         }
         let (q, rate) = model.state();
         let (q, rate) = (q.to_array(), rate.to_array());

@@ -8,3 +8,4 @@ mod parameter_files;
 pub mod predict;
 pub mod rig;
 pub mod study;
+mod word;

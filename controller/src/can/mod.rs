@@ -8,21 +8,21 @@
 //! | `contract` | identifiers, periods, data identifiers and time-outs of all messages, in one table |
 //! | `signals` | a struct for each kind of message, to and from the 52 bits of its payload |
 //! | `e2e` | end-to-end protection: an 8-bit CRC and a 4-bit counter in bytes 0 and 1 (AUTOSAR profile 2) |
-//! | `plant_end` | the node opposite the controller: it sends sensor messages and receives the command |
+//! | `state_machine` | whether a message may be trusted, from its last sixteen periods (AUTOSAR's E2E state machine) |
 //! | [`bus_load`] | worst-case load of the bus, computed from the table at compile time |
 
 pub mod bus_load;
 mod contract;
 mod e2e;
 mod frame;
-mod plant_end;
 mod signals;
+mod state_machine;
 
 pub use contract::{COMMAND, Contract, DISPLACEMENT, MESSAGES, PRESSURE, STATUS, sensor_message};
 pub use e2e::{CheckStatus, Checker, Protector};
 pub use frame::{FRAME_BYTES, Frame};
-pub use plant_end::PlantEnd;
 pub use signals::{
     ACCELERATION_STEP_M_S2, CommandMessage, DISPLACEMENT_STEP_M, DisplacementMessage, PRESSURE_OFFSET_PA,
     PRESSURE_RAW_ERROR, PRESSURE_RAW_MAX, PRESSURE_STEP_PA, PressureMessage, StatusMessage,
 };
+pub(crate) use state_machine::{Period, StateMachine};

@@ -119,20 +119,23 @@ impl PressureMessage {
     }
 }
 
-/// Displacements of the struts of an axle, m, compression positive, with a resolution of 0.01 mm, and the sender's tick.
+/// Displacements of the struts of an axle, m, compression positive, with a resolution of 0.01 mm. With them come the sender's
+/// tick and its answer to the command's challenge, from which the controller knows how old they are.
 ///
 /// ```
 /// use oleo_controller::Reading;
 /// use oleo_controller::can::DisplacementMessage;
-/// let sent = DisplacementMessage { plant_tick: 7, left: Reading::new(0.012_34), right: Reading::INVALID };
+/// let sent = DisplacementMessage { plant_tick: 7, answer: 6, left: Reading::new(0.012_34), right: Reading::INVALID };
 /// let received = DisplacementMessage::decode(&sent.encode());
 /// assert!((received.left.value().unwrap() - 0.012_34).abs() < 1e-6);
 /// assert_eq!((received.plant_tick, received.right), (7, Reading::INVALID));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DisplacementMessage {
-    /// The sender's tick, modulo 65536. The command echoes it.
-    pub plant_tick: u16,
+    /// The sender's tick, modulo 256. The command echoes it.
+    pub plant_tick: u8,
+    /// Challenge of the last command that the sender has received.
+    pub answer: u8,
     /// Displacement of the left strut, m.
     pub left: Reading,
     /// Displacement of the right strut, m.
@@ -144,7 +147,12 @@ impl DisplacementMessage {
     pub fn encode(&self) -> [u8; FRAME_BYTES] {
         let (left, left_status) = displacement_to_raw(self.left);
         let (right, right_status) = displacement_to_raw(self.right);
-        let bits = u64::from(self.plant_tick) << 12 | left << 28 | right << 44 | left_status << 60 | right_status << 62;
+        let bits = u64::from(self.plant_tick) << 12
+            | u64::from(self.answer) << 20
+            | left << 28
+            | right << 44
+            | left_status << 60
+            | right_status << 62;
         bits.to_le_bytes()
     }
 
@@ -152,7 +160,8 @@ impl DisplacementMessage {
     pub fn decode(data: &[u8; FRAME_BYTES]) -> Self {
         let bits = u64::from_le_bytes(*data);
         Self {
-            plant_tick: field(bits, 12, 16) as u16,
+            plant_tick: field(bits, 12, 8) as u8,
+            answer: field(bits, 20, 8) as u8,
             left: displacement_from_raw(field(bits, 28, 16), field(bits, 60, 2)),
             right: displacement_from_raw(field(bits, 44, 16), field(bits, 62, 2)),
         }
@@ -174,8 +183,10 @@ impl DisplacementMessage {
 pub struct CommandMessage {
     /// Commanded positions of the twelve valves.
     pub command: ValveCommand,
-    /// Tick of the last rear displacement message that was received, modulo 65536.
-    pub echo_tick: u16,
+    /// The plant's tick of the last displacement message that was received, modulo 256.
+    pub echo_tick: u8,
+    /// A number that looks drawn at random. The next displacement messages answer with it.
+    pub challenge: u8,
     /// Mode of the controller.
     pub mode: Mode,
     /// First cause of a mode other than [`Mode::Normal`].
@@ -189,6 +200,7 @@ impl CommandMessage {
         let bits = word << 12
             | (word ^ 0xFFF) << 24
             | u64::from(self.echo_tick) << 36
+            | u64::from(self.challenge) << 44
             | u64::from(self.mode.raw()) << 52
             | u64::from(self.fault.raw()) << 56;
         bits.to_le_bytes()
@@ -204,7 +216,8 @@ impl CommandMessage {
         }
         Some(Self {
             command: ValveCommand::from_word(word as u16),
-            echo_tick: field(bits, 36, 16) as u16,
+            echo_tick: field(bits, 36, 8) as u8,
+            challenge: field(bits, 44, 8) as u8,
             mode: Mode::from_repr(field(bits, 52, 4) as u8)?,
             fault: FaultCode::from_repr(field(bits, 56, 8) as u8)?,
         })

@@ -9,7 +9,9 @@
 //! | rate | spikes, bit errors before the message was protected | 3 | `reading_check` |
 //! | stuck | a value that does not change while the strut moves | 200 | `stuck` |
 //! | vote | a pressure that is off by over 1 MPa | about 2 s / offset (MPa) | `vote` |
-//! | oil balance | a displacement that disagrees with the gas volumes by over 40 mm | 600 | `oil_balance` |
+//! | trapped oil | oil that moves through a closed valve 3 | 260 in motion | `trapped_oil` |
+//! | oil balance | a displacement that disagrees with the gas volumes by over 40 mm, a charge that drifts | 600 | `oil_balance` |
+//! | oil motion | a displacement that does not move as the gas does | 400 in motion | `oil_motion` |
 //! | link (from the node) | a late or untrusted message | at once | `reading_check` |
 //!
 //! While a check is undecided, the last good value is used. After that a displacement follows from the other three (the body is
@@ -18,8 +20,10 @@
 
 mod limits;
 mod oil_balance;
+mod oil_motion;
 mod reading_check;
 mod stuck;
+mod trapped_oil;
 mod trusted;
 mod verdict;
 mod vote;
@@ -33,6 +37,7 @@ use limits::{DISPLACEMENT, PRESSURE};
 use oil_balance::OilBalance;
 use reading_check::ReadingCheck;
 use stuck::Stuck;
+use trapped_oil::TrappedOil;
 pub use trusted::Trusted;
 use verdict::Verdicts;
 use vote::Vote;
@@ -82,6 +87,7 @@ pub struct State {
     stuck: Stuck,
     vote: Corners<Vote>,
     oil: Corners<OilBalance>,
+    trapped: Corners<TrappedOil>,
 }
 
 /// What the checks must know of the valves and the mode. See [`State`] for an example.
@@ -89,6 +95,8 @@ pub struct State {
 pub struct Context {
     /// Whether valve 3 of each corner has been open for so long that p4 follows p1. Behind a closed valve it does not.
     pub spring_settled_open: Corners<bool>,
+    /// Whether valve 3 of each corner was commanded closed in the last tick.
+    pub spring_commanded_closed: Corners<bool>,
     /// Whether the gas charges are still being learnt, because the mode has not been normal yet.
     pub learning: bool,
 }
@@ -120,6 +128,7 @@ impl State {
         for corner in Corner::ALL {
             let (pressure, verdict) = (&trusted.pressure[corner], &mut verdicts[corner]);
             self.vote[corner].step(&parameters.vote, pressure, context.spring_settled_open[corner], verdict);
+            self.trapped[corner].step(pressure, context.spring_commanded_closed[corner], verdict);
             trusted.charge[corner] = self.oil[corner].step(
                 &parameters.oil_balance,
                 trusted.displacement_m[corner],

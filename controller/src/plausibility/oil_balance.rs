@@ -10,19 +10,25 @@
 //! which holds for any valve position and any load, also with oil trapped behind valve 3. The charge pressure `k` is not
 //! configured. It is learnt from the same equation while the controller starts, and then follows the gas temperature slowly
 //! (60 s). The residual, lagged by 1 s, is expected to stay within 25 mm (gas that is 30 K warmer: 10 % of 0.255 m). At 40 mm for
-//! 40 ticks the displacement reading is called wrong, and so it is if the charge is outside 0.3 to 15 MPa, which no suspension
-//! has.
+//! 40 ticks the displacement reading is called wrong (until it is below 25 mm again; the charge is not learnt meanwhile), and so it is if the charge is outside 0.75 to 1.3 of what it was at the start,
+//! or outside 0.3 to 15 MPa, which no suspension has.
 
 use oleo_interface::{Absolute, Gauge, StrutPressures};
 
+use super::oil_motion::OilMotion;
 use super::verdict::{Verdicts, blame};
 use crate::failsafe::FaultCode;
 use crate::filter::{LowPass, at_least};
 use crate::vehicle::VehicleDescription;
 
 const WRONG_M: f32 = 0.04;
+/// Residual below which a displacement that was called wrong is believed again.
+const RIGHT_M: f32 = 0.025;
 const CONFIRM_TICKS: u8 = 40;
 const CHARGE_PA: (f32, f32) = (0.3e6, 15.0e6);
+/// Smallest and largest share of the charge at the start. Gas that is 30 K warmer gives 1.1; the rest is leakage, or a sensor that
+/// drifts more slowly than the charge is learnt.
+const DRIFT: (f32, f32) = (0.75, 1.3);
 /// Lowest pressure that is counted with, Pa absolute. It keeps the quotient finite where an accumulator is empty.
 const LEAST_PA: f32 = 2.0e4;
 
@@ -57,7 +63,10 @@ impl Parameters {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct OilBalance {
     charge_pa: f32,
+    /// Charge that was learnt while the controller started.
+    charge_at_start_pa: f32,
     residual_m: f32,
+    motion: OilMotion,
     wrong: u8,
     flagged: bool,
     started: bool,
@@ -73,6 +82,7 @@ impl OilBalance {
         learning: bool,
         verdict: &mut Verdicts,
     ) -> Absolute<f32> {
+        let mut motion = None;
         let measured = [verdict.displacement, verdict.pressure.p2, verdict.pressure.p4]
             .iter()
             .all(|&fault| fault == FaultCode::None);
@@ -86,18 +96,30 @@ impl OilBalance {
                 self.charge_pa = now_pa;
             }
             let residual = (self.charge_pa - now_pa) * s * c.per_piston_area;
+            motion = Some((displacement_m, residual));
             if learning {
                 c.charge_start.step(&mut self.charge_pa, now_pa);
+                self.charge_at_start_pa = self.charge_pa;
                 self.residual_m = 0.0;
             } else {
-                c.charge_drift.step(&mut self.charge_pa, now_pa);
+                // What a wrong reading says about the charge must not be learnt, or the fault would explain itself away.
+                if !self.flagged {
+                    c.charge_drift.step(&mut self.charge_pa, now_pa);
+                }
                 c.residual.step(&mut self.residual_m, residual);
             }
-            let wrong = self.residual_m.abs() > WRONG_M || self.charge_pa < CHARGE_PA.0 || self.charge_pa > CHARGE_PA.1;
+            let drifted = self.charge_pa < DRIFT.0 * self.charge_at_start_pa
+                || self.charge_pa > DRIFT.1 * self.charge_at_start_pa;
+            let wrong = self.residual_m.abs() > WRONG_M
+                || drifted
+                || self.charge_pa < CHARGE_PA.0
+                || self.charge_pa > CHARGE_PA.1;
             self.wrong = if wrong {
                 self.wrong.saturating_add(1).min(CONFIRM_TICKS)
-            } else {
+            } else if !self.flagged || self.residual_m.abs() < RIGHT_M {
                 self.wrong.saturating_sub(1)
+            } else {
+                self.wrong
             };
             if self.wrong == CONFIRM_TICKS {
                 self.flagged = true;
@@ -108,6 +130,7 @@ impl OilBalance {
         if self.flagged {
             blame(&mut verdict.displacement, FaultCode::OilBalance);
         }
+        self.motion.step(motion, &mut verdict.displacement);
         Absolute(self.charge_pa)
     }
 }

@@ -41,6 +41,11 @@ impl Trusted {
         if inputs.lost_messages == MessageSet::ALL {
             cause = FaultCode::BusSilent;
         }
+        if inputs.foreign_sender {
+            // The valves may be somebody else's by now.
+            self.health.affected = Corners::splat(true);
+            cause = FaultCode::ForeignSender;
+        }
         if inputs.solenoid_failed {
             cause = FaultCode::Solenoid;
         }

@@ -13,6 +13,9 @@ use crate::failsafe::FaultCode;
 use crate::filter::LowPass;
 
 const DISAGREE_PA: f32 = 1.0e6;
+/// A pressure that was outvoted is believed again when it is this near to another one. For p4 that takes an open valve 3: a
+/// verdict about it stays until it can be compared again.
+const AGREE_PA: f32 = 0.6e6;
 const CONFIRM_TICKS: u8 = 40;
 
 /// The lag of the compared pressures.
@@ -78,13 +81,22 @@ impl Vote {
         if self.outvoted == StrutPressures::splat(0) && !(healthy && wrong != StrutPressures::splat(false)) {
             return;
         }
+        let near = |a: Gauge<f32>, b: Gauge<f32>| (a - b).abs() < AGREE_PA;
+        let agrees = StrutPressures {
+            p1: near(p1, p2) || near(p1, p3),
+            p2: near(p2, p1) || near(p2, p3),
+            p3: near(p3, p1) || near(p3, p2),
+            p4: p4_follows && near(p4, p3),
+        };
         for point in PressurePoint::ALL {
             let (count, flagged) = (&mut self.outvoted[point], &mut self.flagged[point]);
             if healthy {
                 *count = if wrong[point] {
                     count.saturating_add(1).min(CONFIRM_TICKS)
-                } else {
+                } else if !*flagged || agrees[point] {
                     count.saturating_sub(1)
+                } else {
+                    *count
                 };
                 if *count == CONFIRM_TICKS {
                     *flagged = true;

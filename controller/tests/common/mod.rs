@@ -5,9 +5,9 @@
 
 #![allow(dead_code, reason = "each test binary uses its part")]
 
-use oleo_controller::can::{CommandMessage, Frame, PlantEnd};
+use oleo_controller::can::{CommandMessage, Frame};
 use oleo_controller::{
-    Absolute, Configuration, Corners, Gauge, Inputs, Node, Outputs, StrutPressures, Valve, ValveCommand,
+    Absolute, Configuration, Corners, Gauge, Inputs, Node, Outputs, PlantEnd, StrutPressures, Valve, ValveCommand,
 };
 
 pub const AREA_M2: f32 = 1.963_495_4e-3;
@@ -117,11 +117,11 @@ impl Loop {
         let (outputs, sent) = self.node.tick();
         self.answer = None;
         for frame in sent {
-            if let Some((_, message)) = self.plant.receive(frame.id, &frame.data) {
-                self.answer = message;
+            if self.plant.receive(frame.id, &frame.data).is_some() {
+                self.answer = CommandMessage::decode(&frame.data);
             }
         }
-        self.command = outputs.command;
+        self.command = self.plant.end_of_tick();
         self.tick += 1;
         outputs
     }

@@ -2,9 +2,10 @@
 
 use super::estimate::Estimate;
 use crate::confidence::Evidence;
+use crate::effect::of;
 use crate::estimation::LeastSquares;
 use crate::search::{SelectedEffect, Selection};
-use crate::vocabulary::{Branch, EffectId, Place, Site};
+use crate::vocabulary::{EffectId, Place, Site};
 
 /// Confidence in a misfit that stays and that no law was found for: it is seen, but it may be an instrument's.
 const REMAINDER_CONFIDENCE: f64 = 0.6;
@@ -78,10 +79,10 @@ fn modelled(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Esti
             gain: (selected.gain.total, selected.gain.standard_error),
             lead: selected.rival.map(|r| (r.lead.total, r.lead.standard_error)),
         };
-        for (place, numbers) in places(&candidate.place, own.len()) {
+        for (site, numbers) in of(candidate.id).reported(&candidate.place.site, own.len()) {
             out.push(Effect {
                 id: candidate.id,
-                place,
+                place: candidate.place.with_site(site),
                 label: candidate.label.clone(),
                 selected: Some(selected.clone()),
                 confidence: evidence.confidence(),
@@ -93,18 +94,4 @@ fn modelled(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Esti
         }
     }
     out
-}
-
-/// A candidate that acts in several places is reported once a place, each with the numbers that belong to it.
-fn places(place: &Place, count: usize) -> Vec<(Place, Vec<usize>)> {
-    let at = |site: Site, numbers: Vec<usize>| (place.with_site(site), numbers);
-    match (&place.site, count) {
-        (Site::Accumulators, 2) => Branch::ALL
-            .map(|branch| at(Site::Accumulator(branch), vec![branch.number() - 1]))
-            .to_vec(),
-        (Site::Paths, 3) => Branch::ALL
-            .map(|branch| at(Site::Path(branch), vec![branch.number() - 1, 2]))
-            .to_vec(),
-        (_, n) => vec![(place.clone(), (0..n).collect())],
-    }
 }

@@ -6,10 +6,11 @@ pub mod relations;
 
 use std::sync::Arc;
 
+use crate::effect::{Candidate, ShowsIn, of};
 use crate::error::DiagnoseError;
 use crate::estimation::{LeastSquares, fit};
 use crate::search::Selection;
-use crate::specimen::{Candidate, Series, Specimen, StateSeries};
+use crate::specimen::{Series, Specimen, StateSeries};
 use crate::vocabulary::{Column, Place, Site, State};
 use condition::Condition;
 pub use relations::{ChangedRelation, relations_changed_alone};
@@ -112,7 +113,10 @@ fn places(
     let parts = match place.site {
         Site::Accumulators | Site::Paths => place.site.parts(),
         _ => {
-            let mut channels: Vec<usize> = specimen.nearest_channels(place).iter().filter_map(channel).collect();
+            let mut channels: Vec<usize> = match of(candidate.id).shows_in() {
+                ShowsIn::NextToItsPlace => specimen.nearest_channels(place).iter().filter_map(channel).collect(),
+                ShowsIn::EveryChannel => vec![],
+            };
             if channels.is_empty() {
                 channels = (0..specimen.channels().len()).collect();
             }

@@ -5,7 +5,7 @@ use oleo_report::{Axis, Cell, Column, Curves, Page, Style, Table, significant};
 use super::{name, words};
 use crate::campaign::Campaign;
 use crate::diagnosis::{Diagnosis, Effect};
-use crate::specimen::Candidate;
+use crate::effect::{Candidate, of};
 
 pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     let all = campaign.specimen.candidates();
@@ -15,7 +15,7 @@ pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
         page.text("No effect improves held-out stretches by more than chance and the smoothing of the inputs do.");
     }
     for e in &diagnosis.effects {
-        effect(page, e);
+        effect(page, campaign, e);
     }
     if found {
         page.text(
@@ -29,23 +29,26 @@ pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     page.details(&summary, rejected);
 }
 
-fn effect(page: &mut Page, e: &Effect) {
-    let known = words::words(e.id, &e.label);
+fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
+    let (kind, known) = (campaign.specimen.kind(), of(e.id));
+    let named = known.named(kind, &e.label);
     if e.selected.is_none() {
         page.text(&format!(
             "{} {}: a misfit that can be predicted from the inputs is left, but no law that was tried improves unseen stretches enough to be named.",
-            known.name,
+            named,
             words::at(&e.place)
         ));
         return;
     }
     page.text(&format!(
-        "{} {} ({}): {}. Source: {}.",
-        words::sentence(known.name),
+        "{} {} ({}){}",
+        words::sentence(named),
         words::at(&e.place),
         name(e),
-        known.equation,
-        known.source
+        known.equation_in(kind, &e.label).map_or_else(
+            || ".".to_owned(),
+            |equation| format!(": {}; {}. Source: {}.", equation.text, known.meaning(), equation.source)
+        ),
     ));
     if !e.parameters.is_empty() && e.law.as_ref().is_none_or(|l| l.get("argument").is_none()) {
         let mut table = Table::new([
@@ -57,6 +60,10 @@ fn effect(page: &mut Page, e: &Effect) {
         for p in &e.parameters {
             let (name, unit) = words::quantity(&p.key);
             let (value, interval) = words::value_and_interval(p.value, p.ci95);
+            let name = match known.symbol(&p.key) {
+                None | Some("") => name,
+                Some(symbol) => format!("{name}, {symbol}"),
+            };
             table.row([name, value, interval, unit]);
         }
         page.table(table);

@@ -6,9 +6,10 @@ use oleo_report::{Axis, Bars, Column, Curves, Page, Style, Table, extrema_by_buc
 use super::words;
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
+use crate::effect::of;
 use crate::locate::{self, Location};
 use crate::specimen::Specimen;
-use crate::vocabulary::{Place, Site, State};
+use crate::vocabulary::{Place, Site, SpecimenKind, State};
 
 /// Buckets of a line over time: finer is not seen on a page.
 const BUCKETS: usize = 260;
@@ -118,13 +119,13 @@ fn relations(page: &mut Page, diagnosis: &Diagnosis) {
     }
 }
 
-fn title(diagnosis: &Diagnosis, location: &Location) -> String {
+fn title(kind: SpecimenKind, diagnosis: &Diagnosis, location: &Location) -> String {
     let effect =
         (diagnosis.effects.iter()).find(|e| e.candidate() == location.candidate && location.candidate.is_some());
     match effect {
         Some(e) => format!(
             "{} {}",
-            words::sentence(words::words(e.id, &e.label).name),
+            words::sentence(of(e.id).named(kind, &e.label)),
             words::at(&location.place)
         ),
         None => "What is left unexplained".into(),
@@ -165,7 +166,7 @@ fn over_time(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, lo
     let mut curves = Curves::new(
         &format!(
             "{}: {} in {}",
-            title(diagnosis, location),
+            title(specimen.kind(), diagnosis, location),
             channel.column,
             specimen.recording_name(r)
         ),
@@ -246,7 +247,7 @@ fn over_state(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, l
     let mut curves = Curves::new(
         &format!(
             "{}: residual of {} over {quantity}, all recordings",
-            title(diagnosis, location),
+            title(specimen.kind(), diagnosis, location),
             specimen.channels()[c].column
         ),
         Axis::new(quantity, unit),

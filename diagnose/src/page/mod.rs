@@ -10,8 +10,10 @@ use oleo_report::{Cell, Column, Page, Table, Verdict as Colour, significant};
 
 use crate::campaign::Campaign;
 use crate::diagnosis::{Diagnosis, Effect, Verdict};
+use crate::effect::{Candidate, of};
 use crate::json;
-use crate::specimen::Candidate;
+use crate::specimen::Specimen;
+use crate::vocabulary::SpecimenKind;
 
 /// The page.
 #[must_use]
@@ -32,9 +34,9 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
             diagnosis.simulated
         ),
     );
-    page.verdict(colour(diagnosis), &headline(specimen.candidates(), diagnosis));
+    page.verdict(colour(diagnosis), &headline(specimen, diagnosis));
     if !diagnosis.effects.is_empty() {
-        page.outcome(in_brief(diagnosis));
+        page.outcome(in_brief(specimen.kind(), diagnosis));
     }
     page.text(&format!(
         "Noise ratio: RMS of recording minus simulation over the sensor's noise. 1 is perfect. Held out: judged on stretches \
@@ -67,7 +69,8 @@ fn colour(diagnosis: &Diagnosis) -> Colour {
 
 /// The whole story in two sentences.
 #[must_use]
-pub fn headline(all: &[Candidate], diagnosis: &Diagnosis) -> String {
+pub fn headline(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> String {
+    let (kind, all) = (specimen.kind(), specimen.candidates());
     let (before, after) = (diagnosis.selection.calibrated_ratio, diagnosis.selection.improved_ratio);
     let (before, after) = (significant(before, 3), significant(after, 3));
     let mut text = match diagnosis.verdict() {
@@ -78,8 +81,12 @@ pub fn headline(all: &[Candidate], diagnosis: &Diagnosis) -> String {
         Verdict::MissingPhysics => format!(
             "The model leaves out {}. With {}, what was held out of the fit is predicted to {after} times the sensors' \
              noise instead of {before} times.",
-            list(&phrases(diagnosis)),
-            if phrases(diagnosis).len() == 1 { "it" } else { "them" },
+            list(&phrases(kind, diagnosis)),
+            if phrases(kind, diagnosis).len() == 1 {
+                "it"
+            } else {
+                "them"
+            },
         ),
         Verdict::Unexplained => format!(
             "The model disagrees with the recordings ({after} times the sensors' noise), and no effect that was tried explains it."
@@ -90,7 +97,7 @@ pub fn headline(all: &[Candidate], diagnosis: &Diagnosis) -> String {
     }
     for effect in &diagnosis.selection.effects {
         if let Some(rival) = effect.ambiguous_rival() {
-            let said = |c: &Candidate| format!("{} {}", words::called(c.id, &c.label), words::at(&c.place));
+            let said = |c: &Candidate| format!("{} {}", of(c.id).called(kind, &c.label), words::at(&c.place));
             text += &format!(
                 " The recordings cannot tell {} from {}; what to record to separate them is said below.",
                 said(&all[effect.candidate]),
@@ -102,10 +109,10 @@ pub fn headline(all: &[Candidate], diagnosis: &Diagnosis) -> String {
 }
 
 /// Effects as phrases, one an id, with all its places.
-fn phrases(diagnosis: &Diagnosis) -> Vec<String> {
+fn phrases(kind: SpecimenKind, diagnosis: &Diagnosis) -> Vec<String> {
     let mut out: Vec<(String, String)> = Vec::new();
     for e in diagnosis.effects.iter().filter(|e| e.selected.is_some()) {
-        let name = words::called(e.id, &e.label);
+        let name = of(e.id).called(kind, &e.label);
         let place = words::at(&e.place);
         match out.iter_mut().find(|(known, _)| *known == name) {
             Some((_, places)) => *places += &format!(" and {place}"),
@@ -126,7 +133,7 @@ fn list(items: &[String]) -> String {
 }
 
 /// Where, what, how large, how sure, how much better: a row an effect.
-fn in_brief(diagnosis: &Diagnosis) -> Table {
+fn in_brief(kind: SpecimenKind, diagnosis: &Diagnosis) -> Table {
     let mut table = Table::new([
         Column::text("What is missing"),
         Column::text("Where"),
@@ -145,7 +152,7 @@ fn in_brief(diagnosis: &Diagnosis) -> Table {
             .collect();
         let place = words::at(&e.place);
         table.row([
-            format!("{} ({})", words::words(e.id, &e.label).name, name(e)),
+            format!("{} ({})", of(e.id).named(kind, &e.label), name(e)),
             place.trim_start_matches("in ").trim_start_matches("at ").to_owned(),
             match points(e) {
                 Some(n) => format!("a law of {n} points, drawn under What"),

@@ -3,9 +3,9 @@
 use super::selection::{Rival, SelectedEffect};
 use super::selector::{Selector, ranked};
 use crate::criteria::Criteria;
+use crate::effect::Candidate;
 use crate::error::DiagnoseError;
 use crate::estimation::Fit;
-use crate::specimen::Candidate;
 
 /// The effects of a model with their rivals, and the model in which a rival does better.
 pub struct Comparison {

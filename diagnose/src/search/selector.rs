@@ -6,9 +6,10 @@ use std::collections::BTreeMap;
 use super::evidence::HeldOutGain;
 use super::screen::Screen;
 use crate::criteria::Criteria;
+use crate::effect::Candidate;
 use crate::error::DiagnoseError;
 use crate::estimation::{Fit, LeastSquares, Point, fit, held_out};
-use crate::specimen::{Candidate, Specimen};
+use crate::specimen::Specimen;
 
 /// A candidate and its screened fit; `None` where it cannot be simulated at all.
 pub type Screened = (usize, Option<Fit>);

@@ -103,11 +103,12 @@ pub fn generate(name: &str, wanted: &[(EffectId, f64)]) -> Result<Generated, Dia
 fn concealed(wanted: &[(EffectId, f64)], complete: &StrutModel, draw: &mut Draw) -> Vec<(Hidden, f64)> {
     let mut all: Vec<(Hidden, f64)> = Vec::new();
     for &(id, size) in wanted {
-        let mut hidden = Hidden::draw(id, complete, draw);
-        while hidden.column().is_some() && all.iter().any(|(h, _)| h.column() == hidden.column()) {
-            hidden = Hidden::draw(id, complete, draw);
+        let mut drawn = Hidden::draw(id, complete, draw);
+        let taken = |h: &Hidden| h.column().is_some() && all.iter().any(|(other, _)| other.column() == h.column());
+        while drawn.as_ref().is_some_and(taken) {
+            drawn = Hidden::draw(id, complete, draw);
         }
-        all.push((hidden, size));
+        all.extend(drawn.map(|hidden| (hidden, size)));
     }
     all
 }
@@ -139,20 +140,7 @@ fn blank_recording(m: &Move) -> Recording {
 /// A model without what its displacement sensor does: [`replay`] takes motion for a reading, and here it is the truth.
 fn with_true_motion(model: &StrutModel) -> StrutModel {
     let mut model = model.clone();
-    let e = &mut model.effects;
-    for fault in [
-        &mut e.sensor_lag,
-        &mut e.sensor_gain,
-        &mut e.sensor_drift,
-        &mut e.sensor_skew,
-        &mut e.sensor_sign,
-        &mut e.sensor_offset,
-    ]
-    .into_iter()
-    .flatten()
-    {
-        fault.remove(COLUMNS[0]);
-    }
+    model.effects.retain_sensor_faults(|column| column != COLUMNS[0]);
     model
 }
 

@@ -2,9 +2,9 @@
 
 use oleo_report::{Axis, Column, Curves, Field, FieldStyle, Page, Style, Table, Verdict, significant};
 
-use super::hidden::TERMS;
 use super::plan::SIZES;
 use super::summary::{Rate, Summary};
+use crate::effect::in_struts;
 use crate::vocabulary::EffectId;
 
 /// The claim that is tested on complete models.
@@ -75,7 +75,7 @@ fn power_table(s: &Summary) -> Table {
     columns.extend(SIZES.map(|size| Column::text(&format!("{size}"))));
     columns.push(Column::number("False beside"));
     let mut table = Table::new(columns);
-    for term in TERMS {
+    for term in in_struts() {
         let rows: Vec<_> = s.power.iter().filter(|p| p.term == term).collect();
         if rows.is_empty() {
             continue;
@@ -245,16 +245,16 @@ fn power_picture(s: &Summary) -> Field {
     let part = |term: EffectId, size: f64| {
         (s.power.iter().find(|p| p.term == term && p.size == size)).map_or(f64::NAN, |p| p.placed.part())
     };
-    let z: Vec<Vec<f64>> = TERMS
+    let z: Vec<Vec<f64>> = in_struts()
         .into_iter()
         .map(|t| SIZES.iter().map(|&size| part(t, size)).collect())
         .collect();
     let sizes: Vec<String> = SIZES.iter().map(f64::to_string).collect();
     let columns: Vec<f64> = (0..SIZES.len()).map(|k| k as f64).collect();
-    let rows: Vec<f64> = (0..TERMS.len()).map(|k| k as f64).collect();
+    let rows: Vec<f64> = (0..in_struts().len()).map(|k| k as f64).collect();
     let axes = [
         Axis::new("Size", "units of noise").ticks(columns.iter().copied().zip(sizes.iter().map(String::as_str))),
-        Axis::new("", "").ticks(rows.iter().copied().zip(TERMS.map(EffectId::as_str))),
+        Axis::new("", "").ticks(rows.iter().copied().zip(in_struts().into_iter().map(EffectId::as_str))),
         Axis::new("Part", ""),
     ];
     let mut field = Field::new("Found at its place", FieldStyle::HeatMap, axes, &columns, &rows, &z);

@@ -4,7 +4,7 @@
 use std::str::FromStr;
 
 use super::draw::Draw;
-use super::hidden::TERMS;
+use crate::effect::in_struts;
 use crate::vocabulary::EffectId;
 
 /// Sizes asked for, in units of noise (RMS over all channels and samples, after recalibration).
@@ -57,7 +57,7 @@ pub enum Subject {
 
 /// A text that names no subject of a self-test.
 #[derive(Debug, thiserror::Error)]
-#[error("--terms {0}: not known; one or more of {known}, {COMPLETE}, {PAIR}, with commas between", known = TERMS.map(EffectId::as_str).join(", "))]
+#[error("--terms {0}: not known; one or more of {known}, {COMPLETE}, {PAIR}, with commas between", known = in_struts().into_iter().map(EffectId::as_str).collect::<Vec<_>>().join(", "))]
 pub struct UnknownTerm(String);
 
 impl FromStr for Subject {
@@ -67,7 +67,7 @@ impl FromStr for Subject {
         match text {
             COMPLETE => Ok(Self::Complete),
             PAIR => Ok(Self::Pair),
-            _ => (TERMS.into_iter().find(|term| term.as_str() == text))
+            _ => (in_struts().into_iter().find(|term| term.as_str() == text))
                 .map(Self::Effect)
                 .ok_or_else(|| UnknownTerm(text.to_owned())),
         }
@@ -98,14 +98,14 @@ impl Plan {
     }
 
     fn round(&self, round: usize, wanted: &dyn Fn(Subject) -> bool, cases: &mut Vec<Case>) {
-        let seed = self.seed;
+        let (seed, terms) = (self.seed, in_struts());
         // Three terms, then a complete model: an interrupted round holds a share of each kind.
         let mut complete = (0..COMPLETE_PER_ROUND).map(|k| Case {
             name: format!("{seed}:{COMPLETE}:{round}.{k}"),
             hidden: vec![],
             left_out: None,
         });
-        for (k, term) in TERMS.into_iter().enumerate() {
+        for (k, &term) in terms.iter().enumerate() {
             if wanted(Subject::Effect(term)) {
                 let size = SIZES[(round + k) % SIZES.len()];
                 cases.push(Case {
@@ -126,9 +126,9 @@ impl Plan {
                 let name = format!("{seed}:{PAIR}:{round}.{k}");
                 let mut draw = Draw::named(&name);
                 // Two different terms of one to thirty times the noise.
-                let first = draw.index(TERMS.len());
-                let second = (first + 1 + draw.index(TERMS.len() - 1)) % TERMS.len();
-                let hidden = [first, second].map(|t| (TERMS[t], SIZES[2 + draw.index(4)]));
+                let first = draw.index(terms.len());
+                let second = (first + 1 + draw.index(terms.len() - 1)) % terms.len();
+                let hidden = [first, second].map(|t| (terms[t], SIZES[2 + draw.index(4)]));
                 cases.push(Case {
                     name,
                     hidden: hidden.to_vec(),
@@ -140,7 +140,7 @@ impl Plan {
 
     fn nameless(&self, round: usize, wanted: &dyn Fn(Subject) -> bool, cases: &mut Vec<Case>) {
         let nameable = |t: EffectId| t != EffectId::Unlisted && wanted(Subject::Effect(t));
-        for (k, term) in TERMS.into_iter().enumerate().filter(|(_, t)| nameable(*t)) {
+        for (k, term) in in_struts().into_iter().enumerate().filter(|(_, t)| nameable(*t)) {
             let size = NAMELESS_SIZES[(round + k) % NAMELESS_SIZES.len()];
             cases.push(Case {
                 name: format!("{}:without:{term}:{round}:{size}", self.seed),
@@ -178,8 +178,9 @@ mod tests {
 
     #[test]
     fn six_rounds_hold_every_term_at_every_size() {
-        let all = plan(6 * (TERMS.len() + COMPLETE_PER_ROUND + PAIRS_PER_ROUND), &[]).cases();
-        for term in TERMS {
+        let terms = in_struts();
+        let all = plan(6 * (terms.len() + COMPLETE_PER_ROUND + PAIRS_PER_ROUND), &[]).cases();
+        for term in terms {
             for size in SIZES {
                 assert!(all.iter().any(|c| c.hidden == [(term, size)]), "{term} {size}");
             }

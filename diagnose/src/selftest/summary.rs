@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::calibrate::{Calibration, calibrate};
-use super::hidden::TERMS;
 use super::plan::{COMPLETE, SIZES};
 use super::trial::{Trial, covers};
+use crate::effect::in_struts;
 use crate::vocabulary::{EffectId, Place};
 
 /// A part of a number of trials.
@@ -218,7 +218,7 @@ fn nearest_size(size: f64) -> f64 {
 
 fn power(trials: &[&Trial]) -> Vec<Power> {
     let mut all = Vec::new();
-    for term in TERMS {
+    for term in in_struts() {
         for size in SIZES {
             let mut row = Power {
                 term,
@@ -322,7 +322,7 @@ fn nameless(trials: &[&Trial]) -> Vec<Nameless> {
         values.sort_by(f64::total_cmp);
         values.get(values.len() / 2).copied().unwrap_or(0.0)
     };
-    TERMS
+    in_struts()
         .into_iter()
         .filter_map(|term| {
             let own: Vec<&&Trial> = trials.iter().filter(|t| t.left_out == Some(term)).collect();

@@ -1,12 +1,13 @@
 //! What every specimen offers, and all that the search, the report and the page know of it.
 
-use super::candidate::{Candidate, Hypothesis};
 use super::channel::{Channel, Series, StateSeries};
-use super::kind::SpecimenKind;
+use super::hypothesis::Hypothesis;
 use super::relation::MeasuredRelation;
+use crate::effect::Candidate;
 use crate::error::DiagnoseError;
 use crate::parameter::Parameter;
 use crate::recording::{ColumnSpec, GapPolicy, Recording};
+use crate::vocabulary::SpecimenKind;
 use crate::vocabulary::{Column, Place};
 
 /// What is believed of a specimen: its model file, read and checked. With recordings it becomes a [`Specimen`].

@@ -5,29 +5,29 @@
 //! | file of a kind | what it says |
 //! |---|---|
 //! | `mod.rs` | the columns of its recordings, the model under a hypothesis, what that predicts |
-//! | `candidates.rs` (strut: `vocabulary.rs`, `apply.rs`, `laws.rs`) | what may be off within tolerance, what may be missing, how either is put into a model |
-//! | what only this kind has | clocks read off at corners (gas spring), force balance (cylinder), relations between neighbours, floor of the noise, drawing (strut) |
+//! | `calibration.rs` | what may be off within tolerance, and how it is put into a model |
+//! | what only this kind has | force balance (cylinder), relations between neighbours, floor of the noise, drawing (strut) |
 //!
-//! A new kind is a folder, a variant of [`SpecimenKind`] and the arm of [`ModelFile::read`] that the compiler then asks for.
+//! What a model may lack is not here: each effect says what it does in each kind of specimen ([`crate::effect`]).
+//!
+//! A new kind is a folder, a variant of [`SpecimenKind`](crate::vocabulary::SpecimenKind), a [`Kind`](crate::effect::Kind) with
+//! what its recordings excite, and the arms that the compiler then asks for: in [`ModelFile::read`] and in
+//! [`Effect`](crate::effect::Effect).
 //! A kind with one compared channel implements [`single_output::SingleOutput`] instead of the whole trait.
 
-pub mod candidate;
 pub mod channel;
 pub mod contract;
 mod cylinder;
 pub mod drawing;
-mod extent;
 mod gas_spring;
-mod instrument;
-mod kind;
+mod hypothesis;
 mod model_file;
 pub mod relation;
 pub mod single_output;
 pub mod strut;
 
-pub use candidate::{Candidate, ExclusionGroup, Hypothesis};
 pub use channel::{Channel, Series, StateSeries};
 pub use contract::{BelievedModel, Specimen};
-pub use kind::SpecimenKind;
+pub use hypothesis::Hypothesis;
 pub use model_file::ModelFile;
 pub use relation::MeasuredRelation;

@@ -7,8 +7,8 @@ use oleo_plant_sim::strut::StrutModel;
 use strum::VariantNames;
 
 use super::contract::BelievedModel;
-use super::kind::SpecimenKind;
 use crate::error::DiagnoseError;
+use crate::vocabulary::SpecimenKind;
 
 /// A model file that was read and checked.
 pub struct ModelFile {

@@ -3,13 +3,14 @@
 //! Their model is an equation for a whole recording: inputs and parameters in, the one output out. A kind says how the model
 //! is made from a hypothesis and what it answers; everything else a [`Specimen`] offers is here.
 
-use super::candidate::{Candidate, Hypothesis};
 use super::channel::{Channel, Series, StateSeries};
 use super::contract::Specimen;
-use super::kind::SpecimenKind;
+use super::hypothesis::Hypothesis;
+use crate::effect::Candidate;
 use crate::parameter::Parameter;
 use crate::recording::Recording;
 use crate::vocabulary::Place;
+use crate::vocabulary::SpecimenKind;
 
 /// What a kind of specimen with one compared channel says of itself.
 pub trait SingleOutput: Sync {

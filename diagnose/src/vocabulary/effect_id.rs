@@ -82,24 +82,6 @@ pub enum EffectId {
     SensorSign,
     /// A law that no other id names.
     Unlisted,
-    /// Dampers and drives: friction of constant size.
-    CoulombFriction,
-    /// Dampers and drives: friction that falls with speed after breakaway.
-    StribeckFriction,
-    /// Dampers and drives: hysteresis over displacement before sliding.
-    PreslidingFriction,
-    /// Dampers and drives: a force that saturates with speed.
-    SmoothYield,
-    /// Dampers and drives: a constant force.
-    ForceOffset,
-    /// Dampers and drives: a force in proportion to displacement.
-    Stiffness,
-    /// Dampers and drives: the force of an enclosed gas.
-    GasSpring,
-    /// Dampers and drives: play between drive and load.
-    Backlash,
-    /// Dampers and drives: further moving mass.
-    Inertia,
 }
 
 impl EffectId {
@@ -110,6 +92,12 @@ impl EffectId {
             self,
             Self::SensorLag | Self::SensorGain | Self::SensorDrift | Self::SensorSkew | Self::SensorSign
         )
+    }
+
+    /// True for physics that the vocabulary has a name for.
+    #[must_use]
+    pub fn is_physics(self) -> bool {
+        self != Self::Unlisted && !self.is_instrument_fault()
     }
 
     /// The text of the id.
@@ -158,15 +146,6 @@ mod tests {
             "sensor_skew",
             "sensor_sign",
             "unlisted",
-            "coulomb_friction",
-            "stribeck_friction",
-            "presliding_friction",
-            "smooth_yield",
-            "force_offset",
-            "stiffness",
-            "gas_spring",
-            "backlash",
-            "inertia",
         ] {
             assert!(text.parse::<EffectId>().is_ok(), "{text}");
         }

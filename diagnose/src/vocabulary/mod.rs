@@ -8,14 +8,17 @@
 //! | [`EffectId`] | a law or fault that a model may lack | `gas_heat_transfer` |
 //! | [`Place`] | where in the specimen it acts | `accumulator-1`, `front-left/accumulator-2` |
 //! | [`Column`] | a column of a recording | `p1_Pa` |
+//! | [`SpecimenKind`] | what was recorded | `gas spring` |
 //! | [`State`] | a quantity that a residual may depend on | `speed, m/s` |
 
 mod column;
 mod effect_id;
 mod place;
+mod specimen_kind;
 mod state;
 
 pub use column::Column;
 pub use effect_id::EffectId;
 pub use place::{Branch, Place, PlaceError, Site, VehiclePart};
+pub use specimen_kind::SpecimenKind;
 pub use state::State;

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use oleo_interface::StrutValves;
 use oleo_interface::tick::TICK_S;
+use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::road;
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
@@ -48,7 +48,7 @@ impl Plant {
         };
         // Each strut is charged for the load that it carries, as in a workshop.
         let mut struts = Vec::with_capacity(4);
-        for load_n in parameters.static_strut_load_n() {
+        for load_n in parameters.static_strut_load_n().into_array() {
             let model = match &model {
                 None => StrutModel::defender110(load_n),
                 Some(model) => {
@@ -64,7 +64,7 @@ impl Plant {
         };
         let road: Arc<dyn road::Road> =
             road::from_name_or_path(&scenario.road, scenario.road_length_m(), scenario.seed)?;
-        let vehicle = RideVehicle::new(&parameters, struts, road, scenario.speed_m_s)?;
+        let vehicle = RideVehicle::new(&parameters, Corners::from_array(struts), road, scenario.speed_m_s)?;
         Ok(Self { parameters, vehicle })
     }
 }

@@ -26,6 +26,8 @@ built_in!(
     "nan",
     "out-of-range",
     "stuck-solenoid",
+    "held-up-bus",
+    "doubled-frames",
 );
 
 /// A built-in scenario by its name, or a file by its path.

@@ -5,11 +5,15 @@
 //! body's vertical axis (`heave`), and the axle turns about the body's longitudinal axis through that point (`roll`). All
 //! side forces of the tyres reach the body there, which is what makes the lateral load path: a high roll centre carries
 //! much of the load transfer through links, a low one through springs. The rod's own arc is left out, so left and right
-//! are mirror images. Pitch and yaw of the axle are the body's: the links react drive and brake torque.
+//! are mirror images. Pitch and yaw of the axle follow from its heave and roll, see `guide`: the links react drive and brake
+//! torque.
 //!
 //! All vectors are in body axes (x ahead, y left, z up) from the body's centre of mass.
 
 use nalgebra::{Matrix3, Vector3};
+
+use super::axle_place::{AxleCoordinates, AxlePlace};
+use super::guide::Guide;
 
 /// What does not change of an axle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,44 +34,8 @@ pub struct AxleGeometry {
     pub half_strut_spacing_m: f64,
     /// Anti-roll bar, N m/rad.
     pub anti_roll_n_m_rad: f64,
-}
-
-/// The axle's two coordinates, their rates or accelerations.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct AxleCoordinates {
-    /// Along the body's z, m, towards the body positive.
-    pub heave: f64,
-    /// About the body's x, rad, left side up positive.
-    pub roll: f64,
-}
-
-impl AxleCoordinates {
-    /// `self + factor * other`.
-    pub(super) fn plus(self, factor: f64, other: Self) -> Self {
-        Self {
-            heave: self.heave + factor * other.heave,
-            roll: self.roll + factor * other.roll,
-        }
-    }
-}
-
-/// An axle in its place.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct AxlePlace {
-    /// Roll centre.
-    pub(super) centre: Vector3<f64>,
-    /// Centre of mass (middle between the wheel centres).
-    pub(super) mass_centre: Vector3<f64>,
-    /// The axle's own y.
-    pub(super) left: Vector3<f64>,
-    /// From roll centre to centre of mass.
-    pub(super) arm: Vector3<f64>,
-    /// d(mass_centre)/d(roll).
-    pub(super) swing: Vector3<f64>,
-    /// Inertia about the centre of mass.
-    pub(super) inertia: Matrix3<f64>,
-    sin_roll: f64,
-    cos_roll: f64,
+    /// What its links make of heave and roll.
+    pub guide: Guide,
 }
 
 impl AxleGeometry {
@@ -89,11 +57,13 @@ impl AxleGeometry {
             product,
             j_y * sin_roll * sin_roll + j_z * cos_roll * cos_roll,
         );
+        let hub = centre + arm;
         AxlePlace {
             centre,
-            mass_centre: centre + arm,
+            mass_centre: hub + Vector3::new(self.guide.fore_aft_m(hub.z, q.heave), 0.0, 0.0),
             left,
             arm,
+            lift: self.guide.lift(hub.z),
             swing: Vector3::new(0.0, -arm.z, arm.y),
             inertia,
             sin_roll,

@@ -9,15 +9,18 @@
 //!
 //! Kane's form of Newton and Euler in body axes (T. R. Kane, D. A. Levinson, *Dynamics: Theory and Applications*, 1985):
 //! every body's `m a_G` and `J W' + W x (J W + h)` are projected on what each coordinate moves. For an axle at `g` from the
-//! body's centre of mass, with `t = e_x x arm` and W = w + e_x p':
+//! body's centre of mass, with `l = dg/ds` (up, and a little fore and aft: `guide`), `t = e_x x arm` and W = w + e_x p':
 //!
 //! ```text
-//! a_G = a + w' x g + e_z s'' + t p'' + w x (w x g) + 2 w x (e_z s' + t p') - arm p'^2
+//! a_G = a + w' x g + l s'' + t p'' + w x (w x g) + 2 w x (l s' + t p') - arm p'^2 + l' s'
 //! W'  = w' + e_x p'' + w x e_x p'
 //! ```
 //!
 //! The axles' coordinates couple to the body only, so they are eliminated axle by axle (a 2 x 2 inverse each) and one
 //! 6 x 6 positive definite system remains (Cholesky). Nothing is linearised: the equations hold for any roll angle.
+//!
+//! Heave and roll bring a little pitch and yaw of the axle with them (`guide`); loads and gyroscopic torques are projected on
+//! those too.
 //!
 //! Wheels are rotors in the axle: `I Omega' = drive torque + tyre torque` about the wheel's axis, and `h = sum I Omega y_w` gives
 //! the gyroscopic torque. The bearing passes everything but that tyre torque to the axle; the axle takes the reaction
@@ -29,8 +32,11 @@
 //! out). It is an elastic mode on top of the fourteen coordinates.
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use oleo_interface::{Axle, Axles, Corners};
 
-use super::axle::{AxleCoordinates, AxleGeometry, AxlePlace};
+use super::axle::AxleGeometry;
+use super::axle_place::{AxleCoordinates, AxlePlace};
+use super::guide::Guide;
 
 /// Inertia of the body and what the axles are.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,11 +46,13 @@ pub struct Masses {
     /// J_x, J_y, J_z of the body, kg m2.
     pub body_inertia_kg_m2: Vector3<f64>,
     /// Front and rear axle.
-    pub axles: [AxleGeometry; 2],
-    /// Spin inertia of one wheel, front and rear, kg m2.
-    pub spin_inertia_kg_m2: [f64; 2],
-    /// Torsion: N m/rad, N m s/rad.
-    pub torsion: [f64; 2],
+    pub axles: Axles<AxleGeometry>,
+    /// Spin inertia of one wheel of an axle, kg m2.
+    pub spin_inertia_kg_m2: Axles<f64>,
+    /// Torque that twists the body's front half against its rear half, N m/rad.
+    pub torsional_stiffness_n_m_rad: f64,
+    /// Its damping, N m s/rad.
+    pub torsional_damping_n_m_s_rad: f64,
 }
 
 /// Velocities of all coordinates, body axes.
@@ -52,8 +60,8 @@ pub struct Masses {
 pub(super) struct Velocities {
     pub(super) linear: Vector3<f64>,
     pub(super) angular: Vector3<f64>,
-    pub(super) axles: [AxleCoordinates; 2],
-    pub(super) spin: [f64; 4],
+    pub(super) axles: Axles<AxleCoordinates>,
+    pub(super) spin: Corners<f64>,
     pub(super) twist: f64,
 }
 
@@ -65,9 +73,9 @@ pub(super) struct Loads {
     /// About the body's centre of mass, N m.
     pub(super) moment: Vector3<f64>,
     /// On each axle's coordinates.
-    pub(super) axles: [AxleCoordinates; 2],
+    pub(super) axles: Axles<AxleCoordinates>,
     /// On each wheel's spin, N m.
-    pub(super) spin: [f64; 4],
+    pub(super) spin: Corners<f64>,
     /// On the twist, N m.
     pub(super) twist: f64,
 }
@@ -77,8 +85,8 @@ pub(super) struct Loads {
 pub(super) struct Accelerations {
     pub(super) linear: Vector3<f64>,
     pub(super) angular: Vector3<f64>,
-    pub(super) axles: [AxleCoordinates; 2],
-    pub(super) spin: [f64; 4],
+    pub(super) axles: Axles<AxleCoordinates>,
+    pub(super) spin: Corners<f64>,
     pub(super) twist: f64,
 }
 
@@ -92,25 +100,26 @@ pub(super) struct Wrench {
 
 impl Wrench {
     /// Of a force (N) at a point of the axle and a moment (N m), body axes.
-    pub(super) fn on_axle(place: &AxlePlace, force: Vector3<f64>, point: Vector3<f64>, moment: Vector3<f64>) -> Self {
-        let arm = point - place.centre;
+    pub(super) fn on_axle(
+        (place, guide): (&AxlePlace, &Guide),
+        force: Vector3<f64>,
+        point: Vector3<f64>,
+        moment: Vector3<f64>,
+    ) -> Self {
         Self {
             force,
             moment: point.cross(&force) + moment,
-            axle: AxleCoordinates {
-                heave: force.z,
-                roll: arm.y * force.z - arm.z * force.y + moment.x,
-            },
+            axle: guide.generalised(place, &force, &point, &moment),
         }
     }
 }
 
 impl Loads {
     /// Adds what the left and the right wheel do to an axle: as a pair, so that mirrored loads give mirrored bits.
-    pub(super) fn add_pair(&mut self, index: usize, left: &Wrench, right: &Wrench) {
+    pub(super) fn add_pair(&mut self, axle: Axle, left: &Wrench, right: &Wrench) {
         self.force += left.force + right.force;
         self.moment += left.moment + right.moment;
-        self.axles[index] = self.axles[index].plus(1.0, left.axle.plus(1.0, right.axle));
+        self.axles[axle] = self.axles[axle].plus(1.0, left.axle.plus(1.0, right.axle));
     }
 }
 
@@ -137,23 +146,23 @@ impl Eliminated {
 
 impl Masses {
     /// Angular momentum of the two wheels of an axle about their axes, body axes.
-    fn wheel_momentum(&self, index: usize, velocities: &Velocities, axes: &[Vector3<f64>; 4]) -> Vector3<f64> {
-        let inertia = self.spin_inertia_kg_m2[index];
-        let left = 2 * index;
-        axes[left] * (inertia * velocities.spin[left]) + axes[left + 1] * (inertia * velocities.spin[left + 1])
+    fn wheel_momentum(&self, axle: Axle, velocities: &Velocities, axes: &Corners<Vector3<f64>>) -> Vector3<f64> {
+        let inertia = self.spin_inertia_kg_m2[axle];
+        let [left, right] = axes.of_axle(axle);
+        let [left_spin, right_spin] = velocities.spin.of_axle(axle);
+        left * (inertia * left_spin) + right * (inertia * right_spin)
     }
 
     /// Accelerations for places, velocities and loads. `axes`: each wheel's axis, body axes.
     pub(super) fn accelerations(
         &self,
-        places: &[AxlePlace; 2],
+        places: &Axles<AxlePlace>,
         velocities: &Velocities,
         loads: &Loads,
-        axes: &[Vector3<f64>; 4],
+        axes: &Corners<Vector3<f64>>,
     ) -> Accelerations {
         let w = velocities.angular;
         let e_x = Vector3::new(1.0, 0.0, 0.0);
-        let e_z = Vector3::new(0.0, 0.0, 1.0);
         let j = self.body_inertia_kg_m2;
 
         let mut mass = self.body_kg;
@@ -162,16 +171,20 @@ impl Masses {
         let mut force = loads.force;
         let mut moment = loads.moment - w.cross(&j.component_mul(&w));
 
-        let parts: [Eliminated; 2] = core::array::from_fn(|index| {
+        let parts = Axles::from_fn(|index| {
             let (axle, place) = (&self.axles[index], &places[index]);
             let rate = velocities.axles[index];
-            let (m, g, t) = (axle.mass_kg, place.mass_centre, place.swing);
+            let (m, g, l, t) = (axle.mass_kg, place.mass_centre, place.lift, place.swing);
 
-            let relative = e_z * rate.heave + t * rate.roll;
-            let bias = w.cross(&(w.cross(&g) + relative * 2.0)) - place.arm * (rate.roll * rate.roll);
+            let relative = l * rate.heave + t * rate.roll;
+            let sliding = axle.guide.pitch_per_heave_rad_m * rate.heave * (rate.heave + place.arm.y * rate.roll);
+            let bias = w.cross(&(w.cross(&g) + relative * 2.0)) - place.arm * (rate.roll * rate.roll) + e_x * sliding;
             let turn = w + e_x * rate.roll;
-            let momentum = place.inertia * turn + self.wheel_momentum(index, velocities, axes);
-            let turn_bias = place.inertia * (w.cross(&e_x) * rate.roll) + turn.cross(&momentum);
+            // The wheels' axes turn with the axle as its links guide it, which makes their gyroscopic torque.
+            let gyroscopic = (w + axle.guide.turn(place, rate)).cross(&self.wheel_momentum(index, velocities, axes));
+            let guided = axle.guide.guided(place, &gyroscopic);
+            let turn_bias =
+                place.inertia * (w.cross(&e_x) * rate.roll) + turn.cross(&(place.inertia * turn)) + gyroscopic;
 
             let g_skew = skew(g);
             mass += m;
@@ -180,18 +193,21 @@ impl Masses {
             force -= bias * m;
             moment -= g.cross(&bias) * m + turn_bias;
 
-            let heave = g.cross(&e_z) * m;
+            let heave = g.cross(&l) * m;
             let roll = g.cross(&t) * m + e_x * axle.roll_inertia_kg_m2;
-            let (a, b, c) = (m, m * t.z, m * t.dot(&t) + axle.roll_inertia_kg_m2);
+            let (a, b, c) = (m * l.dot(&l), m * l.dot(&t), m * t.dot(&t) + axle.roll_inertia_kg_m2);
             let determinant = a * c - b * b;
             let load = loads.axles[index];
             Eliminated {
                 inverse: [c / determinant, -b / determinant, a / determinant],
                 coupling: [
-                    SVector::from([0.0, 0.0, m, heave.x, heave.y, heave.z]),
+                    SVector::from([m * l.x, 0.0, m * l.z, heave.x, heave.y, heave.z]),
                     SVector::from([m * t.x, m * t.y, m * t.z, roll.x, roll.y, roll.z]),
                 ],
-                right: [load.heave - m * bias.z, load.roll - m * t.dot(&bias) - turn_bias.x],
+                right: [
+                    load.heave - m * l.dot(&bias) - guided.heave,
+                    load.roll - m * t.dot(&bias) - turn_bias.x - guided.roll,
+                ],
             }
         });
 
@@ -206,7 +222,7 @@ impl Masses {
             }
         }
         let mut right = SVector::from([force.x, force.y, force.z, moment.x, moment.y, moment.z]);
-        for part in &parts {
+        for (_, part) in parts.iter() {
             let [heave, roll] = &part.coupling;
             let [a, b, c] = part.inverse;
             let (first, second) = (heave * a + roll * b, heave * b + roll * c);
@@ -234,20 +250,21 @@ impl Masses {
             linear: Vector3::new(body[0], body[1], body[2]),
             angular: Vector3::new(body[3], body[4], body[5]),
             axles,
-            spin: core::array::from_fn(|corner| loads.spin[corner] / self.spin_inertia_kg_m2[corner / 2]),
+            spin: Corners::from_fn(|corner| loads.spin[corner] / self.spin_inertia_kg_m2[corner.axle()]),
             twist: loads.twist / (0.25 * j.x),
         }
     }
 
     /// Kinetic energy, J.
-    pub(super) fn kinetic_energy_j(&self, places: &[AxlePlace; 2], velocities: &Velocities) -> f64 {
+    pub(super) fn kinetic_energy_j(&self, places: &Axles<AxlePlace>, velocities: &Velocities) -> f64 {
         let (v, w) = (velocities.linear, velocities.angular);
         let j = self.body_inertia_kg_m2;
         let mut twice = self.body_kg * v.dot(&v) + w.dot(&j.component_mul(&w));
-        for (index, (axle, place)) in self.axles.iter().zip(places).enumerate() {
+        for (index, axle) in self.axles.iter() {
+            let place = &places[index];
             let (speed, turn) = axle_motion(place, velocities, index);
             twice += axle.mass_kg * speed.dot(&speed) + turn.dot(&(place.inertia * turn));
-            for spin in &velocities.spin[2 * index..2 * index + 2] {
+            for spin in velocities.spin.of_axle(index) {
                 twice += self.spin_inertia_kg_m2[index] * spin * spin;
             }
         }
@@ -258,13 +275,14 @@ impl Masses {
     #[cfg(test)]
     pub(super) fn momentum(
         &self,
-        places: &[AxlePlace; 2],
+        places: &Axles<AxlePlace>,
         velocities: &Velocities,
-        axes: &[Vector3<f64>; 4],
+        axes: &Corners<Vector3<f64>>,
     ) -> (Vector3<f64>, Vector3<f64>) {
         let mut linear = velocities.linear * self.body_kg;
         let mut angular = self.body_inertia_kg_m2.component_mul(&velocities.angular);
-        for (index, (axle, place)) in self.axles.iter().zip(places).enumerate() {
+        for (index, axle) in self.axles.iter() {
+            let place = &places[index];
             let (speed, turn) = axle_motion(place, velocities, index);
             linear += speed * axle.mass_kg;
             angular += place.mass_centre.cross(&speed) * axle.mass_kg
@@ -276,9 +294,9 @@ impl Masses {
 }
 
 /// Velocity of an axle's centre of mass and the axle's angular velocity, body axes.
-fn axle_motion(place: &AxlePlace, velocities: &Velocities, index: usize) -> (Vector3<f64>, Vector3<f64>) {
+fn axle_motion(place: &AxlePlace, velocities: &Velocities, index: Axle) -> (Vector3<f64>, Vector3<f64>) {
     let rate = velocities.axles[index];
     let speed = velocities.linear + velocities.angular.cross(&place.mass_centre) + place.swing * rate.roll;
     let turn = velocities.angular + Vector3::new(rate.roll, 0.0, 0.0);
-    (speed + Vector3::new(0.0, 0.0, rate.heave), turn)
+    (speed + place.lift * rate.heave, turn)
 }

@@ -5,18 +5,22 @@
 //! are implicit (see `wheel`). The suspension elements are the ride model's too, so every spring of one model runs in
 //! the other.
 
+mod observe;
+
 use std::sync::Arc;
 
 use nalgebra::{Matrix3, Vector3};
+use oleo_interface::{Axle, Axles, Corner, Corners, Side};
 
 use super::assembly::masses;
-use super::attitude::{Attitude, yaw_pitch_roll};
-use super::axle::{AxleCoordinates, AxlePlace};
+use super::attitude::Attitude;
+use super::axle_place::{AxleCoordinates, AxlePlace};
 use super::dynamics::{Accelerations, Loads, Masses, Velocities};
 use super::ground::Probe;
-use super::motion::{Controls, HandlingMotion};
+use super::motion::Controls;
 use super::parameters::HandlingParameters;
-use super::wheel::{ContactState, Tyre, WheelLoads, WheelMotion, WheelState};
+use super::steering::SteeringState;
+use super::wheel::{ContactState, Tyre, WheelLoads, WheelMotion, WheelState, WheelTorque};
 use crate::road::Road;
 use crate::strut::{Strut, StrutOutput};
 use crate::vehicle::suspension::{Motion, StrutElement, SuspensionElement};
@@ -29,10 +33,10 @@ const STATIC_LOAD_TOLERANCE: f64 = 0.05;
 pub struct HandlingModel<E> {
     masses: Masses,
     handling: HandlingParameters,
-    tyres: [Tyre; 2],
+    tyres: Axles<Tyre>,
     probe: Probe,
     road: Arc<dyn Road>,
-    elements: [E; 4],
+    elements: Corners<E>,
     step_s: f64,
     steps: u64,
     rest_height_m: f64,
@@ -43,15 +47,15 @@ pub struct HandlingModel<E> {
     attitude: Attitude,
     rotation: Matrix3<f64>,
     angular: Vector3<f64>,
-    axles: [AxleCoordinates; 2],
-    axle_rates: [AxleCoordinates; 2],
-    spin: [f64; 4],
+    axles: Axles<AxleCoordinates>,
+    axle_rates: Axles<AxleCoordinates>,
+    spin: Corners<f64>,
     twist: f64,
     twist_rate: f64,
-    contacts: [ContactState; 4],
-    steer_rad: f64,
+    contacts: Corners<ContactState>,
+    steering: SteeringState,
     acceleration: Accelerations,
-    wheels: [WheelState; 4],
+    wheels: Corners<WheelState>,
 }
 
 /// The handling model on two-stage struts.
@@ -65,7 +69,7 @@ impl HandlingVehicle {
     pub fn new(
         parameters: &VehicleParameters,
         handling: &HandlingParameters,
-        struts: [Strut; 4],
+        struts: Corners<Strut>,
         road: Arc<dyn Road>,
         speed_m_s: f64,
     ) -> Result<Self, RideError> {
@@ -73,7 +77,7 @@ impl HandlingVehicle {
     }
 
     /// Outputs of the four struts.
-    pub fn strut_output(&self) -> [StrutOutput; 4] {
+    pub fn strut_output(&self) -> Corners<StrutOutput> {
         self.elements.each_ref().map(StrutElement::output)
     }
 }
@@ -86,15 +90,16 @@ impl<E: SuspensionElement> HandlingModel<E> {
     pub fn with_elements(
         parameters: &VehicleParameters,
         handling: &HandlingParameters,
-        elements: [E; 4],
+        elements: Corners<E>,
         road: Arc<dyn Road>,
         speed_m_s: f64,
     ) -> Result<Self, RideError> {
         if !(speed_m_s >= 0.0 && speed_m_s.is_finite()) {
             return Err(RideError::Speed(speed_m_s));
         }
-        for (corner, (element, needed_n)) in elements.iter().zip(parameters.static_strut_load_n()).enumerate() {
-            let carried_n = element.force_n();
+        let needed = parameters.static_strut_load_n();
+        for (corner, element) in elements.iter() {
+            let (carried_n, needed_n) = (element.force_n(), needed[corner]);
             let fits = (carried_n - needed_n).abs() <= STATIC_LOAD_TOLERANCE * needed_n;
             if !fits {
                 return Err(RideError::StaticLoad {
@@ -106,17 +111,16 @@ impl<E: SuspensionElement> HandlingModel<E> {
         }
         let rest_height_m = parameters.body_cg_height_m();
         let wheel_load = parameters.static_wheel_load_n();
-        let axle_parameters = [&parameters.front_axle, &parameters.rear_axle];
-        let tyres = [0usize, 1].map(|index| {
-            let axle = axle_parameters[index];
+        let tyres = Axles::from_fn(|place| {
+            let axle = parameters.axle(place);
             Tyre {
                 stiffness_n_m: axle.tyre_stiffness_n_m,
                 damping_n_s_m: axle.tyre_damping_n_s_m,
-                free_radius_m: axle.tyre_radius_m + wheel_load[2 * index] / axle.tyre_stiffness_n_m,
+                free_radius_m: axle.tyre_radius_m + wheel_load[place.corner(Side::Left)] / axle.tyre_stiffness_n_m,
             }
         });
-        let spin = core::array::from_fn(|corner| {
-            let tyre = &tyres[corner / 2];
+        let spin = Corners::from_fn(|corner| {
+            let tyre = &tyres[corner.axle()];
             let deflection_m = wheel_load[corner] / tyre.stiffness_n_m;
             speed_m_s
                 / handling
@@ -144,27 +148,27 @@ impl<E: SuspensionElement> HandlingModel<E> {
             attitude: Attitude::level(),
             rotation: Matrix3::identity(),
             angular: Vector3::zeros(),
-            axles: [AxleCoordinates::default(); 2],
-            axle_rates: [AxleCoordinates::default(); 2],
+            axles: Axles::default(),
+            axle_rates: Axles::default(),
             spin,
             twist: 0.0,
             twist_rate: 0.0,
-            contacts: [ContactState::default(); 4],
-            steer_rad: 0.0,
+            contacts: Corners::default(),
+            steering: SteeringState::default(),
             acceleration: Accelerations::default(),
-            wheels: [WheelState::default(); 4],
+            wheels: Corners::default(),
         };
         // At rest on the road's mean level under the wheels at the start, wherever the road's zero is.
-        let height = |corner: usize| {
-            let side = if corner.is_multiple_of(2) { 0.5 } else { -0.5 };
-            let station = if corner < 2 {
-                0.0
-            } else {
-                -parameters.layout.wheelbase_m
+        let [a, b, c, d] = Corners::from_fn(|corner| {
+            let station = match corner.axle() {
+                Axle::Front => 0.0,
+                Axle::Rear => -parameters.layout.wheelbase_m,
             };
-            model.road.height_m(station, side * axle_parameters[corner / 2].track_m)
-        };
-        let datum_m = 0.25 * ((height(0) + height(1)) + (height(2) + height(3)));
+            let side = 0.5 * sign(corner.side());
+            model.road.height_m(station, side * parameters.axle_of(corner).track_m)
+        })
+        .into_array();
+        let datum_m = 0.25 * ((a + b) + (c + d));
         model.rest_height_m += datum_m;
         model.position.z = model.rest_height_m;
         let velocities = model.velocities();
@@ -173,24 +177,19 @@ impl<E: SuspensionElement> HandlingModel<E> {
     }
 
     /// Advances one step. `signals` go to the suspension elements, corner by corner.
-    pub fn step(&mut self, signals: [E::Signal; 4], controls: Controls) {
+    pub fn step(&mut self, signals: Corners<E::Signal>, controls: Controls) {
         let h = self.step_s;
         let half = 0.5 * h;
         self.kick(half);
         self.position += self.velocity * h;
         self.attitude = self.attitude.turned(self.angular, h);
         self.rotation = self.attitude.matrix();
-        for (axle, rate) in self.axles.iter_mut().zip(self.axle_rates) {
-            *axle = axle.plus(h, rate);
+        for (place, axle) in self.axles.iter_mut() {
+            *axle = axle.plus(h, self.axle_rates[place]);
         }
         self.twist += h * self.twist_rate;
         self.steps += 1;
-        let steering = &self.handling.steering;
-        let most = steering.max_rate_rad_s * h;
-        let wanted = controls
-            .steer_rad
-            .clamp(-steering.max_angle_rad, steering.max_angle_rad);
-        self.steer_rad += (wanted - self.steer_rad).clamp(-most, most);
+        self.steering.turn(&self.handling.steering, controls.steer_rad, h);
 
         // Speeds half a step on, for the forces; the true ones follow from those forces.
         let kept = (self.velocity, self.angular, self.axle_rates, self.spin, self.twist_rate);
@@ -199,12 +198,12 @@ impl<E: SuspensionElement> HandlingModel<E> {
         (self.velocity, self.angular, self.axle_rates, self.spin, self.twist_rate) = kept;
 
         let places = self.places();
-        for (index, axle) in self.masses.axles.iter().enumerate() {
-            let side = if index == 0 { 0.5 } else { -0.5 };
-            let compression = axle.compression(&places[index], self.axles[index], side * self.twist);
-            let rate = axle.compression_rate(&places[index], predicted.axles[index], side * predicted.twist);
-            for (i, (compression_m, compression_rate_m_s)) in compression.into_iter().zip(rate).enumerate() {
-                let corner = 2 * index + i;
+        for (index, axle) in self.masses.axles.iter() {
+            let half = half_twist(index);
+            let compression = axle.compression(&places[index], self.axles[index], half * self.twist);
+            let rate = axle.compression_rate(&places[index], predicted.axles[index], half * predicted.twist);
+            for ((side, compression_m), compression_rate_m_s) in Side::ALL.into_iter().zip(compression).zip(rate) {
+                let corner = index.corner(side);
                 let motion = Motion {
                     compression_m,
                     compression_rate_m_s,
@@ -214,7 +213,16 @@ impl<E: SuspensionElement> HandlingModel<E> {
             }
         }
         self.acceleration = self.accelerate(&predicted, controls);
+        self.steering
+            .give_way(&self.handling.steering, self.swivel_torque_n_m(), h);
         self.kick(half);
+    }
+
+    /// Torque of the front tyres about the swivel pins, N m, left positive.
+    fn swivel_torque_n_m(&self) -> f64 {
+        let trail_m = self.handling.steering.castor_trail_m;
+        let [left, right] = self.wheels.of_axle(Axle::Front);
+        (left.aligning_n_m + right.aligning_n_m) - trail_m * (left.lateral_n + right.lateral_n)
     }
 
     /// Velocities after `duration_s` of the present accelerations.
@@ -224,11 +232,11 @@ impl<E: SuspensionElement> HandlingModel<E> {
         linear.z -= GRAVITY_M_S2;
         self.velocity += linear * duration_s;
         self.angular += a.angular * duration_s;
-        for (rate, axle) in self.axle_rates.iter_mut().zip(a.axles) {
-            *rate = rate.plus(duration_s, axle);
+        for (place, rate) in self.axle_rates.iter_mut() {
+            *rate = rate.plus(duration_s, a.axles[place]);
         }
-        for (spin, rate) in self.spin.iter_mut().zip(a.spin) {
-            *spin += rate * duration_s;
+        for (corner, spin) in self.spin.iter_mut() {
+            *spin += a.spin[corner] * duration_s;
         }
         self.twist_rate += a.twist * duration_s;
     }
@@ -243,69 +251,79 @@ impl<E: SuspensionElement> HandlingModel<E> {
         }
     }
 
-    fn places(&self) -> [AxlePlace; 2] {
-        [0, 1].map(|i: usize| self.masses.axles[i].place(self.axles[i]))
+    fn places(&self) -> Axles<AxlePlace> {
+        Axles::from_fn(|axle| self.masses.axles[axle].place(self.axles[axle]))
     }
 
     /// The four wheels' axes, body axes.
-    fn wheel_axes(&self, places: &[AxlePlace; 2]) -> [Vector3<f64>; 4] {
-        let (sin, cos) = libm::sincos(self.steer_rad);
-        let front = places[0].left * cos - Vector3::new(sin, 0.0, 0.0);
-        [front, front, places[1].left, places[1].left]
+    fn wheel_axes(&self, places: &Axles<AxlePlace>) -> Corners<Vector3<f64>> {
+        let axis = Axles::from_fn(|axle| {
+            let steer_rad = match axle {
+                Axle::Front => self.steering.wheel_rad(),
+                Axle::Rear => 0.0,
+            };
+            let yaw = self.masses.axles[axle].guide.yaw_rad(self.axles[axle]);
+            let (sin, cos) = libm::sincos(yaw + steer_rad);
+            places[axle].left * cos - Vector3::new(sin, 0.0, 0.0)
+        });
+        Corners::from_fn(|corner| axis[corner.axle()])
     }
 
     fn accelerate(&mut self, velocities: &Velocities, controls: Controls) -> Accelerations {
         let places = self.places();
         let axes = self.wheel_axes(&places);
         let mut loads = Loads::default();
-        let [stiffness, damping] = self.masses.torsion;
+        let (stiffness, damping) = (
+            self.masses.torsional_stiffness_n_m_rad,
+            self.masses.torsional_damping_n_m_s_rad,
+        );
         loads.twist = -(stiffness * self.twist + damping * velocities.twist);
-        for (index, place) in places.iter().enumerate() {
-            let side = if index == 0 { 0.5 } else { -0.5 };
-            let left = 2 * index;
-            let force = [self.elements[left].force_n(), self.elements[left + 1].force_n()];
+        for (index, place) in places.iter() {
+            let half = half_twist(index);
+            let force = self.elements.of_axle(index).map(SuspensionElement::force_n);
             let axle = &self.masses.axles[index];
-            let (forces, torque) = axle.suspension(place, self.axles[index], side * self.twist, force);
+            let (forces, torque) = axle.suspension(place, self.axles[index], half * self.twist, force);
             loads.axles[index] = forces;
-            loads.twist += side * torque;
+            loads.twist += half * torque;
 
-            let share = if index == 0 {
-                self.handling.drive.front_share
-            } else {
-                1.0 - self.handling.drive.front_share
+            let drive = &self.handling.drive;
+            let share = |front: f64| match index {
+                Axle::Front => 0.5 * front * self.tyres[index].free_radius_m,
+                Axle::Rear => 0.5 * (1.0 - front) * self.tyres[index].free_radius_m,
             };
-            let drive_n_m = 0.5 * share * controls.drive_force_n * self.tyres[index].free_radius_m;
-            let wheels = [left, left + 1].map(|corner| {
-                let loads = self.roll_wheel(corner, place, axes[corner], velocities, drive_n_m);
-                self.wheels[corner] = loads.state;
-                loads
+            let torque = WheelTorque {
+                drive_n_m: share(drive.front_share) * controls.drive_force_n,
+                brake_n_m: share(drive.brake_front_share) * controls.brake_force_n,
+            };
+            let [left, right] = Side::ALL.map(|side| {
+                let corner = index.corner(side);
+                let wheel = self.roll_wheel(corner, place, axes[corner], velocities, torque);
+                self.wheels[corner] = wheel.state;
+                loads.spin[corner] = wheel.spin_torque_n_m;
+                wheel
             });
-            loads.add_pair(index, &wheels[0].wrench, &wheels[1].wrench);
-            loads.spin[left] = wheels[0].spin_torque_n_m;
-            loads.spin[left + 1] = wheels[1].spin_torque_n_m;
+            loads.add_pair(index, &left.wrench, &right.wrench);
         }
         self.masses.accelerations(&places, velocities, &loads, &axes)
     }
 
     fn roll_wheel(
         &mut self,
-        corner: usize,
+        corner: Corner,
         place: &AxlePlace,
         axis: Vector3<f64>,
         velocities: &Velocities,
-        drive_n_m: f64,
+        torque: WheelTorque,
     ) -> WheelLoads {
-        let index = corner / 2;
-        let side = if corner.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let centre = place.mass_centre + place.left * (side * self.masses.axles[index].half_track_m);
+        let index = corner.axle();
+        let axle = &self.masses.axles[index];
+        let centre = place.mass_centre + place.left * (sign(corner.side()) * axle.half_track_m);
         let rate = velocities.axles[index];
-        let arm = centre - place.centre;
-        let relative = Vector3::new(0.0, -arm.z * rate.roll, arm.y * rate.roll + rate.heave);
         let motion = WheelMotion {
             centre,
             axis,
-            velocity: velocities.linear + velocities.angular.cross(&centre) + relative,
-            turn: velocities.angular + Vector3::new(rate.roll, 0.0, 0.0),
+            velocity: velocities.linear + velocities.angular.cross(&centre) + axle.guide.velocity(place, &centre, rate),
+            turn: velocities.angular + axle.guide.turn(place, rate),
             spin: velocities.spin[corner],
             height_m: 0.0,
         };
@@ -324,122 +342,10 @@ impl<E: SuspensionElement> HandlingModel<E> {
             &motion,
             &plane,
             &self.rotation,
-            place,
-            drive_n_m,
+            (place, &axle.guide),
+            torque,
             self.step_s,
         )
-    }
-
-    /// Time since the start, s: an exact multiple of the step.
-    pub fn time_s(&self) -> f64 {
-        self.steps as f64 * self.step_s
-    }
-
-    /// The fixed step, s.
-    pub fn step_s(&self) -> f64 {
-        self.step_s
-    }
-
-    /// Steer angle of the front wheels, rad, left positive.
-    pub fn steer_rad(&self) -> f64 {
-        self.steer_rad
-    }
-
-    /// Motion of the body.
-    pub fn motion(&self) -> HandlingMotion {
-        let (yaw_rad, pitch_rad, roll_rad) = yaw_pitch_roll(&self.rotation);
-        let (sin, cos) = libm::sincos(yaw_rad);
-        let mut acceleration = self.rotation * self.acceleration.linear;
-        acceleration.z -= GRAVITY_M_S2;
-        let v = self.velocity;
-        let foot = self.position - self.rotation * Vector3::new(0.0, 0.0, self.body_height_m);
-        let (along, across) = (v.x * cos + v.y * sin, v.y * cos - v.x * sin);
-        HandlingMotion {
-            position_m: [self.position.x, self.position.y, self.position.z - self.rest_height_m],
-            foot_m: [foot.x, foot.y],
-            velocity_m_s: [v.x, v.y, v.z],
-            yaw_rad,
-            pitch_rad,
-            roll_rad,
-            rates_rad_s: [self.angular.x, self.angular.y, self.angular.z],
-            speed_m_s: along,
-            lateral_acceleration_m_s2: acceleration.y * cos - acceleration.x * sin,
-            vertical_acceleration_m_s2: acceleration.z,
-            side_slip_rad: if along.abs() > 0.1 {
-                libm::atan(across / along.abs())
-            } else {
-                0.0
-            },
-        }
-    }
-
-    /// The four wheels.
-    pub fn wheels(&self) -> [WheelState; 4] {
-        self.wheels
-    }
-
-    /// Heave along and roll about the body's axes of front and rear axle, from rest.
-    pub fn axles(&self) -> [AxleCoordinates; 2] {
-        self.axles
-    }
-
-    /// Heave of an axle's middle in the world from rest, m, and its roll in the world, rad: the ride model's coordinates.
-    pub fn axle_heave_roll(&self, index: usize) -> (f64, f64) {
-        let place = self.masses.axles[index].place(self.axles[index]);
-        let height = (self.rotation * place.mass_centre).z + self.position.z;
-        let rest = self.masses.axles[index].place(AxleCoordinates::default()).mass_centre.z + self.rest_height_m;
-        (
-            height - rest,
-            libm::asin((self.rotation * place.left).z.clamp(-1.0, 1.0)),
-        )
-    }
-
-    /// Displacement of the four struts from rest, m, compression positive.
-    pub fn strut_displacement_m(&self) -> [f64; 4] {
-        let places = self.places();
-        let [front, rear] = [0, 1].map(|i: usize| {
-            let side = if i == 0 { 0.5 } else { -0.5 };
-            self.masses.axles[i].compression(&places[i], self.axles[i], side * self.twist)
-        });
-        [front[0], front[1], rear[0], rear[1]]
-    }
-
-    /// Force of the four suspension elements, N, compression positive.
-    pub fn suspension_force_n(&self) -> [f64; 4] {
-        self.elements.each_ref().map(SuspensionElement::force_n)
-    }
-
-    /// The four suspension elements.
-    pub fn elements(&self) -> &[E; 4] {
-        &self.elements
-    }
-
-    /// Twist of the body's front half against its rear half, rad.
-    pub fn twist_rad(&self) -> f64 {
-        self.twist
-    }
-
-    /// Acceleration along the body's vertical axis less gravity at rest, m/s2, at a place of the body ahead and to the
-    /// left of its centre of mass: what a seat's accelerometer reads.
-    pub fn vertical_acceleration_at(&self, x_m: f64, y_m: f64) -> f64 {
-        let place = Vector3::new(x_m, y_m, 0.0);
-        let w = self.angular;
-        let a = self.acceleration.angular;
-        self.acceleration.linear.z + (a.x * y_m - a.y * x_m) + w.cross(&w.cross(&place)).z - GRAVITY_M_S2
-    }
-
-    /// Kinetic energy, gravity and what anti-roll bars and the body's torsion hold, J (suspension and tyres not counted).
-    pub fn energy_j(&self) -> f64 {
-        let places = self.places();
-        let mut potential = self.masses.body_kg * GRAVITY_M_S2 * self.position.z;
-        for (index, (axle, place)) in self.masses.axles.iter().zip(&places).enumerate() {
-            let height = (self.rotation * place.mass_centre).z + self.position.z;
-            let side = if index == 0 { 0.5 } else { -0.5 };
-            let bar = self.axles[index].roll - side * self.twist;
-            potential += axle.mass_kg * GRAVITY_M_S2 * height + 0.5 * axle.anti_roll_n_m_rad * bar * bar;
-        }
-        potential += 0.5 * self.masses.torsion[0] * self.twist * self.twist;
-        self.masses.kinetic_energy_j(&places, &self.velocities()) + potential
     }
 
     /// Puts the body into a motion, for tests against closed forms: height above rest, velocity in the world, angular
@@ -449,7 +355,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
         height_m: f64,
         velocity_m_s: [f64; 3],
         rates_rad_s: [f64; 3],
-        axle_rates: [AxleCoordinates; 2],
+        axle_rates: Axles<AxleCoordinates>,
     ) {
         self.position.z = self.rest_height_m + height_m;
         self.velocity = Vector3::from(velocity_m_s);
@@ -458,26 +364,25 @@ impl<E: SuspensionElement> HandlingModel<E> {
         let velocities = self.velocities();
         self.acceleration = self.accelerate(&velocities, Controls::default());
     }
+}
 
-    /// Momentum and angular momentum about the whole's centre of mass, world axes.
-    #[cfg(test)]
-    pub(super) fn momentum(&self) -> (Vector3<f64>, Vector3<f64>) {
-        let places = self.places();
-        let axes = self.wheel_axes(&places);
-        let (linear, angular) = self.masses.momentum(&places, &self.velocities(), &axes);
-        let mut first = Vector3::zeros();
-        let mut mass = self.masses.body_kg;
-        for (axle, place) in self.masses.axles.iter().zip(&places) {
-            first += place.mass_centre * axle.mass_kg;
-            mass += axle.mass_kg;
-        }
-        (
-            self.rotation * linear,
-            self.rotation * (angular - (first / mass).cross(&linear)),
-        )
+/// Share of the body's twist that an end of the body has turned by.
+fn half_twist(axle: Axle) -> f64 {
+    match axle {
+        Axle::Front => 0.5,
+        Axle::Rear => -0.5,
+    }
+}
+
+/// Direction of a side along y: left positive.
+fn sign(side: Side) -> f64 {
+    match side {
+        Side::Left => 1.0,
+        Side::Right => -1.0,
     }
 }
 
 #[cfg(test)]
-#[path = "model_tests.rs"]
+mod steady_tests;
+#[cfg(test)]
 mod tests;

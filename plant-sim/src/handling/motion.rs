@@ -3,10 +3,13 @@
 /// What driver or test asks of the vehicle in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Controls {
-    /// Steer angle of the front wheels wanted, rad, left positive; limited in angle and rate by the vehicle.
+    /// Steer angle wanted: angle of the steering wheel over the steering ratio, rad, left positive; limited in angle and rate
+    /// by the vehicle.
     pub steer_rad: f64,
-    /// Drive (positive) or brake force wanted of all wheels, N.
+    /// Drive force wanted of all wheels together, N, 0 or more.
     pub drive_force_n: f64,
+    /// Brake force wanted of all wheels together, N, 0 or more.
+    pub brake_force_n: f64,
 }
 
 /// Motion of the body in the world.
@@ -29,6 +32,10 @@ pub struct HandlingMotion {
     pub rates_rad_s: [f64; 3],
     /// Horizontal speed along the heading, m/s.
     pub speed_m_s: f64,
+    /// Horizontal velocity of the foot to the left of the heading, m/s.
+    pub foot_lateral_m_s: f64,
+    /// Horizontal acceleration along the heading, m/s2.
+    pub longitudinal_acceleration_m_s2: f64,
     /// Horizontal acceleration to the left of the heading, m/s2.
     pub lateral_acceleration_m_s2: f64,
     /// Vertical acceleration in the world, m/s2.

@@ -4,6 +4,7 @@
 //! A file of its own so that the ride model's file stays what Appendix A needs. The same rules: every value of the
 //! preset carries the label of its origin; an unknown, missing or impossible value is one line with file, line and key.
 
+use oleo_interface::Axle;
 use serde::{Deserialize, Serialize};
 
 use super::magic_formula::MagicFormula;
@@ -13,7 +14,7 @@ use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, che
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandlingParameters {
-    /// Limits of the steering.
+    /// Steering: limits, elasticity, castor.
     pub steering: Steering,
     /// Front live axle: located sideways by the Panhard rod.
     pub front_axle: HandlingAxle,
@@ -21,7 +22,7 @@ pub struct HandlingParameters {
     pub rear_axle: HandlingAxle,
     /// Torsion of the body between the axles.
     pub frame: Frame,
-    /// Drive and speed control.
+    /// Drive, brakes and speed control.
     pub drive: Drive,
     /// Preview driver.
     pub driver: DriverParameters,
@@ -33,7 +34,7 @@ pub struct HandlingParameters {
     pub tyre: MagicFormula,
 }
 
-/// Limits of the steering, at the road wheels.
+/// Steering, at the road wheels: angles and torques of the steering wheel are referred to them by the steering ratio.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Steering {
@@ -41,6 +42,12 @@ pub struct Steering {
     pub max_angle_rad: f64,
     /// Largest rate of steer, rad/s.
     pub max_rate_rad_s: f64,
+    /// Torque about the swivel pins of both wheels per angle that the linkage gives way, N m/rad.
+    pub linkage_stiffness_n_m_rad: f64,
+    /// Time in which the linkage gives way, s.
+    pub linkage_time_constant_s: f64,
+    /// Distance of the contact point behind the swivel axis, m.
+    pub castor_trail_m: f64,
 }
 
 impl Checked for Steering {
@@ -49,6 +56,13 @@ impl Checked for Steering {
         Limit::one("max_rate_rad_s", Range::FromTo(0.01, 100.0), "rad/s", |p| {
             p.max_rate_rad_s
         }),
+        Limit::one("linkage_stiffness_n_m_rad", Range::FromTo(1e3, 1e9), "N m/rad", |p| {
+            p.linkage_stiffness_n_m_rad
+        }),
+        Limit::one("linkage_time_constant_s", Range::FromTo(0.0, 1.0), "s", |p| {
+            p.linkage_time_constant_s
+        }),
+        Limit::one("castor_trail_m", Range::FromTo(-0.5, 0.5), "m", |p| p.castor_trail_m),
     ];
 }
 
@@ -62,6 +76,12 @@ pub struct HandlingAxle {
     pub housing_pitch_inertia_kg_m2: f64,
     /// Inertia of one wheel with all that turns with it, kg m2.
     pub wheel_spin_inertia_kg_m2: f64,
+    /// Distance from the axle to the side-view instant centre of its links, m: behind the front axle, ahead of the rear one.
+    pub side_view_swing_arm_m: f64,
+    /// Height above ground of the side-view instant centre at static load, m.
+    pub side_view_instant_centre_height_m: f64,
+    /// Yaw of the axle per roll of the body against it, rad/rad; positive understeers, negative oversteers.
+    pub roll_understeer: f64,
 }
 
 /// Inertia of an axle's part, kg m2.
@@ -78,6 +98,16 @@ impl Checked for HandlingAxle {
         Limit::one("wheel_spin_inertia_kg_m2", INERTIA_KG_M2, "kg m2", |p| {
             p.wheel_spin_inertia_kg_m2
         }),
+        Limit::one("side_view_swing_arm_m", Range::FromTo(0.2, 1e6), "m", |p| {
+            p.side_view_swing_arm_m
+        }),
+        Limit::one(
+            "side_view_instant_centre_height_m",
+            Range::FromTo(-2.0, 1e6),
+            "m",
+            |p| p.side_view_instant_centre_height_m,
+        ),
+        Limit::one("roll_understeer", Range::FromTo(-0.5, 0.5), "", |p| p.roll_understeer),
     ];
 }
 
@@ -102,18 +132,24 @@ impl Checked for Frame {
     ];
 }
 
-/// Drive and speed control: force wanted of all four wheels together.
+/// Drive, brakes and speed control; forces are those of all four wheels together.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drive {
-    /// Share of the torque at the front axle, 0..1.
+    /// Share of the drive torque at the front axle, 0..1.
     pub front_share: f64,
+    /// Share of the brake force at the front axle, 0..1.
+    pub brake_front_share: f64,
     /// Force per speed error, N s/m.
     pub speed_gain_n_s_m: f64,
     /// Force per integral of the speed error, N/m.
     pub speed_integral_n_m: f64,
-    /// Limit of the force, drive or brake, N.
-    pub max_force_n: f64,
+    /// Limit of the drive force, N.
+    pub max_drive_force_n: f64,
+    /// Limit of the drive power at the wheels, W.
+    pub max_drive_power_w: f64,
+    /// Limit of the brake force, N.
+    pub max_brake_force_n: f64,
 }
 
 impl Checked for Drive {
@@ -125,11 +161,22 @@ impl Checked for Drive {
         Limit::one("speed_integral_n_m", Range::FromTo(0.0, 1e6), "N/m", |p| {
             p.speed_integral_n_m
         }),
-        Limit::one("max_force_n", Range::FromTo(0.0, 1e6), "N", |p| p.max_force_n),
+        Limit::one("brake_front_share", Range::FromTo(0.0, 1.0), "", |p| {
+            p.brake_front_share
+        }),
+        Limit::one("max_drive_force_n", Range::FromTo(0.0, 1e6), "N", |p| {
+            p.max_drive_force_n
+        }),
+        Limit::one("max_drive_power_w", Range::FromTo(0.0, 1e7), "W", |p| {
+            p.max_drive_power_w
+        }),
+        Limit::one("max_brake_force_n", Range::FromTo(0.0, 1e6), "N", |p| {
+            p.max_brake_force_n
+        }),
     ];
 }
 
-/// The report's preview driver.
+/// The report's preview driver, and the one who steers by optimal preview control.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct DriverParameters {
@@ -141,6 +188,8 @@ pub struct DriverParameters {
     pub integral_per_s: f64,
     /// First-order lag of arms and steering box, s.
     pub lag_s: f64,
+    /// How far the driver looks ahead who steers by optimal preview control, s.
+    pub optimal_preview_time_s: f64,
 }
 
 impl Checked for DriverParameters {
@@ -149,6 +198,9 @@ impl Checked for DriverParameters {
         Limit::one("gain", Range::FromTo(0.0, 100.0), "", |p| p.gain),
         Limit::one("integral_per_s", Range::FromTo(0.0, 100.0), "1/s", |p| p.integral_per_s),
         Limit::one("lag_s", Range::FromTo(0.0, 5.0), "s", |p| p.lag_s),
+        Limit::one("optimal_preview_time_s", Range::FromTo(0.05, 10.0), "s", |p| {
+            p.optimal_preview_time_s
+        }),
     ];
 }
 
@@ -188,11 +240,28 @@ impl Checked for Outline {
     ];
 }
 
+impl Drive {
+    /// Largest drive force at a speed, N: the limit of the force, and of the power.
+    pub fn most_n(&self, speed_m_s: f64) -> f64 {
+        // Below walking pace the force is limited, not the power.
+        self.max_drive_force_n.min(self.max_drive_power_w / speed_m_s.max(1.0))
+    }
+}
+
 const PRESET: &str = include_str!("../../presets/defender110-handling.toml");
+
 impl HandlingParameters {
     /// The shipped Defender 110.
     pub fn defender110() -> Self {
         Self::from_toml(PRESET, "presets/defender110-handling.toml").expect("the shipped preset is parsed in the tests")
+    }
+
+    /// Parameters of an axle.
+    pub fn axle(&self, axle: Axle) -> &HandlingAxle {
+        match axle {
+            Axle::Front => &self.front_axle,
+            Axle::Rear => &self.rear_axle,
+        }
     }
 
     /// Read and check a file. `file` is the name that appears in errors.

@@ -1,8 +1,8 @@
-//! Exposure: weighted RMS, vibration dose value and motion sickness dose value of one seat, sample by sample.
+//! Exposure to vertical vibration: weighted RMS, vibration dose value and motion sickness dose value, sample by sample.
 
 use super::weighting::{WB, WF, WK, WeightingFilter};
 
-/// What a seat has felt so far.
+/// Vertical vibration that a seat has been exposed to so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RideMeasures {
     /// Time measured, s.
@@ -56,10 +56,20 @@ impl RideMeter {
         }
     }
 
+    /// One sample that does not count yet, m/s2: only the filters see it, so that their own start is over when counting
+    /// begins.
+    pub fn settle(&mut self, acceleration_m_s2: f64) {
+        self.filter(acceleration_m_s2);
+    }
+
+    fn filter(&mut self, a: f64) -> (f64, f64, f64) {
+        (self.wb.filter(a), self.wk.filter(a), self.wf.filter(a))
+    }
+
     /// One sample of the vertical acceleration without gravity, m/s2.
     pub fn add(&mut self, acceleration_m_s2: f64) {
         let a = acceleration_m_s2;
-        let (b, k, f) = (self.wb.filter(a), self.wk.filter(a), self.wf.filter(a));
+        let (b, k, f) = self.filter(a);
         self.samples += 1;
         self.square += a * a;
         self.wb_square += b * b;

@@ -10,7 +10,7 @@
 use super::biquad::{Analogue, Biquad};
 use core::f64::consts::PI;
 
-/// The constants of a weighting; frequencies in Hz.
+/// The constants of a weighting; frequencies in Hz, infinite where a section is absent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weighting {
     /// Name in the standard.
@@ -41,6 +41,18 @@ pub const WB: Weighting = Weighting {
     zero5: (2.5, 0.90),
     pole6: (4.0, 0.95),
     gain: 0.4,
+};
+
+/// BS 6841 Wd: fore-aft and lateral vibration of a seated person, comfort, 0.5 to 80 Hz. ISO 2631-1 has the same Wd.
+pub const WD: Weighting = Weighting {
+    name: "Wd",
+    band_hz: (0.4, 100.0),
+    band_q: 0.71,
+    f3_hz: 2.0,
+    pole4: (2.0, 0.63),
+    zero5: (f64::INFINITY, 1.0),
+    pole6: (f64::INFINITY, 1.0),
+    gain: 1.0,
 };
 
 /// BS 6841 Wf: vertical motion, motion sickness, 0.1 to 0.5 Hz.
@@ -81,35 +93,31 @@ impl Weighting {
                 pole_q: self.band_q,
             }
             .power(frequency_hz);
-        let rest: f64 = self
-            .sections()
-            .iter()
-            .map(|section| section.power(frequency_hz))
-            .product();
-        (high_pass * rest).sqrt()
+        let rest = self.sections().into_iter().flatten();
+        (high_pass * rest.map(|section| section.power(frequency_hz)).product::<f64>()).sqrt()
     }
 
-    /// Low pass, transition, step: what follows the high pass.
-    fn sections(&self) -> [Analogue; 3] {
+    /// Low pass, transition and, where there is one, step: what follows the high pass.
+    fn sections(&self) -> [Option<Analogue>; 3] {
         let w3 = 2.0 * PI * self.f3_hz;
         let (w5, q5) = (2.0 * PI * self.zero5.0, self.zero5.1);
-        [
-            Analogue {
-                numerator: [1.0, 0.0, 0.0],
-                pole_hz: self.band_hz.1,
-                pole_q: self.band_q,
-            },
-            Analogue {
-                numerator: [self.gain, self.gain / w3, 0.0],
-                pole_hz: self.pole4.0,
-                pole_q: self.pole4.1,
-            },
-            Analogue {
-                numerator: [1.0, 1.0 / (q5 * w5), 1.0 / (w5 * w5)],
-                pole_hz: self.pole6.0,
-                pole_q: self.pole6.1,
-            },
-        ]
+        let low_pass = Analogue {
+            numerator: [1.0, 0.0, 0.0],
+            pole_hz: self.band_hz.1,
+            pole_q: self.band_q,
+        };
+        let transition = Analogue {
+            numerator: [self.gain, self.gain / w3, 0.0],
+            pole_hz: self.pole4.0,
+            pole_q: self.pole4.1,
+        };
+        let step = Analogue {
+            numerator: [1.0, 1.0 / (q5 * w5), 1.0 / (w5 * w5)],
+            pole_hz: self.pole6.0,
+            pole_q: self.pole6.1,
+        };
+        let has_step = self.zero5.0.is_finite() && self.pole6.0.is_finite();
+        [Some(low_pass), Some(transition), has_step.then_some(step)]
     }
 }
 
@@ -117,7 +125,7 @@ impl Weighting {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WeightingFilter {
     high_pass: Biquad,
-    rest: [Biquad; 3],
+    rest: [Option<Biquad>; 3],
 }
 
 impl WeightingFilter {
@@ -128,14 +136,14 @@ impl WeightingFilter {
             high_pass: Biquad::high_pass(weighting.band_hz.0, weighting.band_q, sampling_hz),
             rest: weighting
                 .sections()
-                .map(|section| Biquad::matched(&section, sampling_hz)),
+                .map(|section| section.map(|section| Biquad::matched(&section, sampling_hz))),
         }
     }
 
     /// Weighted value of one sample.
     pub fn filter(&mut self, acceleration_m_s2: f64) -> f64 {
         let mut value = self.high_pass.filter(acceleration_m_s2);
-        for section in &mut self.rest {
+        for section in self.rest.iter_mut().flatten() {
             value = section.filter(value);
         }
         value
@@ -197,6 +205,23 @@ mod tests {
         }
     }
 
+    /// ISO 2631-1 table 3, Wd factors x 1000 at third octaves (recalled).
+    #[test]
+    fn wd_has_the_standard_s_factors() {
+        for (n, factor) in [
+            (-3, 853.0),
+            (0, 1011.0),
+            (3, 890.0),
+            (6, 512.0),
+            (9, 253.0),
+            (12, 125.0),
+            (15, 63.2),
+        ] {
+            let computed = 1000.0 * WD.magnitude(third_octave(n));
+            assert!((computed / factor - 1.0).abs() < 0.02, "{n} {computed} {factor}");
+        }
+    }
+
     #[test]
     fn wf_peaks_between_an_eighth_and_a_quarter_of_a_hertz() {
         let peak = (1..100)
@@ -212,11 +237,12 @@ mod tests {
     #[test]
     fn digital_filters_keep_the_magnitude_within_the_standard_s_tolerance() {
         for (sampling_hz, tolerance) in [(200.0, 0.09), (250.0, 0.06), (500.0, 0.03), (1000.0, 0.01)] {
-            for (weighting, from, to) in [(WB, -4, 19), (WK, -4, 19), (WF, -12, 0)] {
+            for (weighting, from, to) in [(WB, -4, 19), (WD, -4, 19), (WK, -4, 19), (WF, -12, 0)] {
                 let filter = WeightingFilter::new(&weighting, sampling_hz);
                 for n in from..=to {
                     let f = third_octave(n);
-                    let power: f64 = filter.rest.iter().map(|s| s.power(f, sampling_hz)).product();
+                    let rest = filter.rest.iter().flatten();
+                    let power: f64 = rest.map(|s| s.power(f, sampling_hz)).product();
                     let digital = (power * filter.high_pass.power(f, sampling_hz)).sqrt();
                     let ratio = digital / weighting.magnitude(f);
                     assert!(

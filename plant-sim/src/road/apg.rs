@@ -1,6 +1,8 @@
 //! The report's APG obstacle (section 2.2): a platform 150 mm high and 300 mm wide on top with straight ramps of 11.3
 //! degrees up and down, under the wheels of one side or of both.
 
+use oleo_interface::Side;
+
 use super::Road;
 
 /// Height of the platform, m (report).
@@ -10,24 +12,13 @@ const TOP_M: f64 = 0.300;
 /// tan(11.3 degrees), the slope of the ramps (report): they are 0.7507 m long.
 const SLOPE: f64 = 0.1998197176992368;
 
-/// Whose wheels pass over it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// Left wheels, as in the report.
-    Left,
-    /// Right wheels.
-    Right,
-    /// Both.
-    Both,
-}
-
 /// The obstacle on level ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ApgObstacle {
     /// Where the ramp up begins, m.
     pub start_m: f64,
-    /// Under which wheels.
-    pub side: Side,
+    /// Whose wheels pass over it: those of one side (the report's left), or of both where `None`.
+    pub side: Option<Side>,
 }
 
 impl ApgObstacle {
@@ -40,9 +31,9 @@ impl ApgObstacle {
 impl Road for ApgObstacle {
     fn height_m(&self, station_m: f64, lateral_m: f64) -> f64 {
         let here = match self.side {
-            Side::Left => lateral_m > 0.0,
-            Side::Right => lateral_m < 0.0,
-            Side::Both => true,
+            Some(Side::Left) => lateral_m > 0.0,
+            Some(Side::Right) => lateral_m < 0.0,
+            None => true,
         };
         if !here {
             return 0.0;
@@ -62,7 +53,7 @@ mod tests {
         assert!((SLOPE - libm::tan(11.3 * core::f64::consts::PI / 180.0)).abs() < 1e-15);
         let road = ApgObstacle {
             start_m: 10.0,
-            side: Side::Left,
+            side: Some(Side::Left),
         };
         let height = |s: f64| road.height_m(s, 0.743);
         assert_eq!(height(9.99), 0.0);
@@ -73,7 +64,7 @@ mod tests {
         assert_eq!(road.height_m(10.9, -0.743), 0.0);
         let both = ApgObstacle {
             start_m: 10.0,
-            side: Side::Both,
+            side: None,
         };
         assert_eq!(both.height_m(10.9, -0.743), both.height_m(10.9, 0.743));
     }

@@ -11,15 +11,16 @@
 //! What it cannot have: waves longer than the 10 m measured; and the shape of distribution (the real paving's is flatter
 //! than Gaussian, kurtosis 1.7, because one wave dominates; random phases give 3).
 
-use super::{EnteredSmoothly, RoadError, TrackSpectrum, TwoTracks, spectrum::Band, synthesise};
+use super::{EnteredSmoothly, HALF_TRACK_M, Lanes, RoadError, TrackSpectrum, TwoTracks, spectrum::Band, synthesise};
 use rustfft::num_complex::Complex;
 
 /// A Belgian-block road of at least `length_m`, entered smoothly from level ground.
 ///
 /// # Errors
 /// A length that is not between 1 m and 20 km.
-pub fn belgian_block(length_m: f64, seed: u64) -> Result<EnteredSmoothly<TwoTracks>, RoadError> {
-    Ok(EnteredSmoothly::new(synthesise(length_m, seed, target)?))
+pub fn belgian_block(length_m: f64, seed: u64) -> Result<EnteredSmoothly<Lanes<TwoTracks>>, RoadError> {
+    let tracks = Lanes::new(synthesise(length_m, seed, target)?, HALF_TRACK_M);
+    Ok(EnteredSmoothly::new(tracks))
 }
 
 /// The table as bands: the data of the figure "built-in against measured".

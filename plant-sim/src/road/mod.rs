@@ -5,32 +5,38 @@
 //! spectrum, an obstacle) is decided here and nowhere else. [`from_name_or_path`] is the door for a command line.
 //!
 //! ```text
-//!  file.crg -> crg -> grid ----+                      names: belgian, apg-left, apg-right, apg-both,
-//!  file.csv -> profile_file ---+-> entry (smooth) ->         iso-a .. iso-f, flat, or a path
+//!  file.crg -> crg -> grid ----+                               names: belgian, apg-left, apg-right, apg-both,
+//!  file.csv -> profile_file ---+-> lanes -> entry (smooth) ->         iso-a .. iso-f, flat, or a path
 //!  spectrum table -> random ---+
-//!  obstacle, flat -----------------------------------> Road
+//!  obstacle, flat --------------------------------------------> Road --> side slope, bend --> Road
 //! ```
 
 mod apg;
 pub mod belgian;
+mod bend;
 pub mod crg;
 mod entry;
 mod error;
 mod grid;
 pub mod iso8608;
+mod lanes;
 mod named;
 mod profile_file;
 mod random;
+mod side_slope;
 pub mod spectrum;
 mod tracks;
 
-pub use apg::{ApgObstacle, Side};
+pub use apg::ApgObstacle;
+pub use bend::Bend;
 pub use entry::{ENTRY_M, EnteredSmoothly};
 pub use error::RoadError;
 pub use grid::GridRoad;
+pub use lanes::{LANE_M, Lanes};
 pub use named::{NAMES, from_name_or_path};
 pub use profile_file::profile_from_csv;
 pub use random::{TrackSpectrum, synthesise};
+pub use side_slope::SideSlope;
 pub use tracks::TwoTracks;
 
 /// A road surface.

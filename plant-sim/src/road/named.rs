@@ -3,8 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use oleo_interface::Side;
+
 use super::iso8608::{Class, iso8608};
-use super::{ApgObstacle, EnteredSmoothly, Flat, Road, RoadError, Side, belgian, crg, profile_from_csv};
+use super::{
+    ApgObstacle, EnteredSmoothly, Flat, HALF_TRACK_M, LANE_M, Lanes, Road, RoadError, belgian, crg, profile_from_csv,
+};
 
 /// The built-in roads.
 pub const NAMES: [&str; 11] = [
@@ -41,9 +45,9 @@ pub fn from_name_or_path(spec: &str, length_m: f64, seed: u64) -> Result<Arc<dyn
     Ok(match spec {
         "flat" => Arc::new(Flat),
         "belgian" => Arc::new(belgian::belgian_block(length_m, seed)?),
-        "apg-left" => obstacle(Side::Left),
-        "apg-right" => obstacle(Side::Right),
-        "apg-both" => obstacle(Side::Both),
+        "apg-left" => obstacle(Some(Side::Left)),
+        "apg-right" => obstacle(Some(Side::Right)),
+        "apg-both" => obstacle(None),
         "iso-a" => Arc::new(iso8608(Class::A, length_m, seed)?),
         "iso-b" => Arc::new(iso8608(Class::B, length_m, seed)?),
         "iso-c" => Arc::new(iso8608(Class::C, length_m, seed)?),
@@ -71,9 +75,20 @@ fn from_path(path: &str) -> Result<Arc<dyn Road>, RoadError> {
         reason: error.to_string(),
     })?;
     if extension == "crg" {
-        Ok(Arc::new(EnteredSmoothly::levelled(crg::read(&bytes, path)?)))
+        let surface = crg::read(&bytes, path)?;
+        let edge = |place: Option<&f64>| place.map_or(0.0, |place| place.abs());
+        let half_width_m = edge(surface.lateral_m().first()).min(edge(surface.lateral_m().last()));
+        // A surface wider than a lane has room for a lane change of its own.
+        Ok(if half_width_m > 0.5 * LANE_M {
+            Arc::new(EnteredSmoothly::levelled(surface))
+        } else {
+            Arc::new(EnteredSmoothly::levelled(Lanes::new(surface, half_width_m)))
+        })
     } else {
-        Ok(Arc::new(EnteredSmoothly::levelled(profile_from_csv(&bytes, path)?)))
+        Ok(Arc::new(EnteredSmoothly::levelled(Lanes::new(
+            profile_from_csv(&bytes, path)?,
+            HALF_TRACK_M,
+        ))))
     }
 }
 

@@ -8,10 +8,8 @@
 //! Heights are rounded to a micrometre: the FFT library takes its twiddle factors from the platform's sine, whose last
 //! bit differs between platforms, and a road must not.
 
-use rand_chacha::{
-    ChaCha8Rng,
-    rand_core::{Rng, SeedableRng},
-};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
 use rustfft::{FftPlanner, num_complex::Complex};
 
 use super::{RoadError, TwoTracks};
@@ -69,8 +67,7 @@ const MINIMUM_SAMPLES: usize = 8192;
 
 /// A point of the unit circle.
 fn phase(random: &mut ChaCha8Rng) -> Complex<f64> {
-    let unit = (random.next_u64() >> 11) as f64 * (1.0 / (1u64 << 53) as f64);
-    let (sin, cos) = libm::sincos(2.0 * core::f64::consts::PI * unit);
+    let (sin, cos) = libm::sincos(2.0 * core::f64::consts::PI * random.random::<f64>());
     Complex::new(cos, sin)
 }
 

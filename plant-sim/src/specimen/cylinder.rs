@@ -11,8 +11,8 @@ use crate::model_file::instruments::{check_noise, check_tolerance};
 use crate::model_file::limits::each_checked;
 use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
 use crate::strut::{
-    Effects, PRESLIDING_STIFFNESS_N_M, SensorEffect, SideLoadFriction, TermId, advance_friction, check_columns,
-    record_column,
+    Effects, Equation, PRESLIDING_STIFFNESS_N_M, SensorEffect, SideLoadFriction, TermId, advance_friction,
+    check_columns, record_column,
 };
 
 /// A pressure acting on an area.
@@ -103,6 +103,49 @@ pub struct CylinderEffects {
 /// A part of the force beside pressure and friction: a mass, a viscous friction or a stiffness, of either sign so that a
 /// fit may cross zero.
 const FORCE_PART: Range = Range::FromTo(-1e12, 1e12);
+
+impl CylinderEffects {
+    /// Friction of the seal: Dahl's equation with the level `g`.
+    pub const SEAL_FRICTION: Equation = Equation {
+        text: "dF/dx = k (1 - sgn(v) F / g), g = F_c",
+        source: "Dahl 1968; Coulomb",
+    };
+
+    /// Friction that grows with pressure: what it adds to the level.
+    pub const SIDE_LOAD_FRICTION: Equation = Equation {
+        text: "g = mu sum |A_i p_i| / (1 + s x)",
+        source: "Theron & Els, final report 2002, section 3.5.1",
+    };
+
+    /// [`CylinderEffects::moving_mass_kg`].
+    pub const MOVING_MASS: Equation = Equation {
+        text: "F = m d2x/dt2",
+        source: "Newton's second law; no name in the vocabulary",
+    };
+
+    /// [`CylinderEffects::viscous_friction_n_s_m`].
+    pub const VISCOUS_FRICTION: Equation = Equation {
+        text: "F = c dx/dt",
+        source: "Newton's law of viscosity; no name in the vocabulary",
+    };
+
+    /// [`CylinderEffects::parallel_stiffness_n_m`].
+    pub const PARALLEL_STIFFNESS: Equation = Equation {
+        text: "F = k x",
+        source: "Hooke's law; no name in the vocabulary",
+    };
+
+    /// The faulty columns of one kind of instrument fault; `None` for an id that is no fault of its instruments.
+    pub fn sensor_fault_mut(&mut self, id: TermId) -> Option<&mut Option<SensorEffect>> {
+        match id {
+            TermId::SensorLag => Some(&mut self.sensor_lag),
+            TermId::SensorGain => Some(&mut self.sensor_gain),
+            TermId::SensorDrift => Some(&mut self.sensor_drift),
+            TermId::SensorSkew => Some(&mut self.sensor_skew),
+            _ => None,
+        }
+    }
+}
 
 impl Checked for CylinderEffects {
     const LIMITS: &'static [Limit<Self>] = &[

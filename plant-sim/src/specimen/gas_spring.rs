@@ -11,7 +11,7 @@ use super::name::SpecimenName;
 use crate::model_file::instruments::{check_noise, check_tolerance};
 use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
 use crate::strut::{
-    Effects, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K, SensorEffect, TermId, check_columns, record_column,
+    Effects, Equation, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K, SensorEffect, TermId, check_columns, record_column,
 };
 
 /// The chamber.
@@ -133,6 +133,37 @@ pub struct GasSpringEffects {
     /// Time by which a column is late, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensor_skew: Option<SensorEffect>,
+}
+
+impl GasSpringEffects {
+    /// Heat exchanged with the wall, of an ideal gas with constant heat capacity.
+    pub const GAS_HEAT_TRANSFER: Equation = Equation {
+        text: "m c_v dT/dt = -p dV/dt - m c_v (T - T_ambient) / tau",
+        source: "Els & Grobbelaar, SAE 930265, 1993; Otis & Pourmovahed, J. Dyn. Sys. Meas. Control 107, 1985",
+    };
+
+    /// [`GasSpringEffects::polytropic_exponent`].
+    pub const POLYTROPIC_EXPONENT: Equation = Equation {
+        text: "p V^n = constant",
+        source: "polytropic process; no name in the vocabulary",
+    };
+
+    /// [`GasSpringEffects::gas_leak_rate_1_s`].
+    pub const GAS_LOST: Equation = Equation {
+        text: "dm/dt = -k m",
+        source: "a leak in proportion to what is left, assumed; no name in the vocabulary",
+    };
+
+    /// The faulty columns of one kind of instrument fault; `None` for an id that is no fault of its instruments.
+    pub fn sensor_fault_mut(&mut self, id: TermId) -> Option<&mut Option<SensorEffect>> {
+        match id {
+            TermId::SensorLag => Some(&mut self.sensor_lag),
+            TermId::SensorGain => Some(&mut self.sensor_gain),
+            TermId::SensorDrift => Some(&mut self.sensor_drift),
+            TermId::SensorSkew => Some(&mut self.sensor_skew),
+            _ => None,
+        }
+    }
 }
 
 impl Checked for GasSpringEffects {

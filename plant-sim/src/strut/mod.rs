@@ -67,9 +67,10 @@ pub use pressure::ATMOSPHERE_PA;
 pub use replay::{Inputs, Prediction, replay};
 pub use smoothing::smooth_displacement;
 pub use terms::{
-    AccumulatorPistonFriction, BumpStop, COLUMNS, DamperLeakage, DampingFade, Effects, EntrainedAir, GasChargeError,
-    GasEquation, GasHeatTransfer, LaminarLine, LawArgument, LawForm, LawPlace, LineInertance, LineResistance, Mount,
-    MountCompliance, OilCompressibility, OilCount, PackFade, PistonSeal, RealGas, SealFriction, SensorEffect,
-    SideLoadFriction, TermId, TransitionShape, UnlistedLaw, Valve3Leakage, ValveDelay, ValveTransition, check_columns,
+    AccumulatorPistonFriction, BumpStop, COLUMNS, DamperLeakage, DampingFade, Effects, EntrainedAir, Equation,
+    GasChargeError, GasEquation, GasHeatTransfer, LaminarLine, LawArgument, LawForm, LawPlace, LineInertance,
+    LineResistance, Mount, MountCompliance, OilCompressibility, OilCount, PackFade, PistonSeal, RealGas, SealFriction,
+    SensorEffect, SideLoadFriction, TermId, TransitionShape, UnlistedLaw, Valve3Leakage, ValveDelay, ValveTransition,
+    check_columns,
 };
 pub use valve::ValveMotion;

@@ -5,36 +5,47 @@
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
+use oleo_interface::{Axles, Corner, Corners};
 
 use super::element::GasElement;
-use crate::handling::{Ending, HandlingModel, HandlingParameters, Manoeuvre, NotFinite, Run, Track};
-use crate::measures::RideMeter;
+use crate::course::{Course, Drive, DriverStyle, Ending, LaneChange, Manoeuvre, NotFinite, Run};
+use crate::handling::HandlingParameters;
+use crate::measures::SeatMeter;
 use crate::road::{Flat, Road, RoadError};
 use crate::strut::StrutModel;
-use crate::vehicle::{RideError, VehicleParameters};
+use crate::vehicle::{RideError, Seats, VehicleParameters};
+
+/// How far the vehicle drives straight ahead before the first cones, m.
+const ENTRY_M: f64 = 25.0;
 
 /// Static gas volumes and damper factors of front and rear.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Case {
-    /// Static gas volume, front and rear, m3.
-    pub gas_volume_m3: [f64; 2],
-    /// Factor on the damper force of the vehicle as sold, front and rear.
-    pub damper_factor: [f64; 2],
+    /// Static gas volume, m3.
+    pub gas_volume_m3: Axles<f64>,
+    /// Factor on the damper force of the vehicle as sold.
+    pub damper_factor: Axles<f64>,
 }
 
 impl Case {
     /// The same front and rear.
     pub fn alike(gas_volume_m3: f64, damper_factor: f64) -> Self {
         Self {
-            gas_volume_m3: [gas_volume_m3; 2],
-            damper_factor: [damper_factor; 2],
+            gas_volume_m3: Axles::new(gas_volume_m3, gas_volume_m3),
+            damper_factor: Axles::new(damper_factor, damper_factor),
         }
+    }
+
+    /// The four numbers: gas volumes front and rear, damper factors front and rear.
+    pub(super) fn numbers(&self) -> [f64; 4] {
+        let ([volume_f, volume_r], [factor_f, factor_r]) =
+            (self.gas_volume_m3.into_array(), self.damper_factor.into_array());
+        [volume_f, volume_r, factor_f, factor_r]
     }
 }
 
 /// How the study drives.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Conditions {
     /// Speed over the rough road, m/s.
     pub ride_speed_m_s: f64,
@@ -46,6 +57,8 @@ pub struct Conditions {
     pub seed: u64,
     /// Speed in the lane change, m/s.
     pub lane_change_speed_m_s: f64,
+    /// Who drives the lane change.
+    pub driver: DriverStyle,
     /// Polytropic exponent of the gas.
     pub polytropic_exponent: f64,
 }
@@ -58,13 +71,14 @@ impl Default for Conditions {
             ride_settling_s: 1.0,
             seed: 1,
             lane_change_speed_m_s: 60.0 / 3.6,
+            driver: DriverStyle::Eased,
             polytropic_exponent: 1.4,
         }
     }
 }
 
 /// What the rough road says.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ride {
     /// BS 6841 weighted RMS at the driver, m/s2.
     pub driver_rms_m_s2: f64,
@@ -91,7 +105,7 @@ impl Ride {
 }
 
 /// What the lane change says.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Handling {
     /// Largest body roll, rad.
     pub max_roll_rad: f64,
@@ -150,20 +164,14 @@ impl Bench {
         })
     }
 
-    fn vehicle(
-        &self,
-        case: &Case,
-        road: Arc<dyn Road>,
-        speed_m_s: f64,
-    ) -> Result<HandlingModel<GasElement>, RideError> {
+    fn begin(&self, case: &Case, manoeuvre: Manoeuvre, road: Arc<dyn Road>) -> Result<Drive<GasElement>, RideError> {
         let p = &self.parameters;
         let load = p.static_strut_load_n();
-        let area_m2 = StrutModel::defender110(load[0]).piston_area_m2();
-        let elements = core::array::from_fn(|corner| {
-            let axle = corner / 2;
-            let baseline = if axle == 0 { &p.front_baseline } else { &p.rear_baseline };
+        let area_m2 = StrutModel::defender110(load[Corner::FrontLeft]).piston_area_m2();
+        let elements = Corners::from_fn(|corner| {
+            let axle = corner.axle();
             GasElement::new(
-                baseline,
+                p.baseline(axle),
                 load[corner],
                 area_m2,
                 case.gas_volume_m3[axle],
@@ -171,7 +179,12 @@ impl Bench {
                 case.damper_factor[axle],
             )
         });
-        HandlingModel::with_elements(p, &self.handling, elements, road, speed_m_s)
+        let course = Course {
+            manoeuvre,
+            driver: self.conditions.driver,
+            road,
+        };
+        Drive::begin(&course, p, &self.handling, elements)
     }
 
     /// Drives over the rough road.
@@ -179,32 +192,23 @@ impl Bench {
     /// # Errors
     /// [`StudyError`].
     pub fn ride(&self, case: &Case) -> Result<Ride, StudyError> {
-        let speed_m_s = self.conditions.ride_speed_m_s;
-        let mut model = self.vehicle(case, Arc::clone(&self.rough), speed_m_s)?;
-        let duration_s = self.conditions.ride_duration_s;
-        let manoeuvre = Manoeuvre::Follow {
-            track: Track::straight(),
-            speed_m_s,
-            duration_s,
+        let manoeuvre = Manoeuvre::Straight {
+            speed_m_s: self.conditions.ride_speed_m_s,
+            duration_s: self.conditions.ride_duration_s,
         };
-        let p = &self.parameters;
-        let seats = [&p.driver_seat, &p.passenger_seat].map(|seat| p.seat_position_m(seat));
-        let mut meters = [RideMeter::new(model.step_s()), RideMeter::new(model.step_s())];
+        let drive = self.begin(case, manoeuvre, Arc::clone(&self.rough))?;
+        let places = drive.seat_places_m();
         let settling_s = self.conditions.ride_settling_s;
-        let run = manoeuvre.drive(
-            &mut model,
-            p,
-            &self.handling,
-            |_| ([(); 4], 0),
+        let mut meters = Seats::from_fn(|_| SeatMeter::new(drive.model().step_s(), settling_s));
+        let run = drive.to_end(
+            |_| Default::default(),
             |model| {
-                if model.time_s() > settling_s {
-                    for (meter, (x, y)) in meters.iter_mut().zip(seats) {
-                        meter.add(model.vertical_acceleration_at(x, y));
-                    }
+                for (seat, meter) in meters.iter_mut() {
+                    meter.add(model.acceleration_at(places[seat]));
                 }
             },
         )?;
-        let [driver, passenger] = meters.map(|meter| meter.measures());
+        let Seats { driver, passenger } = meters.map(|meter| meter.measures().vertical);
         Ok(Ride {
             driver_rms_m_s2: driver.weighted_rms_m_s2,
             passenger_rms_m_s2: passenger.weighted_rms_m_s2,
@@ -219,16 +223,13 @@ impl Bench {
     /// # Errors
     /// [`StudyError`].
     pub fn lane_change(&self, case: &Case) -> Result<Run, StudyError> {
-        let speed_m_s = self.conditions.lane_change_speed_m_s;
-        let mut model = self.vehicle(case, Arc::new(Flat), speed_m_s)?;
-        let track = Track::severe_lane_change(self.parameters.layout.width_m);
-        let duration_s = 2.0 * track.end_m().unwrap_or(0.0) / speed_m_s.max(1.0);
-        let manoeuvre = Manoeuvre::Follow {
-            track,
-            speed_m_s,
-            duration_s,
+        let manoeuvre = Manoeuvre::LaneChange {
+            kind: LaneChange::Severe,
+            speed_m_s: self.conditions.lane_change_speed_m_s,
+            entry_m: ENTRY_M,
         };
-        Ok(manoeuvre.drive(&mut model, &self.parameters, &self.handling, |_| ([(); 4], 0), |_| {})?)
+        let drive = self.begin(case, manoeuvre, Arc::new(Flat))?;
+        Ok(drive.to_end(|_| Default::default(), |_| {})?)
     }
 
     /// Drives the lane change.

@@ -7,14 +7,18 @@
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
+use std::hash::Hasher as _;
 use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
+use csv::StringRecord;
+use fnv::FnvHasher;
+
 use super::case::{Bench, Case, Handling, Ride};
 
 /// Raised with every change of the models that changes results.
-const MODEL_VERSION: u32 = 2;
+const MODEL_VERSION: u32 = 4;
 
 /// A ledger that cannot be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -26,7 +30,7 @@ pub struct LedgerError {
 
 /// Results by key, and the file they are appended to.
 pub struct Ledger {
-    known: BTreeMap<String, String>,
+    known: BTreeMap<String, StringRecord>,
     file: Option<(PathBuf, Mutex<File>)>,
     base: String,
 }
@@ -58,12 +62,17 @@ impl Ledger {
             .open(path)
             .map_err(wrap)?;
         file.read_to_string(&mut text).map_err(wrap)?;
+        // Only what ends with a line break was written to its end.
+        let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .from_reader(whole.as_bytes());
         let mut known = BTreeMap::new();
-        for line in text.split_inclusive('\n') {
-            let Some((key, rest)) = line.strip_suffix('\n').and_then(|line| line.split_once(',')) else {
-                continue;
-            };
-            known.insert(key.to_owned(), rest.to_owned());
+        for record in reader.records().flatten() {
+            if let Some(key) = record.get(0) {
+                known.insert(key.to_owned(), record);
+            }
         }
         // A line cut short by an interruption must not swallow the next one.
         if !text.is_empty() && !text.ends_with('\n') {
@@ -88,10 +97,12 @@ impl Ledger {
 
     fn key(&self, kind: &str, case: &Case) -> String {
         let mut text = format!("{}|{kind}", self.base);
-        for value in case.gas_volume_m3.iter().chain(&case.damper_factor) {
+        for value in case.numbers() {
             text.push_str(&format!("|{:016x}", value.to_bits()));
         }
-        format!("{:016x}", fnv1a(text.as_bytes()))
+        let mut hash = FnvHasher::default();
+        hash.write(text.as_bytes());
+        format!("{:016x}", hash.finish())
     }
 
     /// A ride result, if known.
@@ -122,13 +133,12 @@ impl Ledger {
     /// The last five fields of a line, if the line is known and whole.
     fn fields(&self, kind: &str, case: &Case) -> Option<[f64; 5]> {
         let line = self.known.get(&self.key(kind, case))?;
-        let mut fields = line.rsplit(',').map(|field| field.parse::<f64>().ok());
-        let mut values = [0.0; 5];
-        for value in values.iter_mut().rev() {
-            *value = fields.next()??;
-        }
-        // kind and four numbers of the case come before.
-        (line.split(',').count() == 10).then_some(values)
+        let fields: Vec<f64> = line
+            .iter()
+            .skip(FIELDS - 5)
+            .map_while(|field| field.parse().ok())
+            .collect();
+        fields.try_into().ok().filter(|_| line.len() == FIELDS)
     }
 
     /// Appends a ride result.
@@ -171,19 +181,23 @@ impl Ledger {
 
     fn add(&self, kind: &str, case: &Case, values: [f64; 5]) -> Result<(), LedgerError> {
         let Some((path, file)) = &self.file else { return Ok(()) };
-        let mut line = format!("{},{kind}", self.key(kind, case));
-        for value in case.gas_volume_m3.iter().chain(&case.damper_factor).chain(&values) {
-            line.push_str(&format!(",{value}"));
-        }
-        line.push('\n');
-        // One write a line: whole lines only, whatever the thread.
-        let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
-        file.write_all(line.as_bytes()).map_err(|problem| LedgerError {
+        let wrap = |problem| LedgerError {
             path: path.clone(),
             problem,
-        })
+        };
+        let mut line = csv::Writer::from_writer(Vec::new());
+        let numbers = case.numbers().into_iter().chain(values).map(|value| value.to_string());
+        line.write_record([self.key(kind, case), kind.to_owned()].into_iter().chain(numbers))
+            .map_err(|error| wrap(error.into()))?;
+        let line = line.into_inner().map_err(|error| wrap(error.into_error()))?;
+        // One write a line: whole lines only, whatever the thread.
+        let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
+        file.write_all(&line).map_err(wrap)
     }
 }
+
+/// Fields of a line: key, kind, the four numbers of the case, five results.
+const FIELDS: usize = 11;
 
 /// Everything but the case, as text.
 fn base(bench: &Bench) -> String {
@@ -193,13 +207,6 @@ fn base(bench: &Bench) -> String {
         bench.parameters.to_toml(),
         bench.handling.to_toml()
     )
-}
-
-/// Fowler, Noll and Vo's hash, variant 1a, 64 bit.
-fn fnv1a(bytes: &[u8]) -> u64 {
-    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
-        (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3)
-    })
 }
 
 #[cfg(test)]
@@ -265,6 +272,5 @@ mod tests {
         let case = Case::alike(1e-4, 0.8);
         assert_ne!(one.key("ride", &case), other.key("ride", &case));
         assert_ne!(one.key("ride", &case), one.key("handling", &case));
-        assert_eq!(fnv1a(b"a"), 0xaf63_dc4c_8601_ec8c);
     }
 }

@@ -14,6 +14,7 @@ use std::collections::BTreeMap;
 
 use argmin::core::{CostFunction, Executor, State as _};
 use argmin::solver::neldermead::NelderMead;
+use oleo_interface::Axles;
 
 use super::case::{Bench, Case, Handling, Ride};
 use super::ledger::Ledger;
@@ -111,8 +112,8 @@ impl Search<'_> {
         };
         let case = if self.objective.per_axle {
             Case {
-                gas_volume_m3: [front_volume, rear_volume],
-                damper_factor: [front_factor, rear_factor],
+                gas_volume_m3: Axles::new(front_volume, rear_volume),
+                damper_factor: Axles::new(front_factor, rear_factor),
             }
         } else {
             Case::alike(front_volume, front_factor)
@@ -121,13 +122,7 @@ impl Search<'_> {
     }
 
     fn look(&self, case: Case) -> Result<Visit, SweepError> {
-        let key = [
-            case.gas_volume_m3[0],
-            case.gas_volume_m3[1],
-            case.damper_factor[0],
-            case.damper_factor[1],
-        ];
-        let key = key.map(f64::to_bits);
+        let key = case.numbers().map(f64::to_bits);
         if let Some(visit) = self
             .memory
             .borrow()

@@ -18,7 +18,7 @@ pub const DAMPER_FACTORS: [f64; 7] = [0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0];
 #[derive(Debug, thiserror::Error)]
 pub enum SweepError {
     /// A run that could not be made.
-    #[error("gas volume {:.3} l, damper factor {}: {problem}", 1e3 * case.gas_volume_m3[0], case.damper_factor[0])]
+    #[error("gas volume {:.3} l, damper factor {}: {problem}", 1e3 * case.gas_volume_m3.front, case.damper_factor.front)]
     Run {
         /// Of this case.
         case: Case,

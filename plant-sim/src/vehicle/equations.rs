@@ -43,7 +43,9 @@
 //! Not misprints but to be known: extension and tension are positive in the appendix, compression in the body of the
 //! report; with coordinates from the static position `T_i` starts at minus the static load and gravity does not vanish.
 
-use super::parameters::{GRAVITY_M_S2, VehicleParameters};
+use oleo_interface::{Axle, Axles, Corners};
+
+use super::parameters::{AxleParameters, GRAVITY_M_S2, VehicleParameters};
 
 /// Generalised coordinates, their rates or accelerations, in the order of the appendix's state vector.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -70,6 +72,22 @@ impl Coordinates {
         Self::from_array(core::array::from_fn(|i| {
             self.to_array()[i] + factor * other.to_array()[i]
         }))
+    }
+
+    /// Heave of an axle, m.
+    pub fn axle_heave(&self, axle: Axle) -> f64 {
+        match axle {
+            Axle::Front => self.front_heave,
+            Axle::Rear => self.rear_heave,
+        }
+    }
+
+    /// Roll of an axle, rad, left side up positive.
+    pub fn axle_roll(&self, axle: Axle) -> f64 {
+        match axle {
+            Axle::Front => self.front_roll,
+            Axle::Rear => self.rear_roll,
+        }
     }
 
     /// In the order of the appendix: Z, Z_f, Z_r, theta, phi, phi_f, phi_r.
@@ -102,68 +120,62 @@ impl Coordinates {
 /// The constants of the equations.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equations {
-    /// m_s, m_f, m_r, kg.
-    pub mass_kg: [f64; 3],
+    /// m_s: sprung mass, kg.
+    pub body_mass_kg: f64,
+    /// m_f, m_r: mass of each axle with its wheels, kg.
+    pub axle_mass_kg: Axles<f64>,
     /// J_x, J_y, J_z of the body, kg m2.
     pub body_inertia_kg_m2: [f64; 3],
     /// J_f, J_r, kg m2.
-    pub axle_inertia_kg_m2: [f64; 2],
-    /// l_e/c1 of front and rear axle: ahead of the body's centre of mass, m.
-    pub axle_ahead_m: [f64; 2],
-    /// l_g/d2: half the strut spacing, front and rear, m.
-    pub half_strut_spacing_m: [f64; 2],
-    /// l_w/d2: half the track, front and rear, m.
-    pub half_track_m: [f64; 2],
-    /// k_arb front and rear, N m/rad.
-    pub anti_roll_n_m_rad: [f64; 2],
+    pub axle_inertia_kg_m2: Axles<f64>,
+    /// l_e/c1: distance of each axle ahead of the body's centre of mass, m; negative behind it.
+    pub axle_ahead_m: Axles<f64>,
+    /// l_g/d2: half the strut spacing, m.
+    pub half_strut_spacing_m: Axles<f64>,
+    /// l_w/d2: half the track, m.
+    pub half_track_m: Axles<f64>,
+    /// k_arb, N m/rad.
+    pub anti_roll_n_m_rad: Axles<f64>,
 }
 
 impl Equations {
     /// From a vehicle's parameters.
     pub fn new(parameters: &VehicleParameters) -> Self {
-        let (front, rear) = (&parameters.front_axle, &parameters.rear_axle);
+        let of_axles = |of: fn(&AxleParameters) -> f64| Axles::from_fn(|axle| of(parameters.axle(axle)));
         let ahead = parameters.body_cg_behind_front_axle_m();
         Self {
-            mass_kg: [parameters.body.sprung_mass_kg, front.mass_kg, rear.mass_kg],
+            body_mass_kg: parameters.body.sprung_mass_kg,
+            axle_mass_kg: of_axles(|axle| axle.mass_kg),
             body_inertia_kg_m2: [
                 parameters.body.roll_inertia_kg_m2,
                 parameters.body.pitch_inertia_kg_m2,
                 parameters.body.yaw_inertia_kg_m2,
             ],
-            axle_inertia_kg_m2: [front.inertia_kg_m2, rear.inertia_kg_m2],
-            axle_ahead_m: [ahead, ahead - parameters.layout.wheelbase_m],
-            half_strut_spacing_m: [0.5 * front.strut_spacing_m, 0.5 * rear.strut_spacing_m],
-            half_track_m: [0.5 * front.track_m, 0.5 * rear.track_m],
-            anti_roll_n_m_rad: [front.anti_roll_stiffness_n_m_rad, rear.anti_roll_stiffness_n_m_rad],
+            axle_inertia_kg_m2: of_axles(|axle| axle.inertia_kg_m2),
+            axle_ahead_m: Axles::new(ahead, ahead - parameters.layout.wheelbase_m),
+            half_strut_spacing_m: of_axles(|axle| 0.5 * axle.strut_spacing_m),
+            half_track_m: of_axles(|axle| 0.5 * axle.track_m),
+            anti_roll_n_m_rad: of_axles(|axle| axle.anti_roll_stiffness_n_m_rad),
         }
     }
 
     /// Extension of the four struts from the static position (or, from rates, its rate), m (m/s).
     ///
     /// Written as a mean and a difference per axle so that a mirrored motion gives mirrored bits.
-    pub fn extension(&self, q: &Coordinates) -> [f64; 4] {
-        let front = q.heave - q.front_heave - self.axle_ahead_m[0] * q.pitch;
-        let front_roll = self.half_strut_spacing_m[0] * (q.roll - q.front_roll);
-        let rear = q.heave - q.rear_heave - self.axle_ahead_m[1] * q.pitch;
-        let rear_roll = self.half_strut_spacing_m[1] * (q.roll - q.rear_roll);
-        [
-            front + front_roll,
-            front - front_roll,
-            rear + rear_roll,
-            rear - rear_roll,
-        ]
+    pub fn extension(&self, q: &Coordinates) -> Corners<f64> {
+        Corners::from_left_right(Axles::from_fn(|axle| {
+            let middle = q.heave - q.axle_heave(axle) - self.axle_ahead_m[axle] * q.pitch;
+            let roll = self.half_strut_spacing_m[axle] * (q.roll - q.axle_roll(axle));
+            [middle + roll, middle - roll]
+        }))
     }
 
     /// Height of the four wheel centres above their static position (or, from rates, its rate), m (m/s).
-    pub fn wheel_height(&self, q: &Coordinates) -> [f64; 4] {
-        let front = self.half_track_m[0] * q.front_roll;
-        let rear = self.half_track_m[1] * q.rear_roll;
-        [
-            q.front_heave + front,
-            q.front_heave - front,
-            q.rear_heave + rear,
-            q.rear_heave - rear,
-        ]
+    pub fn wheel_height(&self, q: &Coordinates) -> Corners<f64> {
+        Corners::from_left_right(Axles::from_fn(|axle| {
+            let (middle, roll) = (q.axle_heave(axle), self.half_track_m[axle] * q.axle_roll(axle));
+            [middle + roll, middle - roll]
+        }))
     }
 
     /// Accelerations for a state, strut tensions (positive pulling) and road forces on the wheels (N, up positive).
@@ -171,19 +183,23 @@ impl Equations {
         &self,
         q: &Coordinates,
         rate: &Coordinates,
-        tension_n: [f64; 4],
-        wheel_force_n: [f64; 4],
+        tension_n: Corners<f64>,
+        wheel_force_n: Corners<f64>,
     ) -> Coordinates {
-        let [m_s, m_f, m_r] = self.mass_kg;
+        let m_s = self.body_mass_kg;
         let [j_x, j_y, j_z] = self.body_inertia_kg_m2;
-        let [j_f, j_r] = self.axle_inertia_kg_m2;
-        let [t1, t2, t3, t4] = tension_n;
-        let [w1, w2, w3, w4] = wheel_force_n;
+        let [m_f, m_r] = self.axle_mass_kg.into_array();
+        let [j_f, j_r] = self.axle_inertia_kg_m2.into_array();
+        let [w1, w2, w3, w4] = wheel_force_n.into_array();
 
-        let (front, rear) = (t1 + t2, t3 + t4);
-        let front_torque =
-            self.half_strut_spacing_m[0] * (t1 - t2) + self.anti_roll_n_m_rad[0] * (q.roll - q.front_roll);
-        let rear_torque = self.half_strut_spacing_m[1] * (t3 - t4) + self.anti_roll_n_m_rad[1] * (q.roll - q.rear_roll);
+        // Sum of the tensions of an axle's struts, and their torque with that of the anti-roll bar.
+        let [(front, front_torque), (rear, rear_torque)] = Axles::from_fn(|axle| {
+            let [left, right] = tension_n.of_axle(axle);
+            let struts = self.half_strut_spacing_m[axle] * (left - right);
+            let bar = self.anti_roll_n_m_rad[axle] * (q.roll - q.axle_roll(axle));
+            (left + right, struts + bar)
+        })
+        .into_array();
 
         let pitch_inertia =
             j_y + j_z * q.roll * q.roll + j_f * q.front_roll * q.front_roll + j_r * q.rear_roll * q.rear_roll;
@@ -195,19 +211,20 @@ impl Equations {
             heave: -(front + rear) / m_s - GRAVITY_M_S2,
             front_heave: (front + (w1 + w2)) / m_f - GRAVITY_M_S2,
             rear_heave: (rear + (w3 + w4)) / m_r - GRAVITY_M_S2,
-            pitch: (self.axle_ahead_m[0] * front + self.axle_ahead_m[1] * rear - 2.0 * gyration * rate.pitch)
+            pitch: (self.axle_ahead_m.front * front + self.axle_ahead_m.rear * rear - 2.0 * gyration * rate.pitch)
                 / pitch_inertia,
             roll: (j_z * q.roll * pitch_rate_2 - (front_torque + rear_torque)) / j_x,
-            front_roll: q.front_roll * pitch_rate_2 + (front_torque + self.half_track_m[0] * (w1 - w2)) / j_f,
-            rear_roll: q.rear_roll * pitch_rate_2 + (rear_torque + self.half_track_m[1] * (w3 - w4)) / j_r,
+            front_roll: q.front_roll * pitch_rate_2 + (front_torque + self.half_track_m.front * (w1 - w2)) / j_f,
+            rear_roll: q.rear_roll * pitch_rate_2 + (rear_torque + self.half_track_m.rear * (w3 - w4)) / j_r,
         }
     }
 
     /// Kinetic energy T of the appendix without the constant forward motion, J.
     pub fn kinetic_energy_j(&self, q: &Coordinates, rate: &Coordinates) -> f64 {
-        let [m_s, m_f, m_r] = self.mass_kg;
+        let m_s = self.body_mass_kg;
         let [j_x, j_y, j_z] = self.body_inertia_kg_m2;
-        let [j_f, j_r] = self.axle_inertia_kg_m2;
+        let [m_f, m_r] = self.axle_mass_kg.into_array();
+        let [j_f, j_r] = self.axle_inertia_kg_m2.into_array();
         let pitch_inertia =
             j_y + j_z * q.roll * q.roll + j_f * q.front_roll * q.front_roll + j_r * q.rear_roll * q.rear_roll;
         0.5 * (m_s * rate.heave * rate.heave
@@ -222,8 +239,10 @@ impl Equations {
     /// U_arb + U_G of the appendix, J: what is stored apart from struts and tyres.
     pub fn potential_energy_j(&self, q: &Coordinates) -> f64 {
         let (front, rear) = (q.roll - q.front_roll, q.roll - q.rear_roll);
-        0.5 * (self.anti_roll_n_m_rad[0] * front * front + self.anti_roll_n_m_rad[1] * rear * rear)
-            + GRAVITY_M_S2
-                * (self.mass_kg[0] * q.heave + self.mass_kg[1] * q.front_heave + self.mass_kg[2] * q.rear_heave)
+        let weight = self.body_mass_kg * q.heave
+            + self.axle_mass_kg.front * q.front_heave
+            + self.axle_mass_kg.rear * q.rear_heave;
+        0.5 * (self.anti_roll_n_m_rad.front * front * front + self.anti_roll_n_m_rad.rear * rear * rear)
+            + GRAVITY_M_S2 * weight
     }
 }

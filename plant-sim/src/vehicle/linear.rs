@@ -5,6 +5,7 @@
 //! tests the other. Gravity adds nothing: heave is vertical and the small-angle model has no pendulum term.
 
 use nalgebra::{SMatrix, SVector, SymmetricEigen};
+use oleo_interface::{Axle, Corners, Side};
 
 use super::equations::{Coordinates, Equations};
 use super::parameters::VehicleParameters;
@@ -51,29 +52,34 @@ impl Mode {
 
 impl Linearisation {
     /// With a given rate at each corner's strut, N/m.
-    pub fn new(parameters: &VehicleParameters, strut_stiffness_n_m: [f64; 4]) -> Self {
+    pub fn new(parameters: &VehicleParameters, strut_stiffness_n_m: Corners<f64>) -> Self {
         let equations = Equations::new(parameters);
-        let [m_s, m_f, m_r] = equations.mass_kg;
+        let m_s = equations.body_mass_kg;
         let [j_x, j_y, _] = equations.body_inertia_kg_m2;
-        let [j_f, j_r] = equations.axle_inertia_kg_m2;
+        let [m_f, m_r] = equations.axle_mass_kg.into_array();
+        let [j_f, j_r] = equations.axle_inertia_kg_m2.into_array();
         let mut stiffness = SMatrix::<f64, 7, 7>::zeros();
         let mut add = |rate: f64, stretch: [f64; 7]| {
             let b = SVector::<f64, 7>::from(stretch);
             stiffness += b * b.transpose() * rate;
         };
-        for (axle, parameters) in [(0, &parameters.front_axle), (1, &parameters.rear_axle)] {
+        for axle in Axle::ALL {
             let ahead = equations.axle_ahead_m[axle];
-            let (heave, roll) = (1 + axle, 5 + axle);
-            for (side, sign) in [(0, 1.0), (1, -1.0)] {
+            // Places of the axle's heave and roll among the seven coordinates.
+            let (heave, roll) = match axle {
+                Axle::Front => (1, 5),
+                Axle::Rear => (2, 6),
+            };
+            for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
                 let lever = sign * equations.half_strut_spacing_m[axle];
                 let mut strut = [1.0, 0.0, 0.0, -ahead, lever, 0.0, 0.0];
                 strut[heave] = -1.0;
                 strut[roll] = -lever;
-                add(strut_stiffness_n_m[2 * axle + side], strut);
+                add(strut_stiffness_n_m[axle.corner(side)], strut);
                 let mut tyre = [0.0; 7];
                 tyre[heave] = 1.0;
                 tyre[roll] = sign * equations.half_track_m[axle];
-                add(parameters.tyre_stiffness_n_m, tyre);
+                add(parameters.axle(axle).tyre_stiffness_n_m, tyre);
             }
             let mut bar = [0.0; 7];
             bar[4] = 1.0;

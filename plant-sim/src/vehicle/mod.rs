@@ -14,13 +14,22 @@
 
 mod contact;
 pub mod equations;
+mod gas_temperature;
+mod levelling;
 pub mod linear;
+mod load;
 mod parameters;
 mod ride;
+mod seat;
 pub mod suspension;
 
+pub use gas_temperature::TemperedStrut;
+pub use levelling::{LevelledStrut, Levelling, LevellingLimits};
+pub use load::Load;
+pub(crate) use load::{Cargo, put};
 pub use parameters::{
     AxleParameters, BaselineParameters, BodyParameters, GRAVITY_M_S2, LayoutParameters, SeatParameters,
     SolverParameters, TyreParameters, VehicleParameters,
 };
 pub use ride::{BaselineVehicle, BodyMotion, RideError, RideModel, RideVehicle, WheelMotion};
+pub use seat::{Seat, SeatAcceleration, Seats};

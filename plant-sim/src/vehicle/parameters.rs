@@ -5,14 +5,16 @@
 //! `presets/defender110.toml`. A file with an unknown key, a missing key or an impossible value is refused with one
 //! line that names file, line and key: a simulation of a vehicle nobody meant is worse than none.
 
+use oleo_interface::{Axle, Corner, Corners};
 use serde::{Deserialize, Serialize};
 
+use super::seat::Seat;
 use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
 
 /// Standard acceleration of gravity, m/s2 (ISO 80000-3).
 pub const GRAVITY_M_S2: f64 = 9.80665;
 
-/// A vehicle, complete. All values SI; corner order front left, front right, rear left, rear right.
+/// A vehicle, complete. All values SI.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct VehicleParameters {
@@ -222,6 +224,8 @@ pub struct SeatParameters {
     pub behind_front_axle_m: f64,
     /// Distance to the left of the centre plane, m (right is negative).
     pub left_of_centre_m: f64,
+    /// Height of the seat surface above ground at static load, m.
+    pub above_ground_m: f64,
 }
 
 impl Checked for SeatParameters {
@@ -232,6 +236,7 @@ impl Checked for SeatParameters {
         Limit::one("left_of_centre_m", Range::FromTo(-5.0, 5.0), "m", |p| {
             p.left_of_centre_m
         }),
+        Limit::one("above_ground_m", Range::FromTo(-2.0, 10.0), "m", |p| p.above_ground_m),
     ];
 }
 
@@ -302,20 +307,21 @@ impl VehicleParameters {
     }
 
     /// Weight that each strut carries at rest on level ground, N: what `StrutModel::defender110` is charged for.
-    pub fn static_strut_load_n(&self) -> [f64; 4] {
+    pub fn static_strut_load_n(&self) -> Corners<f64> {
         let behind = self.body_cg_behind_front_axle_m();
         let weight_n = self.body.sprung_mass_kg * GRAVITY_M_S2;
         let rear = 0.5 * weight_n * behind / self.layout.wheelbase_m;
         let front = 0.5 * weight_n - rear;
-        [front, front, rear, rear]
+        Corners::from_fn(|corner| match corner.axle() {
+            Axle::Front => front,
+            Axle::Rear => rear,
+        })
     }
 
     /// Vertical force of the road on each wheel at rest on level ground, N.
-    pub fn static_wheel_load_n(&self) -> [f64; 4] {
+    pub fn static_wheel_load_n(&self) -> Corners<f64> {
         let strut = self.static_strut_load_n();
-        let front = strut[0] + 0.5 * self.front_axle.mass_kg * GRAVITY_M_S2;
-        let rear = strut[2] + 0.5 * self.rear_axle.mass_kg * GRAVITY_M_S2;
-        [front, front, rear, rear]
+        Corners::from_fn(|corner| strut[corner] + 0.5 * self.axle_of(corner).mass_kg * GRAVITY_M_S2)
     }
 
     /// Position of a seat relative to the body's centre of mass, `(x forward, y left)` in m.
@@ -326,9 +332,35 @@ impl VehicleParameters {
         )
     }
 
-    /// The axle a corner belongs to.
-    pub fn axle_of(&self, corner: usize) -> &AxleParameters {
-        if corner < 2 { &self.front_axle } else { &self.rear_axle }
+    /// A seat's place in body axes (ahead, left, up) from the body's centre of mass, m.
+    pub fn seat_place_m(&self, seat: Seat) -> [f64; 3] {
+        let seat = match seat {
+            Seat::Driver => &self.driver_seat,
+            Seat::Passenger => &self.passenger_seat,
+        };
+        let (x, y) = self.seat_position_m(seat);
+        [x, y, seat.above_ground_m - self.body_cg_height_m()]
+    }
+
+    /// Parameters of an axle.
+    pub fn axle(&self, axle: Axle) -> &AxleParameters {
+        match axle {
+            Axle::Front => &self.front_axle,
+            Axle::Rear => &self.rear_axle,
+        }
+    }
+
+    /// Parameters of the axle that a corner belongs to.
+    pub fn axle_of(&self, corner: Corner) -> &AxleParameters {
+        self.axle(corner.axle())
+    }
+
+    /// Coil spring and damper of the vehicle as sold at an axle.
+    pub fn baseline(&self, axle: Axle) -> &BaselineParameters {
+        match axle {
+            Axle::Front => &self.front_baseline,
+            Axle::Rear => &self.rear_baseline,
+        }
     }
 }
 
@@ -343,6 +375,14 @@ mod tests {
     use crate::model_file::limits::forgotten_keys;
 
     const PRESET: &str = DEFENDER110_TOML;
+
+    /// Table 1 of the seed report counts one "anti-rollbar stiffness" between the two halves of one bar.
+    #[test]
+    fn the_preset_has_one_anti_roll_bar() {
+        let preset = VehicleParameters::defender110();
+        let bars = Axle::ALL.map(|axle| preset.axle(axle).anti_roll_stiffness_n_m_rad);
+        assert_eq!(bars.iter().filter(|stiffness| **stiffness > 0.0).count(), 1, "{bars:?}");
+    }
 
     fn error_of(text: &str) -> ModelFileError {
         VehicleParameters::from_toml(text, "car.toml").expect_err("must be refused")
@@ -379,10 +419,11 @@ mod tests {
     fn weight_is_carried_by_wheels_and_shared_as_stated() {
         let preset = VehicleParameters::defender110();
         let wheels = preset.static_wheel_load_n();
-        let sum: f64 = wheels.iter().sum();
+        let sum: f64 = wheels.values().sum();
+        let [front_left, front_right] = wheels.of_axle(Axle::Front);
         assert!((sum / (2050.0 * GRAVITY_M_S2) - 1.0).abs() < 1e-12);
-        assert!(((wheels[0] + wheels[1]) / sum - 0.5).abs() < 1e-12);
-        assert_eq!(wheels[0].to_bits(), wheels[1].to_bits());
+        assert!(((front_left + front_right) / sum - 0.5).abs() < 1e-12);
+        assert_eq!(front_left.to_bits(), front_right.to_bits());
     }
 
     #[test]

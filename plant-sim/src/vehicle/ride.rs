@@ -16,6 +16,8 @@
 
 use std::sync::Arc;
 
+use oleo_interface::{Axle, Corner, Corners, Side};
+
 use super::contact::{Contact, Tyre};
 use super::equations::{Coordinates, Equations};
 use super::parameters::VehicleParameters;
@@ -28,12 +30,13 @@ use crate::strut::{Strut, StrutOutput};
 pub enum RideError {
     /// The suspension would not carry the vehicle near its design height.
     #[error(
-        "strut {corner} pushes {carried_n:.0} N at its static position but the vehicle rests {needed_n:.0} N on it: \
-         set the strut's static pressure for that load, or change the vehicle's masses"
+        "the {} strut pushes {carried_n:.0} N at its static position but the vehicle rests {needed_n:.0} N on it: \
+         set the strut's static pressure for that load, or change the vehicle's masses",
+        corner.name()
     )]
     StaticLoad {
-        /// 0 front left, 1 front right, 2 rear left, 3 rear right.
-        corner: usize,
+        /// Where it stands.
+        corner: Corner,
         /// Force of the strut at displacement 0, N.
         carried_n: f64,
         /// Static load of the corner, N.
@@ -89,9 +92,9 @@ const STATIC_LOAD_TOLERANCE: f64 = 0.25;
 /// The 7-degree-of-freedom ride model on any suspension.
 pub struct RideModel<E> {
     equations: Equations,
-    elements: [E; 4],
-    contacts: [Contact; 4],
-    tyres: [Tyre; 4],
+    elements: Corners<E>,
+    contacts: Corners<Contact>,
+    tyres: Corners<Tyre>,
     step_s: f64,
     steps: u64,
     speed_m_s: f64,
@@ -100,9 +103,9 @@ pub struct RideModel<E> {
     q: Coordinates,
     rate: Coordinates,
     acceleration: Coordinates,
-    wheels: [WheelMotion; 4],
+    wheels: Corners<WheelMotion>,
     /// Road heights of the step to come, so that the rate at the present one is a central difference.
-    next_road_m: [f64; 4],
+    next_road_m: Corners<f64>,
 }
 
 /// The ride model on four two-stage hydropneumatic struts.
@@ -118,7 +121,7 @@ impl RideVehicle {
     /// A speed that is none, or struts charged for another vehicle.
     pub fn new(
         parameters: &VehicleParameters,
-        struts: [Strut; 4],
+        struts: Corners<Strut>,
         road: Arc<dyn Road>,
         speed_m_s: f64,
     ) -> Result<Self, RideError> {
@@ -126,8 +129,8 @@ impl RideVehicle {
     }
 
     /// Force and pressures of the four struts.
-    pub fn strut_output(&self) -> [StrutOutput; 4] {
-        [0, 1, 2, 3].map(|corner: usize| self.elements[corner].output())
+    pub fn strut_output(&self) -> Corners<StrutOutput> {
+        self.elements.each_ref().map(StrutElement::output)
     }
 }
 
@@ -137,16 +140,7 @@ impl BaselineVehicle {
     /// # Errors
     /// As [`RideVehicle::new`].
     pub fn baseline(parameters: &VehicleParameters, road: Arc<dyn Road>, speed_m_s: f64) -> Result<Self, RideError> {
-        let load_n = parameters.static_strut_load_n();
-        let elements = [0, 1, 2, 3].map(|corner: usize| {
-            let axle = if corner < 2 {
-                &parameters.front_baseline
-            } else {
-                &parameters.rear_baseline
-            };
-            CoilElement::new(axle, load_n[corner])
-        });
-        Self::with_elements(parameters, elements, road, speed_m_s)
+        Self::with_elements(parameters, CoilElement::of_vehicle(parameters), road, speed_m_s)
     }
 }
 
@@ -157,7 +151,7 @@ impl<E: SuspensionElement> RideModel<E> {
     /// As [`RideVehicle::new`].
     pub fn with_elements(
         parameters: &VehicleParameters,
-        elements: [E; 4],
+        elements: Corners<E>,
         road: Arc<dyn Road>,
         speed_m_s: f64,
     ) -> Result<Self, RideError> {
@@ -165,8 +159,8 @@ impl<E: SuspensionElement> RideModel<E> {
             return Err(RideError::Speed(speed_m_s));
         }
         let needed = parameters.static_strut_load_n();
-        for (corner, (element, needed_n)) in elements.iter().zip(needed).enumerate() {
-            let carried_n = element.force_n();
+        for (corner, element) in elements.iter() {
+            let (carried_n, needed_n) = (element.force_n(), needed[corner]);
             let missed_n = (carried_n - needed_n).abs();
             if missed_n.is_nan() || missed_n > STATIC_LOAD_TOLERANCE * needed_n {
                 return Err(RideError::StaticLoad {
@@ -178,13 +172,15 @@ impl<E: SuspensionElement> RideModel<E> {
         }
         let equations = Equations::new(parameters);
         let wheel_load = parameters.static_wheel_load_n();
-        let corners = [0usize, 1, 2, 3];
-        let contacts = corners.map(|corner| {
+        let contacts = Corners::from_fn(|corner| {
             let half_track_m = 0.5 * parameters.axle_of(corner).track_m;
-            let lateral_m = if corner % 2 == 0 { half_track_m } else { -half_track_m };
+            let lateral_m = match corner.side() {
+                Side::Left => half_track_m,
+                Side::Right => -half_track_m,
+            };
             Contact::new(Arc::clone(&road), lateral_m, parameters.tyre.contact_length_m)
         });
-        let tyres = corners.map(|corner| {
+        let tyres = Corners::from_fn(|corner| {
             let axle = parameters.axle_of(corner);
             Tyre {
                 stiffness_n_m: axle.tyre_stiffness_n_m,
@@ -205,16 +201,16 @@ impl<E: SuspensionElement> RideModel<E> {
             q: Coordinates::default(),
             rate: Coordinates::default(),
             acceleration: Coordinates::default(),
-            wheels: [WheelMotion::default(); 4],
-            next_road_m: [0.0; 4],
+            wheels: Corners::default(),
+            next_road_m: Corners::default(),
         };
         // The static position rests on the road's mean level at the start, wherever the file's zero is.
-        let [a, b, c, d] = model.road_heights_m(0.0);
+        let [a, b, c, d] = model.road_heights_m(0.0).into_array();
         model.datum_m = 0.25 * ((a + b) + (c + d));
         let before = model.road_heights_m(-model.step_s);
         model.next_road_m = model.road_heights_m(0.0);
-        for (wheel, height) in model.wheels.iter_mut().zip(before) {
-            wheel.road_height_m = height - model.datum_m;
+        for (corner, wheel) in model.wheels.iter_mut() {
+            wheel.road_height_m = before[corner] - model.datum_m;
         }
         model.roll_wheels(&Coordinates::default());
         model.acceleration = model.accelerate(&Coordinates::default());
@@ -222,7 +218,7 @@ impl<E: SuspensionElement> RideModel<E> {
     }
 
     /// Advances one step. `signals` are the controller's, by corner; about 0.2 us plus the suspension's own time.
-    pub fn step(&mut self, signals: [E::Signal; 4]) {
+    pub fn step(&mut self, signals: Corners<E::Signal>) {
         let half_s = 0.5 * self.step_s;
         let rate_half = self.rate.plus(half_s, self.acceleration);
         self.q = self.q.plus(self.step_s, rate_half);
@@ -231,7 +227,7 @@ impl<E: SuspensionElement> RideModel<E> {
 
         let extension = self.equations.extension(&self.q);
         let extension_rate = self.equations.extension(&predicted);
-        for (corner, element) in self.elements.iter_mut().enumerate() {
+        for (corner, element) in self.elements.iter_mut() {
             let motion = Motion::from_extension(extension[corner], extension_rate[corner], self.step_s);
             element.advance(motion, signals[corner]);
         }
@@ -247,7 +243,7 @@ impl<E: SuspensionElement> RideModel<E> {
         self.next_road_m = self.road_heights_m(time_s + self.step_s);
         let height = self.equations.wheel_height(&self.q);
         let height_rate = self.equations.wheel_height(rate);
-        for (corner, wheel) in self.wheels.iter_mut().enumerate() {
+        for (corner, wheel) in self.wheels.iter_mut() {
             let past_m = wheel.road_height_m;
             let ahead_m = self.next_road_m[corner] - self.datum_m;
             wheel.road_height_m = present_m[corner] - self.datum_m;
@@ -262,22 +258,22 @@ impl<E: SuspensionElement> RideModel<E> {
     }
 
     fn accelerate(&self, rate: &Coordinates) -> Coordinates {
-        let tension = [0, 1, 2, 3].map(|corner: usize| tension_n(self.elements[corner].force_n()));
+        let tension = self.elements.each_ref().map(|element| tension_n(element.force_n()));
         let wheel_force = self.wheels.map(|wheel| wheel.force_n);
         self.equations.acceleration(&self.q, rate, tension, wheel_force)
     }
 
     /// Road under the four wheels at a time, m above the road's own zero.
-    fn road_heights_m(&mut self, time_s: f64) -> [f64; 4] {
+    fn road_heights_m(&mut self, time_s: f64) -> Corners<f64> {
         let front_m = self.speed_m_s * time_s;
         let rear_m = front_m - self.wheelbase_m;
-        let [front_left, front_right, rear_left, rear_right] = &mut self.contacts;
-        [
-            front_left.height_m(front_m),
-            front_right.height_m(front_m),
-            rear_left.height_m(rear_m),
-            rear_right.height_m(rear_m),
-        ]
+        Corners::from_fn(|corner| {
+            let station_m = match corner.axle() {
+                Axle::Front => front_m,
+                Axle::Rear => rear_m,
+            };
+            self.contacts[corner].height_m(station_m)
+        })
     }
 
     /// Time since the start, s: an exact multiple of the step.
@@ -301,17 +297,17 @@ impl<E: SuspensionElement> RideModel<E> {
     }
 
     /// Displacement of the four struts from the static position, m, compression positive.
-    pub fn strut_displacement_m(&self) -> [f64; 4] {
+    pub fn strut_displacement_m(&self) -> Corners<f64> {
         self.equations.extension(&self.q).map(|extension| -extension)
     }
 
     /// Force of the four suspension elements, N, compression positive.
-    pub fn suspension_force_n(&self) -> [f64; 4] {
-        [0, 1, 2, 3].map(|corner: usize| self.elements[corner].force_n())
+    pub fn suspension_force_n(&self) -> Corners<f64> {
+        self.elements.each_ref().map(SuspensionElement::force_n)
     }
 
     /// The four suspension elements.
-    pub fn elements(&self) -> &[E; 4] {
+    pub fn elements(&self) -> &Corners<E> {
         &self.elements
     }
 
@@ -331,7 +327,7 @@ impl<E: SuspensionElement> RideModel<E> {
     }
 
     /// The four wheels.
-    pub fn wheels(&self) -> [WheelMotion; 4] {
+    pub fn wheels(&self) -> Corners<WheelMotion> {
         self.wheels
     }
 

@@ -4,9 +4,9 @@
 //! coil spring and damper of the vehicle as sold, and the linear elements that have a closed-form answer. This file is
 //! also the one place where the extension-positive appendix meets the compression-positive rest of the project.
 
-use super::parameters::BaselineParameters;
-use oleo_interface::StrutValves;
+use oleo_interface::{Corners, StrutValves};
 
+use super::parameters::{BaselineParameters, VehicleParameters};
 use crate::strut::{Strut, StrutOutput};
 
 /// Motion of one corner's suspension over a step, compression positive.
@@ -47,7 +47,7 @@ pub trait SuspensionElement {
     fn force_n(&self) -> f64;
 }
 
-/// The two-stage hydropneumatic strut. Signals: valves 1..3, true = open.
+/// The two-stage hydropneumatic strut. Signals: `true` opens a valve.
 ///
 /// The strut is given the piston's speed at both ends of the step, not only where it goes: its damping would otherwise
 /// belong to the mean speed of the step and lag by half a step (like an added mass of `c h / 2` between body and axle).
@@ -81,15 +81,15 @@ impl StrutElement {
 }
 
 impl SuspensionElement for StrutElement {
-    type Signal = [bool; 3];
+    type Signal = StrutValves<bool>;
 
-    fn advance(&mut self, motion: Motion, signal: [bool; 3]) -> f64 {
+    fn advance(&mut self, motion: Motion, signal: StrutValves<bool>) -> f64 {
         self.output = self.strut.advance_with_speeds(
             motion.compression_m,
             self.rate_m_s,
             motion.compression_rate_m_s,
             motion.duration_s,
-            StrutValves::from_array(signal),
+            signal,
         );
         self.rate_m_s = motion.compression_rate_m_s;
         self.output.force_n
@@ -151,6 +151,12 @@ pub struct CoilElement {
 }
 
 impl CoilElement {
+    /// The four elements of a vehicle as sold, at rest.
+    pub fn of_vehicle(parameters: &VehicleParameters) -> Corners<Self> {
+        let load_n = parameters.static_strut_load_n();
+        Corners::from_fn(|corner| Self::new(parameters.baseline(corner.axle()), load_n[corner]))
+    }
+
     /// An element at rest that carries `static_load_n`.
     pub fn new(parameters: &BaselineParameters, static_load_n: f64) -> Self {
         Self {

@@ -3,161 +3,15 @@
 use std::io::Write as _;
 
 use oleo_controller::ValveCommand;
-use oleo_interface::Corner::{FrontLeft, FrontRight, RearLeft, RearRight};
-use oleo_interface::tick::TICK_S;
-use oleo_interface::{Axle, Side};
-use oleo_plant_sim::handling::{Ending, Manoeuvre, Run, Sample};
-use oleo_plant_sim::measures::RideMeter;
+use oleo_interface::{Axle, Corner, StrutValves};
+use oleo_plant_sim::course::{Ending, Manoeuvre, Run, Sample, Signals};
 use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Style, Table, significant};
 use serde_json::{Map, Value, json};
 
-use super::arguments::Setting;
-use super::course::Course;
+use super::arguments::Args;
+use super::measures::{Measure, measures};
+use super::plan::Plan;
 use crate::failure::Failure;
-
-/// Lateral acceleration between which the understeer gradient is fitted, m/s2 (ISO 4138: the linear range).
-const LINEAR_RANGE_M_S2: (f64, f64) = (0.5, 3.0);
-
-type Named<'a> = (&'a str, &'a str, f64, &'a str);
-
-/// Measures of one run: key, words, value, unit.
-fn measures(course: &Course, run: &Run) -> Vec<(&'static str, &'static str, f64, &'static str)> {
-    let meter = |of: fn(&Sample) -> f64| {
-        let mut meter = RideMeter::new(TICK_S);
-        run.history.iter().for_each(|sample| meter.add(of(sample)));
-        meter.measures()
-    };
-    let (driver, passenger) = (meter(|s| s.driver_seat_m_s2), meter(|s| s.passenger_seat_m_s2));
-    let peak = |of: fn(&Sample) -> f64| run.history.iter().map(|s| of(s).abs()).fold(0.0, f64::max);
-    let mut list = vec![
-        (
-            "driver_weighted_rms_m_s2",
-            "weighted RMS at the driver (BS 6841)",
-            driver.weighted_rms_m_s2,
-            "m/s2",
-        ),
-        (
-            "passenger_weighted_rms_m_s2",
-            "weighted RMS at the left rear passenger",
-            passenger.weighted_rms_m_s2,
-            "m/s2",
-        ),
-        (
-            "driver_msdv_m_s1_5",
-            "motion sickness dose at the driver",
-            driver.msdv_m_s1_5,
-            "m/s^1.5",
-        ),
-        (
-            "max_roll_deg",
-            "largest body roll",
-            run.max_roll_rad.to_degrees(),
-            "degrees",
-        ),
-        (
-            "max_pitch_deg",
-            "largest body pitch",
-            peak(|s| s.pitch_rad).to_degrees(),
-            "degrees",
-        ),
-        (
-            "wheel_lift_s",
-            "time with a wheel off the ground",
-            run.wheel_lift_s,
-            "s",
-        ),
-    ];
-    if run.max_lateral_m_s2 > 0.0 {
-        list.push((
-            "max_lateral_m_s2",
-            "largest lateral acceleration",
-            run.max_lateral_m_s2,
-            "m/s2",
-        ));
-        list.push((
-            "max_yaw_rate_deg_s",
-            "largest yaw rate",
-            peak(|s| s.yaw_rate_rad_s).to_degrees(),
-            "degrees/s",
-        ));
-        list.push((
-            "max_side_slip_deg",
-            "largest side slip",
-            peak(|s| s.side_slip_rad).to_degrees(),
-            "degrees",
-        ));
-    }
-    if let Some(margin) = run.cone_margin_m {
-        list.push(("cone_margin_m", "least room to the cones (negative: hit)", margin, "m"));
-    }
-    match &course.manoeuvre {
-        Manoeuvre::ConstantRadius { .. } => {
-            if let Some(gradient) = understeer_gradient(&run.history) {
-                let gradient = gradient.to_degrees();
-                list.push(("understeer_deg_s2_m", "understeer gradient", gradient, "degrees/(m/s2)"));
-            }
-            if let Some(gradient) = roll_gradient(&run.history) {
-                list.push((
-                    "roll_gradient_deg_s2_m",
-                    "roll gradient",
-                    gradient.to_degrees(),
-                    "degrees/(m/s2)",
-                ));
-            }
-        }
-        Manoeuvre::StepSteer { at_s, .. } => {
-            if let Some((steady, overshoot, time_s)) = step_response(&run.history, *at_s) {
-                list.push((
-                    "steady_yaw_rate_deg_s",
-                    "steady yaw rate",
-                    steady.to_degrees(),
-                    "degrees/s",
-                ));
-                list.push(("yaw_overshoot", "overshoot of the yaw rate", 100.0 * overshoot, "%"));
-                list.push(("yaw_response_s", "time to 90 % of the steady yaw rate", time_s, "s"));
-            }
-        }
-        Manoeuvre::Follow { .. } => {}
-    }
-    list
-}
-
-/// Slope of `of` over lateral acceleration in the linear range, by least squares.
-fn slope(history: &[Sample], of: fn(&Sample) -> f64) -> Option<f64> {
-    let inside = |s: &&Sample| {
-        let lateral = s.lateral_acceleration_m_s2.abs();
-        s.time_s > 5.0 && lateral > LINEAR_RANGE_M_S2.0 && lateral < LINEAR_RANGE_M_S2.1
-    };
-    let (mut n, mut x, mut y, mut xx, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for sample in history.iter().filter(inside) {
-        let (a, b) = (sample.lateral_acceleration_m_s2, of(sample));
-        n += 1.0;
-        x += a;
-        y += b;
-        xx += a * a;
-        xy += a * b;
-    }
-    let determinant = n * xx - x * x;
-    (n > 10.0 && determinant > 0.0).then(|| (n * xy - x * y) / determinant)
-}
-
-/// Change of steer angle with lateral acceleration at constant radius.
-fn understeer_gradient(history: &[Sample]) -> Option<f64> {
-    slope(history, |s| s.steer_rad)
-}
-
-fn roll_gradient(history: &[Sample]) -> Option<f64> {
-    slope(history, |s| s.roll_rad)
-}
-
-/// Steady yaw rate, overshoot over it, time from the step to 90 % of it.
-fn step_response(history: &[Sample], at_s: f64) -> Option<(f64, f64, f64)> {
-    let steady = history.last()?.yaw_rate_rad_s;
-    let side = steady.signum();
-    let most = history.iter().map(|s| side * s.yaw_rate_rad_s).fold(0.0, f64::max);
-    let reached = history.iter().find(|s| side * s.yaw_rate_rad_s >= 0.9 * steady.abs())?;
-    Some((steady, most / steady.abs() - 1.0, reached.time_s - at_s))
-}
 
 /// RMS of the difference over RMS of the first, at the same places of the road: the handling model's speed gives way on
 /// a rough road, the ride model's is constant.
@@ -201,7 +55,7 @@ const COMPARED: [(&str, &str, Signal); 5] = [
     ("pitch", "body pitch angle", |s| s.pitch_rad),
 ];
 
-const COLUMNS: [(&str, Signal); 32] = [
+const COLUMNS: [(&str, Signal); 36] = [
     ("time_s", |s| s.time_s),
     ("station_m", |s| s.station_m),
     ("lateral_m", |s| s.lateral_m),
@@ -212,35 +66,43 @@ const COLUMNS: [(&str, Signal); 32] = [
     ("speed_m_s", |s| s.speed_m_s),
     ("side_slip_rad", |s| s.side_slip_rad),
     ("yaw_rate_rad_s", |s| s.yaw_rate_rad_s),
+    ("longitudinal_acceleration_m_s2", |s| s.longitudinal_acceleration_m_s2),
     ("lateral_acceleration_m_s2", |s| s.lateral_acceleration_m_s2),
     ("vertical_acceleration_m_s2", |s| s.vertical_acceleration_m_s2),
     ("steer_rad", |s| s.steer_rad),
-    ("driver_seat_m_s2", |s| s.driver_seat_m_s2),
-    ("passenger_seat_m_s2", |s| s.passenger_seat_m_s2),
+    ("wheel_steer_rad", |s| s.wheel_steer_rad),
+    ("driver_seat_m_s2", |s| s.seat.driver.vertical_m_s2),
+    ("passenger_seat_m_s2", |s| s.seat.passenger.vertical_m_s2),
+    ("driver_seat_lateral_m_s2", |s| s.seat.driver.lateral_m_s2),
+    ("passenger_seat_lateral_m_s2", |s| s.seat.passenger.lateral_m_s2),
     ("front_axle_heave_m", |s| s.front_axle_heave_m),
     ("front_axle_roll_rad", |s| s.front_axle_roll_rad),
-    ("wheel_load_fl_N", |s| s.wheel_load_n[FrontLeft.index()]),
-    ("wheel_load_fr_N", |s| s.wheel_load_n[FrontRight.index()]),
-    ("wheel_load_rl_N", |s| s.wheel_load_n[RearLeft.index()]),
-    ("wheel_load_rr_N", |s| s.wheel_load_n[RearRight.index()]),
-    ("strut_fl_m", |s| s.strut_displacement_m[FrontLeft.index()]),
-    ("strut_fr_m", |s| s.strut_displacement_m[FrontRight.index()]),
-    ("strut_rl_m", |s| s.strut_displacement_m[RearLeft.index()]),
-    ("strut_rr_m", |s| s.strut_displacement_m[RearRight.index()]),
-    ("strut_force_fl_N", |s| s.strut_force_n[FrontLeft.index()]),
-    ("strut_force_fr_N", |s| s.strut_force_n[FrontRight.index()]),
-    ("strut_force_rl_N", |s| s.strut_force_n[RearLeft.index()]),
-    ("strut_force_rr_N", |s| s.strut_force_n[RearRight.index()]),
-    ("valve_word", |s| f64::from(s.valves)),
+    ("wheel_load_fl_N", |s| s.wheel_load_n[Corner::FrontLeft]),
+    ("wheel_load_fr_N", |s| s.wheel_load_n[Corner::FrontRight]),
+    ("wheel_load_rl_N", |s| s.wheel_load_n[Corner::RearLeft]),
+    ("wheel_load_rr_N", |s| s.wheel_load_n[Corner::RearRight]),
+    ("strut_fl_m", |s| s.strut_displacement_m[Corner::FrontLeft]),
+    ("strut_fr_m", |s| s.strut_displacement_m[Corner::FrontRight]),
+    ("strut_rl_m", |s| s.strut_displacement_m[Corner::RearLeft]),
+    ("strut_rr_m", |s| s.strut_displacement_m[Corner::RearRight]),
+    ("strut_force_fl_N", |s| s.strut_force_n[Corner::FrontLeft]),
+    ("strut_force_fr_N", |s| s.strut_force_n[Corner::FrontRight]),
+    ("strut_force_rl_N", |s| s.strut_force_n[Corner::RearLeft]),
+    ("strut_force_rr_N", |s| s.strut_force_n[Corner::RearRight]),
+    ("valve_word", |s| f64::from(valve_word(&s.valves))),
     ("front_valves_open", |s| open_valves(s, Axle::Front)),
     ("rear_valves_open", |s| open_valves(s, Axle::Rear)),
 ];
 
-/// Number of open valves of an axle, 0 to 6.
+/// The controller's valve word: bit `3 * corner + valve`, 1 open.
+fn valve_word(signals: &Signals) -> u16 {
+    ValveCommand::from_corners(*signals).word()
+}
+
+/// Open valves of an axle, 0 to 6.
 fn open_valves(sample: &Sample, axle: Axle) -> f64 {
-    let struts = ValveCommand::from_word(sample.valves).corners();
-    let valves = Side::ALL.map(|side| struts[axle.corner(side)].into_array());
-    valves.as_flattened().iter().filter(|open| **open).count() as f64
+    let open = |valves: &StrutValves<bool>| valves.iter().filter(|(_, open)| **open).count();
+    sample.valves.of_axle(axle).map(open).iter().sum::<usize>() as f64
 }
 
 fn column(run: &Run, of: fn(&Sample) -> f64) -> Vec<f64> {
@@ -248,12 +110,7 @@ fn column(run: &Run, of: fn(&Sample) -> f64) -> Vec<f64> {
 }
 
 /// Prints the table and writes the folder.
-pub fn publish(
-    course: &Course,
-    setting: Setting,
-    runs: &[(&str, Run)],
-    out: Option<OutputDirectory>,
-) -> Result<(), Failure> {
+pub fn publish(plan: &Plan, args: &Args, runs: &[(&str, Run)], out: Option<OutputDirectory>) -> Result<(), Failure> {
     let mut columns = vec![Column::text("Measure")];
     columns.extend(runs.iter().map(|(name, _)| Column::number(name)));
     columns.push(Column::text("Unit"));
@@ -263,10 +120,13 @@ pub fn publish(
     row.extend(runs.iter().map(|(_, run)| ending(run.ending)));
     row.push(String::new());
     table.row(row);
-    let all: Vec<Vec<Named>> = runs.iter().map(|(_, run)| measures(course, run)).collect();
+    let all: Vec<Vec<Measure>> = runs
+        .iter()
+        .map(|(_, run)| measures(plan, run, args.score_from_s))
+        .collect();
     let longest = all.iter().max_by_key(|list| list.len()).cloned().unwrap_or_default();
     for (key, words, _, unit) in longest {
-        let value = |list: &Vec<Named>| list.iter().find(|m| m.0 == key).map(|m| m.2);
+        let value = |list: &Vec<Measure>| list.iter().find(|m| m.0 == key).map(|m| m.2);
         let mut row = vec![words.to_owned()];
         row.extend(
             all.iter()
@@ -295,7 +155,7 @@ pub fn publish(
         comparison = Some(rows);
     }
     if let Some(mut out) = out {
-        let page = page(course, setting, runs, &table, comparison.as_ref());
+        let page = page(plan, args, runs, &table, comparison.as_ref());
         for (name, run) in runs {
             let columns: Vec<(&str, Vec<f64>)> = COLUMNS.iter().map(|(name, of)| (*name, column(run, *of))).collect();
             let columns: Vec<(&str, &[f64])> = columns
@@ -323,16 +183,20 @@ fn ending(ending: Ending) -> String {
     }
 }
 
-fn page(course: &Course, setting: Setting, runs: &[(&str, Run)], table: &Table, comparison: Option<&Table>) -> Page {
+fn page(plan: &Plan, args: &Args, runs: &[(&str, Run)], table: &Table, comparison: Option<&Table>) -> Page {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let mut page = Page::new(
-        &format!("Drive: {}", course.title),
+        &format!("Drive: {}", plan.title),
         &format!("oleo {}", arguments.join(" ")),
     );
-    page.fact("Vehicle", &course.vehicle.name)
-        .fact("Suspension", setting.name())
-        .fact("Road", &course.road_name)
-        .fact("Speed", &format!("{:.1} km/h", 3.6 * course.speed_m_s))
+    page.fact("Vehicle", &plan.vehicle.name)
+        .fact("Suspension", args.setting.name())
+        .fact("Driver", args.driver.key())
+        .fact("Road", &plan.road_name)
+        .fact(
+            "Speed",
+            &format!("{:.1} km/h", 3.6 * plan.course.manoeuvre.initial_speed_m_s()),
+        )
         .outcome(table.clone());
     if let Some(comparison) = comparison {
         page.section("Ride model against handling model")
@@ -370,17 +234,18 @@ fn page(course: &Course, setting: Setting, runs: &[(&str, Run)], table: &Table, 
             ("Front axle heave", "m", &[("front axle", |s| s.front_axle_heave_m)]),
         ],
     ));
-    if runs.iter().any(|(name, _)| *name == "handling model") && course.track.gates().is_empty().eq(&false)
-        || !matches!(course.manoeuvre, Manoeuvre::Follow { .. })
-    {
-        page.section("Course").figure(map(course, runs)).figure(panels(
+    if !matches!(plan.course.manoeuvre, Manoeuvre::Straight { .. }) {
+        page.section("Course").figure(map(plan, runs)).figure(panels(
             "Steering and response",
             &[
                 ("Steer angle", "degrees", &[("steer", |s| s.steer_rad.to_degrees())]),
                 (
-                    "Lateral acceleration",
+                    "Acceleration",
                     "m/s2",
-                    &[("lateral", |s| s.lateral_acceleration_m_s2)],
+                    &[
+                        ("lateral", |s| s.lateral_acceleration_m_s2),
+                        ("fore-aft", |s| s.longitudinal_acceleration_m_s2),
+                    ],
                 ),
                 (
                     "Yaw rate",
@@ -398,26 +263,26 @@ fn page(course: &Course, setting: Setting, runs: &[(&str, Run)], table: &Table, 
                 "Wheel load",
                 "N",
                 &[
-                    ("front left", |s| s.wheel_load_n[FrontLeft.index()]),
-                    ("front right", |s| s.wheel_load_n[FrontRight.index()]),
-                    ("rear left", |s| s.wheel_load_n[RearLeft.index()]),
-                    ("rear right", |s| s.wheel_load_n[RearRight.index()]),
+                    ("front left", |s| s.wheel_load_n[Corner::FrontLeft]),
+                    ("front right", |s| s.wheel_load_n[Corner::FrontRight]),
+                    ("rear left", |s| s.wheel_load_n[Corner::RearLeft]),
+                    ("rear right", |s| s.wheel_load_n[Corner::RearRight]),
                 ],
             ),
             (
                 "Displacement",
                 "m",
                 &[
-                    ("front left", |s| s.strut_displacement_m[FrontLeft.index()]),
-                    ("front right", |s| s.strut_displacement_m[FrontRight.index()]),
-                    ("rear left", |s| s.strut_displacement_m[RearLeft.index()]),
-                    ("rear right", |s| s.strut_displacement_m[RearRight.index()]),
+                    ("front left", |s| s.strut_displacement_m[Corner::FrontLeft]),
+                    ("front right", |s| s.strut_displacement_m[Corner::FrontRight]),
+                    ("rear left", |s| s.strut_displacement_m[Corner::RearLeft]),
+                    ("rear right", |s| s.strut_displacement_m[Corner::RearRight]),
                 ],
             ),
             (
                 "Open valves",
                 "of 12",
-                &[("open", |s| f64::from(s.valves.count_ones()))],
+                &[("open", |s| open_valves(s, Axle::Front) + open_valves(s, Axle::Rear))],
             ),
         ],
     ));
@@ -425,7 +290,7 @@ fn page(course: &Course, setting: Setting, runs: &[(&str, Run)], table: &Table, 
 }
 
 /// The course from above with its cones.
-fn map(course: &Course, runs: &[(&str, Run)]) -> Curves {
+fn map(plan: &Plan, runs: &[(&str, Run)]) -> Curves {
     let mut figure = Curves::new("From above", Axis::new("Ahead", "m"));
     let panel = figure.panel(Axis::new("Left", "m"));
     for (name, run) in runs {
@@ -436,7 +301,7 @@ fn map(course: &Course, runs: &[(&str, Run)]) -> Curves {
         );
     }
     let (mut x, mut y) = (Vec::new(), Vec::new());
-    for gate in course.track.gates() {
+    for gate in plan.track.gates() {
         for i in 0..=4 {
             let station = gate.from_m + (gate.to_m - gate.from_m) * f64::from(i) / 4.0;
             x.extend([station, station]);
@@ -445,11 +310,11 @@ fn map(course: &Course, runs: &[(&str, Run)]) -> Curves {
     }
     if !x.is_empty() {
         panel.series(Style::Points, "cones", &x, &y);
-        let (first, last) = (0.0, course.track.end_m().unwrap_or(0.0));
+        let (first, last) = (0.0, plan.track.end_m().unwrap_or(0.0));
         let stations: Vec<f64> = (0..=200)
             .map(|i| first + (last - first) * f64::from(i) / 200.0)
             .collect();
-        let line: Vec<f64> = stations.iter().map(|x| course.track.lateral_m(*x)).collect();
+        let line: Vec<f64> = stations.iter().map(|x| plan.track.lateral_m(*x)).collect();
         panel.series(Style::Dashed, "line wanted", &stations, &line);
     }
     figure

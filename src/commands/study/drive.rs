@@ -2,10 +2,13 @@
 
 use std::path::PathBuf;
 
+use oleo_plant_sim::course::DriverStyle;
 use oleo_plant_sim::study::{Bench, Conditions, Ledger};
+use oleo_plant_sim::vehicle::Load;
 use oleo_report::OutputDirectory;
 
 use crate::commands::parameter_files::parameters;
+use crate::commands::word::word;
 use crate::failure::Failure;
 
 /// What both studies drive.
@@ -20,6 +23,12 @@ pub struct Drive {
     /// Speed on the Belgian block and in the lane change, km/h
     #[arg(long, value_name = "KM_H", default_value_t = 60.0, allow_negative_numbers = true)]
     speed_km_h: f64,
+    /// Who drives the lane change: eased or hard
+    #[arg(long, value_name = "eased|hard", default_value = "eased", value_parser = word::<DriverStyle>)]
+    driver: DriverStyle,
+    /// What the vehicle carries: as-sold (nothing), laden (900 kg), roof (150 kg on the roof) or laden-roof (750 and 150 kg)
+    #[arg(long, value_name = "LOAD", default_value = "as-sold", value_parser = word::<Load>)]
+    load: Load,
     /// Time on the Belgian block, s
     #[arg(long, value_name = "S", default_value_t = 20.0, allow_negative_numbers = true)]
     duration_s: f64,
@@ -52,9 +61,11 @@ impl Drive {
             ride_duration_s: self.duration_s,
             seed: self.seed,
             lane_change_speed_m_s: speed,
+            driver: self.driver,
             ..Conditions::default()
         };
-        Ok(Bench::new(vehicle, handling, conditions)?)
+        // The study's gas springs are charged for what they carry.
+        Ok(Bench::new(self.load.at_ride_height(&vehicle), handling, conditions)?)
     }
 
     /// Runs `work` on the threads asked for.

@@ -80,14 +80,10 @@ fn outcome(optimum: &Optimum) -> Table {
         let name = axle.key();
         row(
             &format!("static gas volume, {name}"),
-            1e3 * by_axle(best.case.gas_volume_m3)[axle],
+            1e3 * best.case.gas_volume_m3[axle],
             "l",
         );
-        row(
-            &format!("damper factor, {name}"),
-            by_axle(best.case.damper_factor)[axle],
-            "",
-        );
+        row(&format!("damper factor, {name}"), best.case.damper_factor[axle], "");
     }
     if let Some(ride) = best.ride {
         row("weighted RMS, mean of both seats", ride.mean_rms_m_s2(), "m/s2");
@@ -110,14 +106,10 @@ fn outcome(optimum: &Optimum) -> Table {
     table
 }
 
-fn by_axle([front, rear]: [f64; 2]) -> Axles<f64> {
-    Axles::new(front, rear)
-}
-
 fn write(out: &mut OutputDirectory, optimum: &Optimum, table: &Table) -> Result<(), Failure> {
     let column = |of: &dyn Fn(&Visit) -> f64| optimum.path.iter().map(of).collect::<Vec<f64>>();
-    let volume = Axles::from_fn(|axle| column(&|v| 1e3 * by_axle(v.case.gas_volume_m3)[axle]));
-    let factor = Axles::from_fn(|axle| column(&|v| by_axle(v.case.damper_factor)[axle]));
+    let volume = Axles::from_fn(|axle| column(&|v| 1e3 * v.case.gas_volume_m3[axle]));
+    let factor = Axles::from_fn(|axle| column(&|v| v.case.damper_factor[axle]));
     let objective = column(&|v| v.objective);
     let number: Vec<f64> = (1..=optimum.path.len()).map(|i| i as f64).collect();
     let best: Vec<f64> = objective
@@ -165,8 +157,8 @@ fn write(out: &mut OutputDirectory, optimum: &Optimum, table: &Table) -> Result<
     panel.series(
         Style::Points,
         "best",
-        &[1e3 * by_axle(case.gas_volume_m3).front],
-        &[by_axle(case.damper_factor).front],
+        &[1e3 * case.gas_volume_m3.front],
+        &[case.damper_factor.front],
     );
     let mut progress = Curves::new("Objective", Axis::new("Point", ""));
     let panel = progress.panel(Axis::new("Objective", ""));
@@ -176,8 +168,8 @@ fn write(out: &mut OutputDirectory, optimum: &Optimum, table: &Table) -> Result<
     out.json(
         "summary.json",
         &json!({
-            "gas_volume_l": case.gas_volume_m3.map(|v| 1e3 * v),
-            "damper_factor": case.damper_factor,
+            "gas_volume_l": case.gas_volume_m3.map(|v| 1e3 * v).into_array(),
+            "damper_factor": case.damper_factor.into_array(),
             "objective": optimum.best.objective,
             "points": optimum.path.len(),
             "simulations": optimum.runs,

@@ -3,6 +3,7 @@
 
 use oleo_plant_sim::specimen::CylinderModel;
 
+use crate::excitation::pressing;
 use crate::recording::Recording;
 
 /// Slower than this part of the fastest is rest, faster than three times that is motion.
@@ -15,15 +16,6 @@ const LEAST_SAMPLES: usize = 20;
 const MOST_DELAY: usize = 25;
 /// Correlation of changes below which nothing is said of delays.
 const LEAST_CORRELATION: f64 = 0.7;
-
-/// Sum of the chambers' pressures on their areas at every sample, N, all counted positive: what presses the seals.
-#[must_use]
-pub fn pressing(model: &CylinderModel, recording: &Recording) -> Vec<f64> {
-    let chambers = || model.chamber.iter().zip(&recording.columns[2..]);
-    (0..recording.len())
-        .map(|k| chambers().map(|(c, p)| (c.area_m2 * p[k].max(0.0)).abs()).sum())
-        .collect()
-}
 
 /// What one recording shows: the balance, and the delay of the force where the changes tell one.
 #[must_use]

@@ -2,21 +2,21 @@
 //! mass, viscous drag, and the faults of the instruments, of which a late force is the great impostor of viscous drag.
 
 mod balance;
-mod candidates;
+mod calibration;
 
 use oleo_plant_sim::specimen::{CylinderModel, SmoothedMotion, smooth_motion};
 
-use super::candidate::{Candidate, Hypothesis};
 use super::channel::{Channel, StateSeries, stated};
 use super::contract::{BelievedModel, Specimen};
 use super::drawing::Drawing;
-use super::extent::Extent;
-use super::kind::SpecimenKind;
+use super::hypothesis::Hypothesis;
 use super::single_output::{SingleOutput, SingleOutputSpecimen};
+use crate::effect::{ALL, Candidate, of, sensor};
 use crate::error::DiagnoseError;
+use crate::excitation::{self, pressing};
 use crate::recording::{ColumnKind, ColumnSpec, GapPolicy, Recording};
-use crate::vocabulary::{Column, Place, Site, State};
-use candidates::Excitation;
+use crate::vocabulary::SpecimenKind;
+use crate::vocabulary::{Column, EffectId, Place, Site, State};
 
 /// Noise assumed where the model file states none, as a fraction of the force range.
 const DEFAULT_NOISE_FRACTION: f64 = 1e-3;
@@ -47,12 +47,11 @@ impl BelievedModel for CylinderModel {
         let motions: Vec<SmoothedMotion> = (recordings.iter())
             .map(|r| smooth_motion(&r.time_s, &r.columns[0], SMOOTHING_SAMPLES * r.interval_s()))
             .collect();
-        let extent = Extent::of(&recordings);
-        let excitation = Excitation::of(&self, &recordings, &motions, &extent);
+        let excitation = excitation::Cylinder::of(&self, &recordings, &motions);
         let noise = stated(&self.noise, Column::FORCE.as_str()).unwrap_or(DEFAULT_NOISE_FRACTION * excitation.force_n);
         Ok(Box::new(SingleOutputSpecimen {
-            calibration: candidates::calibration(&self, &excitation),
-            candidates: candidates::candidates(&self, &excitation, &extent),
+            calibration: calibration::parameters(&self, &excitation),
+            candidates: candidates(&self, &excitation),
             kind: Cylinder { model: *self, motions },
             recordings,
             channel: Channel {
@@ -61,6 +60,22 @@ impl BelievedModel for CylinderModel {
             },
         }))
     }
+}
+
+/// Everything that a cylinder's model may lack: physics, laws without a name, then the instruments column by column.
+fn candidates(model: &CylinderModel, excitation: &excitation::Cylinder) -> Vec<Candidate> {
+    let of_effect = |id: EffectId| of(id).in_cylinder().map_or(vec![], |e| e.candidates(model, excitation));
+    let physics = ALL.iter().filter(|id| id.is_physics()).flat_map(|&id| of_effect(id));
+    let nameless = of_effect(EffectId::Unlisted);
+    let mut faults: Vec<Candidate> = sensor::IN_ORDER.into_iter().flat_map(of_effect).collect();
+    let load_cell = Column::FORCE;
+    let columns: Vec<&str> = (std::iter::once(load_cell.as_str()))
+        .chain(model.chamber.iter().map(|c| c.column.as_str()))
+        .collect();
+    faults.sort_by_key(|fault| (columns.iter()).position(|name| fault.place.sensor().is_some_and(|c| c == name)));
+    (physics.chain(nameless).chain(faults))
+        .map(|candidate| candidate.testable_unless(excitation.still.clone()))
+        .collect()
 }
 
 impl SingleOutput for Cylinder {
@@ -76,10 +91,16 @@ impl SingleOutput for Cylinder {
 
     fn applied(&self, candidates: &[Candidate], hypothesis: &Hypothesis) -> CylinderModel {
         let mut model = self.model.clone();
-        candidates::calibrate(&mut model, &hypothesis.calibration);
-        let presliding = candidates::presliding_stiffness(&hypothesis.calibration);
+        calibration::calibrate(&mut model, &hypothesis.calibration);
+        let believed = model.effects.seal_friction.is_some();
         for (index, values) in &hypothesis.effects {
-            candidates::apply(&mut model.effects, &candidates[*index], values, presliding);
+            let candidate = &candidates[*index];
+            if let Some(effect) = of(candidate.id).in_cylinder() {
+                effect.put(&mut model, candidate, values);
+            }
+        }
+        if let (false, Some(seal)) = (believed, &mut model.effects.seal_friction) {
+            seal.presliding_stiffness_n_m = calibration::presliding_stiffness(&hypothesis.calibration);
         }
         model
     }
@@ -102,7 +123,7 @@ impl SingleOutput for Cylinder {
             StateSeries::new(State::Displacement, motion.displacement_m.clone()),
             StateSeries::new(State::Speed, motion.speed_m_s.clone()),
             StateSeries::new(State::Acceleration, motion.acceleration_m_s2.clone()),
-            StateSeries::new(State::PressingForce, balance::pressing(&self.model, recording)),
+            StateSeries::new(State::PressingForce, pressing(&self.model, recording)),
         ]
     }
 
@@ -127,5 +148,38 @@ impl SingleOutput for Cylinder {
         let found = d.found_at(&pressures);
         d.block((742, 64, 36, 22), "p", found);
         d.svg()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_place_where_something_may_be_missing_is_drawn() {
+        let wave = |size: f64| {
+            (0..200)
+                .map(|k| size * libm::sin(0.1 * f64::from(k)))
+                .collect::<Vec<f64>>()
+        };
+        let recording = Recording {
+            name: "strokes".into(),
+            time_s: (0..200).map(|k| 0.01 * f64::from(k)).collect(),
+            columns: vec![wave(0.1), wave(500.0), wave(1e6)],
+            notes: vec![],
+        };
+        let text = "[specimen]\nname = \"a\"\nkind = \"cylinder\"\n[[chamber]]\ncolumn = \"p_Pa\"\narea_m2 = 4.9e-4\n";
+        let model = CylinderModel::from_toml(text, "model.toml").expect("a model");
+        let motions = vec![smooth_motion(&recording.time_s, &recording.columns[0], 0.05)];
+        let all = candidates(&model, &excitation::Cylinder::of(&model, &[recording], &motions));
+        let cylinder = Cylinder { model, motions };
+        assert!(all.len() > 8 && !cylinder.drawing(&[]).contains("found\""));
+        for candidate in all {
+            assert!(
+                cylinder.drawing(&[&candidate.place]).contains("found\""),
+                "{}",
+                candidate.name()
+            );
+        }
     }
 }

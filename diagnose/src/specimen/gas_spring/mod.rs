@@ -1,24 +1,22 @@
 //! A gas spring: one chamber, one pressure. The adiabat (or isotherm) is what is believed; what may be missing is heat
 //! transfer, and, as rivals that would look like it, a polytropic exponent, a leak and the faults of the instrument.
 
-mod candidates;
-mod corner;
+mod calibration;
 
-use oleo_plant_sim::specimen::{GasHeatTransferTerm, GasSpringModel, smooth_motion};
+use oleo_plant_sim::specimen::{GasSpringModel, smooth_motion};
 
-use super::candidate::{Candidate, Hypothesis};
 use super::channel::{Channel, StateSeries, stated};
 use super::contract::{BelievedModel, Specimen};
 use super::drawing::Drawing;
-use super::extent::Extent;
-use super::instrument::FaultTables;
-use super::kind::SpecimenKind;
+use super::hypothesis::Hypothesis;
 use super::single_output::{SingleOutput, SingleOutputSpecimen};
+use crate::effect::sensor::{self, PRESSURE_OF_GAS_SPRING as PRESSURE};
+use crate::effect::{ALL, Candidate, of};
 use crate::error::DiagnoseError;
+use crate::excitation::{self, Clock, corners};
 use crate::recording::{ColumnKind, ColumnSpec, GapPolicy, Recording};
+use crate::vocabulary::SpecimenKind;
 use crate::vocabulary::{Column, EffectId, Place, Site, State};
-use candidates::{GAS_LOST, POLYTROPIC_EXPONENT, PRESSURE};
-use corner::{Clock, corners};
 
 /// Noise assumed where the model file states none: a tenth of a psi, the resolution of common gauges.
 const DEFAULT_NOISE_PA: f64 = 690.0;
@@ -47,11 +45,11 @@ impl BelievedModel for GasSpringModel {
     fn with_recordings(self: Box<Self>, recordings: Vec<Recording>) -> Result<Box<dyn Specimen>, DiagnoseError> {
         let noise = stated(&self.noise, PRESSURE.as_str()).unwrap_or(DEFAULT_NOISE_PA);
         let clocks: Vec<Option<Clock>> = recordings.iter().map(|r| clock(&self, r, noise)).collect();
-        let extent = Extent::of(&recordings);
         let read: Vec<Clock> = clocks.iter().copied().flatten().collect();
+        let excitation = excitation::GasSpring::of(&recordings, noise, read);
         Ok(Box::new(SingleOutputSpecimen {
-            calibration: candidates::calibration(&self, &recordings),
-            candidates: candidates::candidates(&self, &extent, noise, &read),
+            calibration: calibration::parameters(&self, &recordings),
+            candidates: candidates(&self, &excitation),
             kind: GasSpring { model: *self, clocks },
             recordings,
             channel: Channel {
@@ -87,6 +85,20 @@ fn remark(recording: &Recording, clock: &Clock) -> String {
     )
 }
 
+/// Everything that a gas spring's model may lack: physics, laws without a name, then the instrument.
+fn candidates(model: &GasSpringModel, excitation: &excitation::GasSpring) -> Vec<Candidate> {
+    let of_effect = |id: EffectId| {
+        of(id)
+            .in_gas_spring()
+            .map_or(vec![], |e| e.candidates(model, excitation))
+    };
+    let physics = ALL.iter().copied().filter(|id| id.is_physics());
+    (physics.chain([EffectId::Unlisted]).chain(sensor::IN_ORDER))
+        .flat_map(of_effect)
+        .map(|candidate| candidate.testable_unless(excitation.still.clone()))
+        .collect()
+}
+
 impl SingleOutput for GasSpring {
     type Model = GasSpringModel;
 
@@ -100,24 +112,11 @@ impl SingleOutput for GasSpring {
 
     fn applied(&self, candidates: &[Candidate], hypothesis: &Hypothesis) -> GasSpringModel {
         let mut model = self.model.clone();
-        candidates::calibrate(&mut model, &hypothesis.calibration);
+        calibration::calibrate(&mut model, &hypothesis.calibration);
         for (index, values) in &hypothesis.effects {
             let candidate = &candidates[*index];
-            let value = values[0];
-            let e = &mut model.effects;
-            match (candidate.id, candidate.label.as_str()) {
-                (EffectId::GasHeatTransfer, _) => {
-                    e.gas_heat_transfer = Some(GasHeatTransferTerm { time_constant_s: value });
-                }
-                (EffectId::Unlisted, GAS_LOST) => e.gas_leak_rate_1_s = Some(value),
-                (EffectId::Unlisted, POLYTROPIC_EXPONENT) => e.polytropic_exponent = Some(value),
-                _ => FaultTables {
-                    lag: &mut e.sensor_lag,
-                    skew: &mut e.sensor_skew,
-                    gain: &mut e.sensor_gain,
-                    drift: &mut e.sensor_drift,
-                }
-                .put(candidate, value),
+            if let Some(effect) = of(candidate.id).in_gas_spring() {
+                effect.put(&mut model, candidate, values);
             }
         }
         model
@@ -162,5 +161,38 @@ impl SingleOutput for GasSpring {
         d.line("670,75 740,75", false);
         d.sensor((760, 75), "p", PRESSURE);
         d.svg()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_place_where_something_may_be_missing_is_drawn() {
+        let wave = |size: f64| {
+            (0..200)
+                .map(|k| size * libm::sin(0.1 * f64::from(k)))
+                .collect::<Vec<f64>>()
+        };
+        let recording = Recording {
+            name: "strokes".into(),
+            time_s: (0..200).map(|k| 0.01 * f64::from(k)).collect(),
+            columns: vec![wave(0.1), wave(500.0), wave(1e6)],
+            notes: vec![],
+        };
+        let text = "[specimen]\nname = \"a\"\nkind = \"gas spring\"\n[chamber]\narea_m2 = 0.01\nvolume_at_zero_m3 = 0.05\n\
+                    [gas]\nspecies = \"nitrogen\"\nprocess = \"adiabatic\"\ntemperature_K = 293.15\n";
+        let model = GasSpringModel::from_toml(text, "model.toml").expect("a model");
+        let all = candidates(&model, &excitation::GasSpring::of(&[recording], 690.0, vec![]));
+        let spring = GasSpring { model, clocks: vec![] };
+        assert!(all.len() > 5 && !spring.drawing(&[]).contains("found\""));
+        for candidate in all {
+            assert!(
+                spring.drawing(&[&candidate.place]).contains("found\""),
+                "{}",
+                candidate.name()
+            );
+        }
     }
 }

@@ -1,37 +1,32 @@
-//! The two-stage hydropneumatic strut: the belief as a [`StrutModel`], five compared channels, and the vocabulary.
+//! The two-stage hydropneumatic strut: the belief as a [`StrutModel`] and five compared channels.
 
-mod apply;
 mod calibration;
 mod channels;
 mod drawing;
-mod excitation;
 mod floor;
-mod laws;
 mod relations;
-mod vocabulary;
 
 use std::sync::OnceLock;
 
 use oleo_interface::{StrutValves, Valve};
-use oleo_plant_sim::strut::{COLUMNS, Effects, Inputs, StrutModel, record_column, replay};
+use oleo_plant_sim::strut::{COLUMNS, Inputs, StrutModel, record_column, replay};
 use rayon::prelude::*;
-
-use excitation::Excitation;
-pub use vocabulary::TERMS;
 
 use calibration::Calibration;
 pub use channels::{CHANNELS, columns};
 use channels::{FORCE, P1, P2, P3, P4};
 use relations::Measured;
 
-use super::candidate::{Candidate, Hypothesis};
 use super::channel::{Channel, Series, StateSeries, stated};
 use super::contract::{BelievedModel, Specimen};
-use super::kind::SpecimenKind;
+use super::hypothesis::Hypothesis;
 use super::relation::MeasuredRelation;
+use crate::effect::{ALL, Candidate, of, sensor, unlisted};
 use crate::error::DiagnoseError;
+use crate::excitation;
 use crate::parameter::Parameter;
 use crate::recording::{ColumnSpec, GapPolicy, Recording};
+use crate::vocabulary::SpecimenKind;
 use crate::vocabulary::{Branch, Column, EffectId, Place, Site, State};
 
 /// Noise assumed where the model file states none.
@@ -75,9 +70,10 @@ impl TwoStageStrut {
                 Inputs::from_recording(&r.time_s, &r.columns[0], &signals, displacement_noise)
             })
             .collect();
-        let excitation = Excitation::of(&recordings, &channels, displacement_noise);
+        let noises = std::array::from_fn(|c| channels[c].noise);
+        let excitation = excitation::Strut::of(&recordings, &noises, displacement_noise);
         let (calibration, parameters) = calibration::of(&model);
-        let candidates = vocabulary::candidates(&model, &excitation);
+        let candidates = candidates(&model, &excitation);
         let strut = Self {
             model,
             recordings,
@@ -114,7 +110,10 @@ impl TwoStageStrut {
             what.apply(&mut model, value);
         }
         for (index, values) in &hypothesis.effects {
-            apply::apply(&mut model.effects, &self.candidates[*index], values);
+            let candidate = &self.candidates[*index];
+            if let Some(effect) = of(candidate.id).in_strut() {
+                effect.put(&mut model, candidate, values);
+            }
         }
         model
     }
@@ -176,7 +175,8 @@ impl Specimen for TwoStageStrut {
 
     fn simulate(&self, hypothesis: &Hypothesis, recording: usize) -> Result<Series, String> {
         let mut model = self.applied(hypothesis);
-        keep_displacement_faults(&mut model.effects);
+        // Faults of the displacement sensor change the motion; all other instruments are applied afterwards.
+        model.effects.retain_sensor_faults(|column| column == COLUMNS[0]);
         let p = replay(&model, &self.inputs[recording]).map_err(|e| e.to_string())?;
         let [p1, p2, p3, p4] = p.pressure_pa;
         let series = vec![p.force_n, p1, p2, p3, p4];
@@ -217,7 +217,7 @@ impl Specimen for TwoStageStrut {
     }
 
     fn law(&self, candidate: usize, values: &[f64]) -> Option<serde_json::Value> {
-        let law = laws::law(&self.candidates[candidate].label, values)?;
+        let law = unlisted::table(&self.candidates[candidate].label, values)?;
         serde_json::to_value(law).ok()
     }
 
@@ -276,19 +276,18 @@ impl Specimen for TwoStageStrut {
     }
 }
 
-/// Faults of the displacement sensor change the motion; all other instruments are applied afterwards.
-fn keep_displacement_faults(effects: &mut Effects) {
-    for fault in [
-        &mut effects.sensor_lag,
-        &mut effects.sensor_gain,
-        &mut effects.sensor_drift,
-        &mut effects.sensor_skew,
-        &mut effects.sensor_sign,
-        &mut effects.sensor_offset,
-    ]
-    .into_iter()
-    .flatten()
-    {
-        fault.retain(|column, _| column == COLUMNS[0]);
-    }
+/// Everything that a strut's model may lack: physics, then the instruments column by column, then laws without a name.
+fn candidates(model: &StrutModel, excitation: &excitation::Strut) -> Vec<Candidate> {
+    let of_effect = |id: EffectId| of(id).in_strut().map_or(vec![], |e| e.candidates(model, excitation));
+    let physics = ALL.iter().filter(|id| id.is_physics()).flat_map(|&id| of_effect(id));
+    let mut faults: Vec<Candidate> = sensor::IN_ORDER.into_iter().flat_map(of_effect).collect();
+    faults.sort_by_key(|fault| {
+        COLUMNS
+            .iter()
+            .position(|name| fault.place.sensor().is_some_and(|c| c == name))
+    });
+    let nameless = of_effect(EffectId::Unlisted);
+    (physics.chain(faults).chain(nameless))
+        .map(|candidate| candidate.testable_unless(excitation.still()))
+        .collect()
 }

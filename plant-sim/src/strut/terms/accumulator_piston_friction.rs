@@ -1,8 +1,9 @@
 //! Pressure held back by the seals of the floating pistons (the report's first suspicion for its hysteresis, 3.5.1).
 //!
-//! `p_oil = p_gas + p_f s`, `ds/dV = (1 - s sgn Q) / V_s`: the shear `s` of the seal goes from -1 to 1 while oil volume `V`
+//! `p_oil = p_gas + p_f s`, `ds/dV = (1 - s sgn(Q)) / V_s`: the shear `s` of the seal goes from -1 to 1 while oil volume `V`
 //! flows in, as Dahl's friction (1968) does over a displacement.
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
@@ -60,6 +61,12 @@ pub struct PistonSeal {
     /// Oil volume that shears the seal from rest to sliding, m3.
     pub presliding_m3: f64,
 }
+
+/// Pressure beyond the piston, and the shear `s` of its seal.
+pub const EQUATION: Equation = Equation {
+    text: "p_oil = p_gas + p_f s, ds/dV = (1 - s sgn(Q)) / V_s",
+    source: "Theron & Els, final report 2002, section 3.5.1; Dahl 1968",
+};
 
 impl PistonSeal {
     /// A piston without friction.

@@ -4,6 +4,7 @@
 //! (figures *assumed*). It is defined for every displacement, so that nothing ends because a table does; the report's
 //! program stopped at its bump stops.
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
@@ -37,6 +38,12 @@ impl Checked for BumpStop {
         }),
     ];
 }
+
+/// Force of one stop; `d` is the travel beyond its clearance.
+pub const EQUATION: Equation = Equation {
+    text: "F = k d + c d^3",
+    source: "linear-plus-cubic form of progressive rubber buffers, assumed",
+};
 
 impl BumpStop {
     /// Force of the stops at a displacement (m) from the static position, N, compression positive.

@@ -3,6 +3,7 @@
 //! The leak is an orifice in parallel with the pack: `Q = c dp / sqrt(|dp| + p_t)`, the law of
 //! [`orifice`](crate::strut::orifice), never closed.
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
@@ -31,6 +32,12 @@ impl Checked for DamperLeakage {
         }),
     ];
 }
+
+/// Flow beside the pack.
+pub const EQUATION: Equation = Equation {
+    text: "Q = c dp / sqrt(|dp| + p_t)",
+    source: "Theron & Els, final report 2002, section 3.5.2",
+};
 
 impl DamperLeakage {
     /// Flow coefficient beside the pack of a path, m3/s/sqrt(Pa).

@@ -1,8 +1,9 @@
 //! The dampers weaken as their oil warms.
 //!
-//! The pressure drop of a pack is divided by `1 + f E`, where `E` is the energy that its oil holds:
-//! `dE/dt = d Q - E / tau`, the power dissipated in the path less what cools away (lumped energy balance; *assumed* form).
+//! `drop = drop_cold / (1 + f E)`, where `E` is the energy that the oil of the pack holds: `dE/dt = dp Q - E / tau`, the
+//! power dissipated in the path less what cools away (lumped energy balance; *assumed* form).
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
@@ -56,6 +57,12 @@ pub struct PackFade {
     /// Relative weakening for each joule held, 1/J.
     pub per_j: f64,
 }
+
+/// Drop of a pack whose oil holds the energy `E`.
+pub const EQUATION: Equation = Equation {
+    text: "drop = drop_cold / (1 + f E), dE/dt = dp Q - E / tau",
+    source: "lumped energy balance, assumed",
+};
 
 impl PackFade {
     /// What the pack's pressure drop is divided by while its oil holds an energy (J).

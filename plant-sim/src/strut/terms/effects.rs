@@ -7,6 +7,7 @@ use super::bump_stop::BumpStop;
 use super::damper_leakage::DamperLeakage;
 use super::damping_fade::DampingFade;
 use super::entrained_air::EntrainedAir;
+use super::equation::Equation;
 use super::gas_charge_error::GasChargeError;
 use super::gas_heat_transfer::GasHeatTransfer;
 use super::id::TermId;
@@ -161,6 +162,15 @@ impl Effects {
         }
     }
 
+    /// Keeps the faults of those instruments whose column is wanted and takes out all others.
+    pub fn retain_sensor_faults(&mut self, wanted: impl Fn(&str) -> bool) {
+        for &id in TermId::ALL {
+            if let Some(Some(faults)) = self.sensor_fault_mut(id) {
+                faults.retain(|column, _| wanted(column));
+            }
+        }
+    }
+
     /// Check the numbers of one term, where the model has it.
     fn check_term(&self, id: TermId) -> Result<(), InvalidValue> {
         fn term(term: Option<&impl Checked>) -> Result<(), InvalidValue> {
@@ -230,6 +240,44 @@ impl TermId {
     }
 }
 
+impl TermId {
+    /// The equation of a term as the solver computes it, and its source.
+    ///
+    /// ```
+    /// use oleo_plant_sim::strut::TermId;
+    /// assert_eq!(TermId::SideLoadFriction.equation().text, "g = mu |F| / (1 + s x)");
+    /// ```
+    #[must_use]
+    pub const fn equation(self) -> Equation {
+        match self {
+            Self::OilCompressibility => super::oil_compressibility::EQUATION,
+            Self::EntrainedAir => super::entrained_air::EQUATION,
+            Self::GasHeatTransfer => super::gas_heat_transfer::EQUATION,
+            Self::RealGas => super::real_gas::EQUATION,
+            Self::GasChargeError => super::gas_charge_error::EQUATION,
+            Self::SealFriction => super::seal_friction::EQUATION,
+            Self::SideLoadFriction => super::side_load_friction::EQUATION,
+            Self::AccumulatorPistonFriction => super::accumulator_piston_friction::EQUATION,
+            Self::DamperLeakage => super::damper_leakage::EQUATION,
+            Self::LineResistance => super::line_resistance::EQUATION,
+            Self::LineInertance => super::line_inertance::EQUATION,
+            Self::ValveDelay => super::valve_delay::EQUATION,
+            Self::ValveTransition => super::valve_transition::EQUATION,
+            Self::Valve3Leakage => super::valve3_leakage::EQUATION,
+            Self::BumpStop => super::bump_stop::EQUATION,
+            Self::MountCompliance => super::mount_compliance::EQUATION,
+            Self::DampingFade => super::damping_fade::EQUATION,
+            Self::SensorLag => sensor::lag::EQUATION,
+            Self::SensorGain => sensor::gain::EQUATION,
+            Self::SensorDrift => sensor::drift::EQUATION,
+            Self::SensorSkew => sensor::skew::EQUATION,
+            Self::SensorSign => sensor::sign::EQUATION,
+            Self::SensorOffset => sensor::offset::EQUATION,
+            Self::Unlisted => unlisted::EQUATION,
+        }
+    }
+}
+
 impl Checked for Effects {
     const LIMITS: &'static [Limit<Self>] = &[];
 
@@ -293,6 +341,38 @@ mod tests {
         assert_eq!(keys, ids);
         assert_eq!(toml::from_str::<Effects>(&toml::to_string(&all).unwrap()).unwrap(), all);
         assert_eq!(all.check(), Ok(()));
+    }
+
+    #[test]
+    fn faults_of_other_instruments_are_taken_out_whatever_they_are() {
+        let mut effects = every_term();
+        effects.retain_sensor_faults(|column| column == "displacement_m");
+        assert_eq!(
+            effects.sensor_lag,
+            Some(SensorEffect::from([("displacement_m".to_owned(), 0.001)]))
+        );
+        for id in TermId::ALL.iter().filter(|id| **id != TermId::SensorLag) {
+            assert!(
+                effects
+                    .sensor_fault_mut(*id)
+                    .is_none_or(|faults| faults.as_ref().is_some_and(SensorEffect::is_empty))
+            );
+        }
+        assert!(effects.damping_fade.is_some());
+    }
+
+    #[test]
+    fn the_heading_of_every_file_has_the_equation_that_pages_print() {
+        for id in TermId::ALL.iter().filter(|id| **id != TermId::Unlisted) {
+            let file = id.key().replace("sensor_", "sensor/");
+            let path = format!("{}/src/strut/terms/{file}.rs", env!("CARGO_MANIFEST_DIR"));
+            let text = std::fs::read_to_string(path).unwrap();
+            let heading: Vec<&str> = text.lines().map_while(|line| line.strip_prefix("//!")).collect();
+            let heading = heading.join("");
+            for part in id.equation().text.split(", ") {
+                assert!(heading.contains(part), "{file}: {part} is not in its heading");
+            }
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! `1/beta_eff = 1/beta + a (p_atm/p)^(1/n) / (n p)`, p absolute (Gholizadeh, Burton & Schoenau, "Fluid bulk modulus: a
 //! literature survey", Int. J. Fluid Power 12(3), 2011). Ordinary hydraulic practice has a = 0.005.
 
+use super::equation::Equation;
 use oleo_interface::{Absolute, Gauge};
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +31,12 @@ impl Checked for EntrainedAir {
 
 /// Pressure below which the volume of the bubbles is continued by its tangent: a tenth of the least that oil shows.
 pub(in crate::strut) const LEAST_BUBBLE_PRESSURE: Absolute<f64> = Absolute(2e3);
+
+/// `p` is absolute, `beta` the bulk modulus of the oil alone.
+pub const EQUATION: Equation = Equation {
+    text: "1/beta_eff = 1/beta + a (p_atm/p)^(1/n) / (n p)",
+    source: "Gholizadeh, Burton & Schoenau, Int. J. Fluid Power 12(3), 2011",
+};
 
 impl EntrainedAir {
     /// Volume of the air over that of the oil at a pressure, and minus its derivative, 1/Pa.

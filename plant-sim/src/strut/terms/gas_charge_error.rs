@@ -2,6 +2,7 @@
 //!
 //! `V_static = V_nominal (1 + e)` (recordings README).
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
@@ -25,6 +26,12 @@ impl Checked for GasChargeError {
         Limit::one("relative_error_2", RELATIVE_ERROR, "", |t| t.relative_error_2),
     ];
 }
+
+/// Gas volume at static pressure.
+pub const EQUATION: Equation = Equation {
+    text: "V_static = V_nominal (1 + e)",
+    source: "definition of the recordings",
+};
 
 impl GasChargeError {
     /// Relative error of the gas volume of the accumulator at the end of a path.

@@ -4,6 +4,7 @@
 //! temperature dependency of hydropneumatic suspension systems", SAE 930265, 1993; Otis & Pourmovahed, J. Dyn. Sys. Meas.
 //! Control 107, 1985, for the time constant). Without this term the gas stays at ambient temperature.
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
@@ -35,6 +36,12 @@ impl GasHeatTransfer {
         path.pick(self.time_constant_1_s, self.time_constant_2_s)
     }
 }
+
+/// Energy of the gas.
+pub const EQUATION: Equation = Equation {
+    text: "m c_v dT/dt = -T (dp/dT)_V dV/dt - m c_v (T - T_ambient) / tau",
+    source: "Els & Grobbelaar, SAE 930265, 1993; Otis & Pourmovahed, J. Dyn. Sys. Meas. Control 107, 1985",
+};
 
 /// One implicit step of the energy equation: everything but the wall.
 pub(in crate::strut) struct EnergyStep {

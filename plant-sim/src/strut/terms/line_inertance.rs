@@ -2,6 +2,7 @@
 //!
 //! 1 m of 10 mm has 1.1e7 kg/m4.
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
@@ -22,6 +23,12 @@ impl Checked for LineInertance {
         |t| t.inertance_2_kg_m4,
     )];
 }
+
+/// Drop in series with the path.
+pub const EQUATION: Equation = Equation {
+    text: "dp = I dQ/dt, I = rho l / a",
+    source: "Newton's law for the oil column",
+};
 
 /// An oil column during one implicit step: `dp = (I / h) (Q - Q_before)`.
 #[derive(Debug, Clone, Copy)]

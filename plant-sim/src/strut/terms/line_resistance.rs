@@ -2,6 +2,7 @@
 //!
 //! Hagen-Poiseuille: `R = 128 mu l / (pi d^4)`; 1 m of 10 mm has 8e7 Pa s/m3 at 20 mPa s.
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
@@ -49,6 +50,12 @@ pub struct LaminarLine {
     /// Resistance, Pa s/m3.
     pub resistance_pa_s_m3: f64,
 }
+
+/// Drop in series with the path.
+pub const EQUATION: Equation = Equation {
+    text: "dp = R Q",
+    source: "Hagen-Poiseuille",
+};
 
 impl LaminarLine {
     /// Pressure drop at a flow, Pa, and its derivative by the flow, Pa s/m3.

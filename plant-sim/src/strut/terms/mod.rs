@@ -1,18 +1,21 @@
 //! The terms a strut model may have: the vocabulary of the recordings, one file for each effect.
 //!
 //! A file holds everything about its effect on the plant's side: the struct as it stands in `[effects]` of `model.toml`,
-//! the limits of its numbers, its equation as the solver uses it (with the derivative where the solver needs one), its
-//! source, and tests of the equation against a closed form. The network and the integrator only call it.
+//! the limits of its numbers, its equation and source as pages print them ([`Equation`]), the equation as the solver uses it
+//! (with the derivative where the solver needs one), and tests of it against a closed form. The network and the integrator
+//! only call it.
 //!
 //! A term that is absent is physics left out, never a default value.
 //!
 //! # Adding a term
 //!
 //! 1. A file here with struct, limits, equation, source and tests; two lines in this file.
-//! 2. A variant of [`TermId`] in `id.rs` and a field of [`Effects`] in `effects.rs`. The three matches over the ids there
+//! 2. A variant of [`TermId`] in `id.rs` and a field of [`Effects`] in `effects.rs`. The four matches over the ids there
 //!    do not compile until the new one stands in each of them.
 //! 3. The place in `network`, `integrator` or `rod_forces` where the equation acts.
 //! 4. A test of the whole strut in `plant-sim/tests/strut_terms.rs`, and a line in `docs/physics.md`.
+//!
+//! `docs/adding-physics.md` walks through it, up to the effect that `oleo diagnose` finds; `./test adding-physics` follows.
 
 mod accumulator_piston_friction;
 mod bump_stop;
@@ -20,6 +23,7 @@ mod damper_leakage;
 mod damping_fade;
 mod effects;
 mod entrained_air;
+mod equation;
 mod gas_charge_error;
 mod gas_heat_transfer;
 mod id;
@@ -42,6 +46,7 @@ pub use damper_leakage::DamperLeakage;
 pub use damping_fade::{DampingFade, PackFade};
 pub use effects::Effects;
 pub use entrained_air::EntrainedAir;
+pub use equation::Equation;
 pub use gas_charge_error::GasChargeError;
 pub use gas_heat_transfer::GasHeatTransfer;
 pub use id::TermId;

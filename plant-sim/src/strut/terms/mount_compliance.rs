@@ -2,6 +2,7 @@
 //!
 //! `x_strut = x - (F - F_static) / k` (rubber bush, report 3.3).
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
@@ -37,6 +38,12 @@ pub struct Mount {
     /// One over the stiffness, m/N.
     pub flexibility_m_n: f64,
 }
+
+/// Displacement that reaches the strut.
+pub const EQUATION: Equation = Equation {
+    text: "x_strut = x - (F - F_static) / k",
+    source: "Theron & Els, final report 2002, section 3.3",
+};
 
 impl Mount {
     /// Deflection under a force above the static one, m.

@@ -9,6 +9,7 @@
 //! static:   d/dt [ (V - A x) (exp((p1 - p_static) / beta) - 1) ] = A dx/dt - Q1 - Q2
 //! ```
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
@@ -47,6 +48,12 @@ impl Checked for OilCompressibility {
         t.bulk_modulus_pa
     })];
 }
+
+/// The equation with oil counted at the chamber's density. Counted at the static one it is that of the module's heading.
+pub const EQUATION: Equation = Equation {
+    text: "dp1/dt = beta / (V - A x) (A dx/dt - Q1 - Q2)",
+    source: "Theron & Els, final report 2002, figure 21",
+};
 
 /// Oil that a chamber of `oil_m3` takes up when its pressure rises by `rise_pa`, counted at the chamber's density, m3, and
 /// its derivative by the pressure, m3/Pa. `compressibility` is `1 / beta`, 1/Pa; 0 for rigid oil.

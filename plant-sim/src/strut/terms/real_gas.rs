@@ -1,7 +1,8 @@
-//! Nitrogen departs from the ideal gas law.
+//! Nitrogen departs from the ideal gas law: `p = rho R T (1 + delta d(alpha_r)/d(delta))`.
 //!
 //! The equations of state themselves, with their sources and range, are in [`Nitrogen`].
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit};
@@ -30,6 +31,13 @@ pub struct RealGas {
 impl Checked for RealGas {
     const LIMITS: &'static [Limit<Self>] = &[];
 }
+
+/// The pressure of [`GasEquation::Reference`]: `alpha_r` is the residual Helmholtz energy, `delta` the density over the
+/// critical one.
+pub const EQUATION: Equation = Equation {
+    text: "p = rho R T (1 + delta d(alpha_r)/d(delta))",
+    source: "Span et al., J. Phys. Chem. Ref. Data 29(6), 2000",
+};
 
 impl RealGas {
     /// The equation of state, ready for use.

@@ -2,8 +2,9 @@
 //!
 //! The seal slides at `g = F_c + (F_s - F_c) exp(-(v/v_s)^2)` (Stribeck curve as in Canudas de Wit et al., "A new model for
 //! control of systems with friction", IEEE TAC 40(3), 1995, without the bristle damping). Before it slides it shears
-//! elastically, see [`advance_friction`](crate::strut::advance_friction).
+//! elastically, `dF/dx = k (1 - sgn(v) F / g)`, see [`advance_friction`](crate::strut::advance_friction).
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
@@ -40,6 +41,12 @@ impl Checked for SealFriction {
         }),
     ];
 }
+
+/// The level `g`, and what [`advance_friction`](crate::strut::advance_friction) does with it.
+pub const EQUATION: Equation = Equation {
+    text: "dF/dx = k (1 - sgn(v) F / g), g = F_c + (F_s - F_c) exp(-(v/v_s)^2)",
+    source: "Dahl 1968; Canudas de Wit et al., IEEE TAC 40(3), 1995",
+};
 
 impl SealFriction {
     /// Force at which the seal slides at a speed, N.

@@ -3,6 +3,7 @@
 //! The guides slide at `g = mu |F| / (1 + s x)` (report, 3.5.1): the moment grows with the strut force `F`, and the guides
 //! carry it over their overlap, which grows with jounce. `1/s` is the overlap at static position.
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
@@ -26,6 +27,12 @@ impl Checked for SideLoadFriction {
         }),
     ];
 }
+
+/// Force at which the guides slide.
+pub const EQUATION: Equation = Equation {
+    text: "g = mu |F| / (1 + s x)",
+    source: "Theron & Els, final report 2002, section 3.5.1",
+};
 
 /// The overlap of the guides never falls below this fraction of the one at static position.
 const LEAST_OVERLAP: f64 = 0.1;

@@ -3,6 +3,7 @@
 //! The leak is an orifice in parallel with the valve: `Q = c dp / sqrt(|dp| + p_t)`, the law of
 //! [`orifice`](crate::strut::orifice), never closed (report, 3.5.2).
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
@@ -23,6 +24,12 @@ impl Checked for Valve3Leakage {
         |t| t.flow_coefficient,
     )];
 }
+
+/// Flow through the closed valve.
+pub const EQUATION: Equation = Equation {
+    text: "Q = c dp / sqrt(|dp| + p_t)",
+    source: "Theron & Els, final report 2002, section 3.5.2",
+};
 
 #[cfg(test)]
 mod tests {

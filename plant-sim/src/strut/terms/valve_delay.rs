@@ -3,6 +3,7 @@
 //! `total = c0 + c1 dP + c2 dP^2`, dP in MPa at the edge of the switching signal (report, figure 25). The model's own
 //! `[valve_timing]` has the same law; this term replaces its polynomial.
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, InvalidValue, Limit, Range};
@@ -38,6 +39,12 @@ pub(in crate::strut) fn check_constant(polynomial: &[f64]) -> Result<(), Invalid
         _ => Ok(()),
     }
 }
+
+/// Response time; `dP` is in MPa.
+pub const EQUATION: Equation = Equation {
+    text: "total = c0 + c1 dP + c2 dP^2",
+    source: "Theron & Els, final report 2002, figures 24 and 25",
+};
 
 /// Time from the edge of the switching signal to 95 % of the movement, s, for a pressure difference (Pa) at the edge.
 /// A polynomial that falls below zero gives no response time below zero.

@@ -1,8 +1,9 @@
 //! The valves open and close gradually, not in a step.
 //!
-//! Between 5 % and 95 % of its movement the opening is a straight line through those two points (report, 3.6 asks for it;
-//! recordings README). Without this term a valve moves in a step at its total response time.
+//! The opening is the straight line through the points of 5 % and 95 % of its movement (report, 3.6 asks for it; recordings
+//! README), `u = 0.05 + 0.9 (t - t_05) / (t_95 - t_05)` with `0 <= u <= 1`. Without this term a valve moves in a step at its total response time.
 
+use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit};
@@ -26,6 +27,12 @@ pub struct ValveTransition {
 impl Checked for ValveTransition {
     const LIMITS: &'static [Limit<Self>] = &[];
 }
+
+/// Opening `u` between the times `t_05` and `t_95` at which 5 % and 95 % of the movement are reached.
+pub const EQUATION: Equation = Equation {
+    text: "u = 0.05 + 0.9 (t - t_05) / (t_95 - t_05), 0 <= u <= 1",
+    source: "Theron & Els, final report 2002, section 3.6",
+};
 
 impl ValveTransition {
     /// Times at which a movement begins and ends that passes 5 % at `early_s` and 95 % at `late_s`, s on the same clock as

@@ -2,12 +2,19 @@
 
 use crate::model_file::{Quantity, Range};
 use crate::strut::motion::Motion;
+use crate::strut::terms::equation::Equation;
 
 /// Time constant of a column's instrument, `tau`.
 pub const SIZE: Quantity = Quantity {
     key: "sensor_lag",
     range: Range::FromTo(0.0, 1e6),
     unit: "s",
+};
+
+/// What the instrument shows, `y`, of the truth `x`.
+pub const EQUATION: Equation = Equation {
+    text: "tau dy/dt + y = x",
+    source: "first-order instrument",
 };
 
 /// What the instrument shows of a true signal. Exact for a signal that is linear between its samples.

@@ -3,12 +3,19 @@
 use super::interpolate::interpolate;
 use crate::model_file::{Quantity, Range};
 use crate::strut::motion::Motion;
+use crate::strut::terms::equation::Equation;
 
 /// Time by which a column is late, `s`; negative if it is early.
 pub const SIZE: Quantity = Quantity {
     key: "sensor_skew",
     range: Range::FromTo(-1e6, 1e6),
     unit: "s",
+};
+
+/// What the instrument shows, `y`, of the truth `x`.
+pub const EQUATION: Equation = Equation {
+    text: "y(t) = x(t - s)",
+    source: "definition of the recordings",
 };
 
 /// What the instrument shows of a true signal.

@@ -1,5 +1,6 @@
 //! An unmodelled law as a model file holds it: a table at a place, over a measured quantity.
 
+use crate::strut::terms::equation::Equation;
 use serde::{Deserialize, Serialize};
 
 use super::argument::LawArgument;
@@ -76,6 +77,12 @@ impl Checked for UnlistedLaw {
 pub(super) fn word(value: &impl Serialize) -> String {
     toml::Value::try_from(value).map_or_else(|_| String::new(), |value| value.to_string())
 }
+
+/// A law of this kind has its table in place of an equation.
+pub const EQUATION: Equation = Equation {
+    text: "the tabulated law",
+    source: "fitted to the recordings; no name in the vocabulary",
+};
 
 impl UnlistedLaw {
     /// The table as the solver reads it.

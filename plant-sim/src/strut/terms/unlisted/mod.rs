@@ -27,7 +27,7 @@ mod place;
 mod seal_law;
 
 pub use argument::LawArgument;
-pub use law::UnlistedLaw;
+pub use law::{EQUATION, UnlistedLaw};
 pub use place::{LawForm, LawPlace};
 
 pub(in crate::strut) use chamber_laws::ChamberLaws;

@@ -1,0 +1,168 @@
+//! The motion of a strut against the motion of its gas: within half a second both must be the same.
+//!
+//! `oil_balance` compares means over a second, and so finds offsets. What it does not see is a displacement that moves wrongly: one
+//! that is frozen but for its noise, that has the wrong sign or gain, or that comes from another strut. All of these leave a
+//! residual that swings as much as the gas says that the strut moves.
+//!
+//! In windows of 0.5 s the span (largest less smallest value) of the residual is compared with the span of the displacement `x_g`
+//! that follows from the gas, isothermal as everywhere here. Gas that has no time to exchange heat raises its pressure 1.4 times
+//! as much and more, so that `x_g` is up to 1.4 times the displacement and the residual of a good strut a third of it. A frozen
+//! displacement shows a share of 1, a reversed one 1.7, a gain of 3 more than 1.1. Above 0.93 in four windows in a row, in each of
+//! which the gas says at least 25 mm, the displacement is called wrong; below 0.6 in one it is believed again. On a smooth road
+//! nothing moves, and nothing can be concluded. False alarms and detection times: `docs/safety.md`.
+
+use super::verdict::blame;
+use crate::failsafe::FaultCode;
+use crate::timing::ticks;
+
+const WINDOW_TICKS: u16 = ticks(500);
+/// Number of windows that must agree.
+const WINDOWS: u8 = 4;
+/// Least span of the displacement that follows from the gas, m.
+const MOVING_M: f32 = 0.025;
+/// Share of it above which the residual calls the displacement wrong, and below which it calls it right.
+const WRONG_SHARE: f32 = 0.93;
+const RIGHT_SHARE: f32 = 0.6;
+
+#[derive(Clone, Copy, Debug)]
+struct Span {
+    least: f32,
+    most: f32,
+}
+
+impl Span {
+    const EMPTY: Self = Self {
+        least: f32::MAX,
+        most: f32::MIN,
+    };
+
+    fn add(&mut self, value: f32) {
+        if value < self.least {
+            self.least = value;
+        }
+        if value > self.most {
+            self.most = value;
+        }
+    }
+
+    fn width(&self) -> f32 {
+        self.most - self.least
+    }
+}
+
+/// State of the comparison for one strut.
+#[derive(Clone, Copy, Debug)]
+pub struct OilMotion {
+    ticks: u16,
+    residual: Span,
+    from_gas: Span,
+    wrong_windows: u8,
+    flagged: bool,
+}
+
+impl Default for OilMotion {
+    fn default() -> Self {
+        Self {
+            ticks: 0,
+            residual: Span::EMPTY,
+            from_gas: Span::EMPTY,
+            wrong_windows: 0,
+            flagged: false,
+        }
+    }
+}
+
+impl OilMotion {
+    /// One tick with a displacement and what it says beyond the gas, m, if both are measured.
+    pub fn step(&mut self, measured: Option<(f32, f32)>, displacement: &mut FaultCode) {
+        match measured {
+            Some((displacement_m, residual_m)) => {
+                self.residual.add(residual_m);
+                self.from_gas.add(displacement_m - residual_m);
+                self.ticks = self.ticks.saturating_add(1);
+                if self.ticks >= WINDOW_TICKS {
+                    self.end_of_window();
+                }
+            }
+            // A window with a gap says nothing.
+            None => self.begin_window(),
+        }
+        if self.flagged {
+            blame(displacement, FaultCode::OilBalance);
+        }
+    }
+
+    fn begin_window(&mut self) {
+        self.ticks = 0;
+        self.residual = Span::EMPTY;
+        self.from_gas = Span::EMPTY;
+    }
+
+    fn end_of_window(&mut self) {
+        let (residual, moved) = (self.residual.width(), self.from_gas.width());
+        self.begin_window();
+        if moved < MOVING_M {
+            return;
+        }
+        if residual > WRONG_SHARE * moved {
+            self.wrong_windows = self.wrong_windows.saturating_add(1);
+            self.flagged |= self.wrong_windows >= WINDOWS;
+        } else {
+            self.wrong_windows = 0;
+            self.flagged &= residual >= RIGHT_SHARE * moved;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use oleo_interface::tick::TICK_S_F32;
+
+    /// Tick in which a reading that is `says` of the true displacement is called wrong, at 1.3 Hz and 20 mm either way. The gas says
+    /// 1.4 times the truth, as it does where it has no time to exchange heat.
+    fn found(says: impl Fn(f32) -> f32) -> Option<u16> {
+        let mut motion = OilMotion::default();
+        (0..1000).find(|tick| {
+            let true_m = 0.02 * libm::sinf(2.0 * core::f32::consts::PI * 1.3 * f32::from(*tick) * TICK_S_F32);
+            let reading = says(true_m);
+            let mut verdict = FaultCode::None;
+            motion.step(Some((reading, reading - 1.4 * true_m)), &mut verdict);
+            verdict != FaultCode::None
+        })
+    }
+
+    #[test]
+    fn gas_without_heat_exchange_is_no_fault_and_frozen_and_reversed_readings_are() {
+        assert_eq!(found(|x| x), None);
+        assert_eq!(found(|x| 1.4 * x), None);
+        let four_windows = Some(4 * WINDOW_TICKS - 1);
+        assert_eq!(found(|_| 0.01), four_windows);
+        assert_eq!(found(|x| -x), four_windows);
+        assert_eq!(found(|x| 3.0 * x), four_windows);
+    }
+
+    #[test]
+    fn a_verdict_needs_motion_and_its_end_too() {
+        let mut motion = OilMotion::default();
+        let mut window = |residual_m: f32, moved_m: f32| {
+            let mut verdict = FaultCode::None;
+            for tick in 0..WINDOW_TICKS {
+                let up = f32::from(tick % 2);
+                motion.step(Some((up * (moved_m + residual_m), up * residual_m)), &mut verdict);
+            }
+            // The verdict as it stands after the window.
+            verdict = FaultCode::None;
+            motion.step(None, &mut verdict);
+            verdict != FaultCode::None
+        };
+        assert!((0..10).all(|_| !window(0.02, 0.02)), "too little motion");
+        let verdicts: [bool; 4] = core::array::from_fn(|_| window(0.03, 0.03));
+        assert_eq!(verdicts, [false, false, false, true]);
+        assert!(
+            (0..10).all(|_| window(0.0, 0.02)),
+            "too little motion to see that it is right"
+        );
+        assert!(!window(0.0, 0.03));
+    }
+}

@@ -1,0 +1,122 @@
+//! Candidates: an effect at a place with the numbers to fit.
+
+use crate::parameter::Parameter;
+use crate::vocabulary::{EffectId, Place, Site};
+
+/// A law or an instrument fault that the model may lack: a kind of element at a place.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    /// Id of the vocabulary, `unlisted` for laws without a name.
+    pub id: EffectId,
+    /// Where it acts.
+    pub place: Place,
+    /// What tells laws without a name apart, such as `force over speed`; empty for everything else.
+    pub label: String,
+    /// Numbers to fit; none for an effect that is simply there or not.
+    pub parameters: Vec<Parameter>,
+    /// Starting points, in values, tried beside the parameters' own.
+    pub starts: Vec<Vec<f64>>,
+    /// Candidates of the same group exclude each other.
+    pub group: Option<ExclusionGroup>,
+    /// Why the recordings cannot show it, where they cannot.
+    pub untestable: Option<String>,
+}
+
+/// Candidates of which a model can hold one: they stand in the place of one effect in different forms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ExclusionGroup(pub EffectId);
+
+impl Candidate {
+    /// An effect at a site of a specimen with the numbers to fit.
+    #[must_use]
+    pub fn new(id: EffectId, site: Site, parameters: Vec<Parameter>) -> Self {
+        Self {
+            id,
+            place: site.into(),
+            label: String::new(),
+            parameters,
+            starts: vec![],
+            group: None,
+            untestable: None,
+        }
+    }
+
+    /// The same with a label.
+    #[must_use]
+    pub fn labelled(self, label: &str) -> Self {
+        Self {
+            label: label.to_owned(),
+            ..self
+        }
+    }
+
+    /// The same with starting points beside the parameters' own.
+    #[must_use]
+    pub fn starting_at(self, starts: Vec<Vec<f64>>) -> Self {
+        Self { starts, ..self }
+    }
+
+    /// The same in the group of what stands in the place of an effect.
+    #[must_use]
+    pub fn in_place_of(self, id: EffectId) -> Self {
+        Self {
+            group: Some(ExclusionGroup(id)),
+            ..self
+        }
+    }
+
+    /// The same with the reason why the recordings cannot show it, where there is one. Of several the last is told.
+    #[must_use]
+    pub fn testable_unless(self, reason: Option<String>) -> Self {
+        Self {
+            untestable: reason.or(self.untestable),
+            ..self
+        }
+    }
+
+    /// True for a law that the vocabulary does not name.
+    #[must_use]
+    pub fn is_unlisted(&self) -> bool {
+        self.id == EffectId::Unlisted
+    }
+
+    /// True for the fault of an instrument, which is judged before physics.
+    #[must_use]
+    pub const fn is_instrument_fault(&self) -> bool {
+        self.id.is_instrument_fault()
+    }
+
+    /// True if the two cannot be in one model: members of one group, and two faults of one instrument, which can stand in for
+    /// each other (a short lag is nearly a skew).
+    #[must_use]
+    pub fn excludes(&self, other: &Self) -> bool {
+        (self.group.is_some() && self.group == other.group)
+            || (self.is_instrument_fault() && other.is_instrument_fault() && self.place == other.place)
+    }
+
+    /// True if these values leave the model as it is: an amount that starts at zero is zero.
+    #[must_use]
+    pub fn absent_at(&self, values: &[f64]) -> bool {
+        (self.parameters.iter().zip(values)).any(|(p, v)| p.start == 0.0 && *v == 0.0)
+    }
+
+    /// Id, place and label in one text that no other candidate has.
+    #[must_use]
+    pub fn name(&self) -> String {
+        if self.label.is_empty() {
+            format!("{}@{}", self.id, self.place)
+        } else {
+            format!("{}@{} ({})", self.id, self.place, self.label)
+        }
+    }
+
+    /// The place, with the label where there is one.
+    #[must_use]
+    pub fn place_and_label(&self) -> String {
+        if self.label.is_empty() {
+            self.place.to_string()
+        } else {
+            format!("{} ({})", self.place, self.label)
+        }
+    }
+}

@@ -1,0 +1,18 @@
+//! A value that is added: zero at rest, fitted as rises of any sign.
+
+use super::form::{Form, Grid};
+use super::rises;
+use crate::parameter::Parameter;
+
+pub struct Added;
+
+impl Form for Added {
+    fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
+        let most = grid.most();
+        rises::parameters(grid, |key| Parameter::linear(key, 0.0, grid.visible, (-most, most)))
+    }
+
+    fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        rises::values(grid, fitted)
+    }
+}

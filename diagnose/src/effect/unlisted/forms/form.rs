@@ -1,0 +1,38 @@
+//! What every form of a law says of itself.
+
+use crate::parameter::Parameter;
+
+/// Largest fitted number over one that would be visible.
+const MOST: f64 = 1e4;
+
+/// Points of a table and what is known of the law there.
+pub struct Grid {
+    /// Values of the argument.
+    pub knots: &'static [f64],
+    /// Value of the argument at rest, where a law changes nothing.
+    pub at_rest: f64,
+    /// Size of one fitted number that would be visible.
+    pub visible: f64,
+}
+
+impl Grid {
+    /// Largest fitted number.
+    #[must_use]
+    pub fn most(&self) -> f64 {
+        MOST * self.visible
+    }
+}
+
+/// How a table comes from fitted numbers.
+pub trait Form: Sync {
+    /// The numbers to fit.
+    fn parameters(&self, grid: &Grid) -> Vec<Parameter>;
+
+    /// Starting points beside "not there": laws that bend far from straight are also tried where they show.
+    fn starts(&self) -> Vec<Vec<f64>> {
+        vec![]
+    }
+
+    /// The table's values from the fitted numbers.
+    fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64>;
+}

@@ -1,0 +1,18 @@
+//! A value that is added and never negative, fitted knot by knot.
+
+use super::form::{Form, Grid};
+use crate::parameter::Parameter;
+
+pub struct Level;
+
+impl Form for Level {
+    fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
+        (grid.knots.iter())
+            .map(|x| Parameter::amount(format!("at_{x:.3e}"), grid.visible, grid.most()))
+            .collect()
+    }
+
+    fn values(&self, _grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        fitted.to_vec()
+    }
+}

@@ -1,0 +1,22 @@
+//! Tables that are fitted as rises from knot to knot.
+
+use super::form::Grid;
+use crate::parameter::Parameter;
+
+/// A parameter for each rise, made from its key.
+pub fn parameters(grid: &Grid, parameter: impl Fn(String) -> Parameter) -> Vec<Parameter> {
+    (grid.knots.windows(2))
+        .map(|w| parameter(format!("rise_{:.3e}_to_{:.3e}", w[0], w[1])))
+        .collect()
+}
+
+/// Values at the knots, zero at rest; where rest is no knot, zero at the first.
+pub fn values(grid: &Grid, rises: &[f64]) -> Vec<f64> {
+    let mut value = vec![0.0];
+    for rise in rises {
+        value.push(value[value.len() - 1] + rise);
+    }
+    let at_rest = grid.knots.iter().position(|k| *k == grid.at_rest);
+    let rest = at_rest.map_or(0.0, |k| value[k]);
+    value.iter().map(|v| v - rest).collect()
+}

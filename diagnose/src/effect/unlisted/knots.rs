@@ -1,0 +1,72 @@
+//! Points at which the tables of laws are fitted.
+
+/// 1 MPa.
+const P: f64 = 1e6;
+/// Displacement, m, dense about the static position.
+pub const STROKE_M: &[f64] = &[
+    -0.06, -0.04, -0.026, -0.017, -0.009, 0.0, 0.009, 0.017, 0.026, 0.04, 0.06,
+];
+/// Displacement over the whole travel, m.
+pub const TRAVEL_M: &[f64] = &[-0.09, -0.06, -0.03, 0.0, 0.03, 0.06, 0.09];
+/// Speed, m/s, dense about rest.
+pub const SPEED_M_S: &[f64] = &[-0.6, -0.2, -0.05, -0.005, 0.0, 0.005, 0.05, 0.2, 0.6];
+/// Gauge pressure of the main chamber, Pa.
+pub const P1_PA: &[f64] = &[0.0, 2.0 * P, 4.0 * P, 6.0 * P, 9.0 * P, 13.0 * P];
+/// Flow in a path, m3/s.
+pub const FLOW_M3_S: &[f64] = &[-1.5e-3, -5e-4, -1.5e-4, 0.0, 1.5e-4, 5e-4, 1.5e-3];
+/// Pressure drop across a damper pack, Pa.
+pub const PACK_PA: &[f64] = &[
+    -2.5 * P,
+    -1.6 * P,
+    -P,
+    -0.5 * P,
+    -0.2 * P,
+    0.0,
+    0.2 * P,
+    0.5 * P,
+    0.8 * P,
+    1.2 * P,
+    2.0 * P,
+];
+/// Pressure drop across an open valve, Pa: every half octave.
+pub const VALVE_PA: &[f64] = &[
+    0.0,
+    0.02 * P,
+    0.03 * P,
+    0.045 * P,
+    0.07 * P,
+    0.1 * P,
+    0.14 * P,
+    0.2 * P,
+    0.28 * P,
+    0.4 * P,
+    0.56 * P,
+    0.8 * P,
+    1.1 * P,
+    1.6 * P,
+    2.2 * P,
+    3.2 * P,
+    4.5 * P,
+    6.4 * P,
+    9.0 * P,
+    13.0 * P,
+];
+/// Displacement, m: every 4 mm where a strut mostly is.
+pub const GROOVE_M: &[f64] = &[
+    -0.1, -0.08, -0.064, -0.056, -0.048, -0.04, -0.036, -0.032, -0.028, -0.024, -0.02, -0.016, -0.012, -0.008, -0.004,
+    0.0, 0.004, 0.008, 0.012, 0.016, 0.02, 0.024, 0.028, 0.032, 0.036, 0.04, 0.048, 0.056, 0.064, 0.08, 0.1,
+];
+/// Gauge pressure of the main chamber, Pa, dense where air shows.
+pub const CHAMBER_PA: &[f64] = &[
+    0.0,
+    0.2 * P,
+    0.45 * P,
+    0.8 * P,
+    1.3 * P,
+    2.0 * P,
+    4.0 * P,
+    7.0 * P,
+    13.0 * P,
+];
+/// Gas volume over the static one.
+pub const RELATIVE_VOLUME: &[f64] = &[0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0];

@@ -1,0 +1,110 @@
+//! The effect whose id says that the vocabulary has no name for it.
+
+use oleo_plant_sim::strut::{Equation, StrutModel, TermId};
+
+use super::words::NamelessLaw;
+use super::{cylinder_laws, gas_spring_laws, strut_laws, textbook};
+use crate::effect::candidate::Candidate;
+use crate::effect::contract::{ActsOn, Concealed, Cylinder, Effect, Experiment, GasSpring, Strut, StrutEffect};
+use crate::effect::drawn::{Drawn, TrueNumber};
+use crate::excitation;
+use crate::vocabulary::{EffectId, SpecimenKind};
+
+/// Laws that the vocabulary has no name for.
+pub struct Unlisted;
+
+impl Effect for Unlisted {
+    fn id(&self) -> EffectId {
+        EffectId::Unlisted
+    }
+
+    fn name(&self) -> &'static str {
+        "physics without a name in the vocabulary"
+    }
+
+    fn meaning(&self) -> &'static str {
+        "the law was fitted to the recordings"
+    }
+
+    fn symbols(&self) -> &'static [(&'static str, &'static str)] {
+        &[]
+    }
+
+    fn named(&self, kind: SpecimenKind, label: &str) -> &'static str {
+        words(kind, label).map_or(self.name(), |law| law.name)
+    }
+
+    fn called(&self, kind: SpecimenKind, label: &str) -> String {
+        // The labels of tables say what they relate.
+        if label.contains(" over ") {
+            format!("a {label}, which has no name in the vocabulary,")
+        } else {
+            self.named(kind, label).to_owned()
+        }
+    }
+
+    fn equation_in(&self, kind: SpecimenKind, label: &str) -> Option<Equation> {
+        Some(words(kind, label).map_or(TermId::Unlisted.equation(), |law| law.equation))
+    }
+
+    fn in_strut(&self) -> Option<&dyn StrutEffect> {
+        Some(self)
+    }
+
+    fn in_gas_spring(&self) -> Option<&dyn ActsOn<GasSpring>> {
+        Some(&gas_spring_laws::Laws)
+    }
+
+    fn in_cylinder(&self) -> Option<&dyn ActsOn<Cylinder>> {
+        Some(&cylinder_laws::Laws)
+    }
+}
+
+/// Words of a law of one number; `None` for a table, which a strut's laws are.
+fn words(kind: SpecimenKind, label: &str) -> Option<NamelessLaw> {
+    match kind {
+        SpecimenKind::TwoStageStrut => None,
+        SpecimenKind::GasSpring => gas_spring_laws::words(label),
+        SpecimenKind::Cylinder => cylinder_laws::words(label),
+    }
+}
+
+impl ActsOn<Strut> for Unlisted {
+    fn equation(&self) -> Equation {
+        TermId::Unlisted.equation()
+    }
+
+    fn candidates(&self, _model: &StrutModel, _excitation: &excitation::Strut) -> Vec<Candidate> {
+        strut_laws::candidates()
+    }
+
+    fn put(&self, model: &mut StrutModel, candidate: &Candidate, values: &[f64]) {
+        model
+            .effects
+            .unlisted
+            .extend(strut_laws::table(&candidate.label, values));
+    }
+
+    fn experiment(&self) -> Experiment {
+        Experiment {
+            record: "triangles of 20 and 80 mm, each at 5 mm/s and at 0.5 m/s, in all four states of valves 1 and 3, valve 2 open",
+            shows: "follows the quantity of its table, whatever else is changed",
+        }
+    }
+}
+
+impl Concealed for Unlisted {
+    fn variants(&self) -> usize {
+        textbook::COUNT
+    }
+
+    fn amounts(&self, _variant: usize) -> Option<(f64, f64)> {
+        Some((1e-5, 1.0))
+    }
+
+    fn put_true(&self, model: &mut StrutModel, drawn: &Drawn, amount: f64) -> Vec<TrueNumber> {
+        let (site, law) = textbook::law(drawn, amount);
+        model.effects.unlisted.push(law);
+        vec![TrueNumber::present(site)]
+    }
+}

@@ -1,0 +1,292 @@
+//! Which laws are tried on a strut: place x dependence x form, as data.
+//!
+//! A new row is a new law to search for; a new dependence or place is one of plant-sim's ([`LawArgument`], [`LawPlace`]).
+
+use oleo_interface::Valve;
+use oleo_plant_sim::strut::LawArgument::{Displacement, Flow, P1, PressureDrop, RelativeVolume, Speed};
+use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
+
+use super::forms::{Added, Bell, Choke, Factor, Form, Grid, Level, Rising};
+use super::knots::{
+    CHAMBER_PA, FLOW_M3_S, GROOVE_M, P1_PA, PACK_PA, RELATIVE_VOLUME, SPEED_M_S, STROKE_M, TRAVEL_M, VALVE_PA,
+};
+use crate::effect::candidate::Candidate;
+use crate::vocabulary::{Branch, EffectId, Site};
+
+/// One law that is searched for.
+struct Law {
+    /// What it relates, for people: "force over speed".
+    label: &'static str,
+    /// Where it is reported.
+    site: Site,
+    /// Where it acts in the model.
+    place: LawPlace,
+    /// What it depends on.
+    depends_on: LawArgument,
+    /// How its table comes from fitted numbers.
+    form: &'static dyn Form,
+    /// Points of its table.
+    knots: &'static [f64],
+    /// Size of one fitted number that would be visible.
+    visible: f64,
+}
+
+const fn law(
+    label: &'static str,
+    site: Site,
+    (place, depends_on): (LawPlace, LawArgument),
+    form: &'static dyn Form,
+    knots: &'static [f64],
+    visible: f64,
+) -> Law {
+    Law {
+        label,
+        site,
+        place,
+        depends_on,
+        form,
+        knots,
+        visible,
+    }
+}
+
+const LAWS: &[Law] = &[
+    law(
+        "force over displacement",
+        Site::MainSeal,
+        (LawPlace::MainSeal, Displacement),
+        &Added,
+        TRAVEL_M,
+        20.0,
+    ),
+    law(
+        "force over speed",
+        Site::MainSeal,
+        (LawPlace::MainSeal, Speed),
+        &Added,
+        SPEED_M_S,
+        20.0,
+    ),
+    law(
+        "force over pressure",
+        Site::MainSeal,
+        (LawPlace::MainSeal, P1),
+        &Added,
+        P1_PA,
+        20.0,
+    ),
+    law(
+        "friction over displacement",
+        Site::MainSeal,
+        (LawPlace::MainSealFriction, Displacement),
+        &Level,
+        TRAVEL_M,
+        20.0,
+    ),
+    law(
+        "friction over speed",
+        Site::MainSeal,
+        (LawPlace::MainSealFriction, Speed),
+        &Level,
+        SPEED_M_S,
+        20.0,
+    ),
+    law(
+        "friction over pressure",
+        Site::MainSeal,
+        (LawPlace::MainSealFriction, P1),
+        &Level,
+        P1_PA,
+        20.0,
+    ),
+    law(
+        "volume over pressure",
+        Site::MainChamber,
+        (LawPlace::MainChamber, P1),
+        &Rising,
+        CHAMBER_PA,
+        5e-8,
+    ),
+    law(
+        "oil lost over pressure",
+        Site::MainChamber,
+        (LawPlace::MainChamberLoss, P1),
+        &Level,
+        P1_PA,
+        1e-9,
+    ),
+    law(
+        "series drop over flow, path 1",
+        Site::Path(Branch::First),
+        (LawPlace::Path1, Flow),
+        &Rising,
+        FLOW_M3_S,
+        1e4,
+    ),
+    law(
+        "series drop over flow, path 2",
+        Site::Path(Branch::Second),
+        (LawPlace::Path2, Flow),
+        &Rising,
+        FLOW_M3_S,
+        1e4,
+    ),
+    law(
+        "flow beside pack 1 over pressure drop",
+        Site::Path(Branch::First),
+        (LawPlace::BesidePack1, PressureDrop),
+        &Rising,
+        PACK_PA,
+        2e-6,
+    ),
+    law(
+        "flow beside pack 2 over pressure drop",
+        Site::Path(Branch::Second),
+        (LawPlace::BesidePack2, PressureDrop),
+        &Rising,
+        PACK_PA,
+        2e-6,
+    ),
+    law(
+        "opening beside pack 1 over displacement",
+        Site::Path(Branch::First),
+        (LawPlace::BesidePack1, Displacement),
+        &Bell,
+        GROOVE_M,
+        1e-7,
+    ),
+    law(
+        "opening beside pack 2 over displacement",
+        Site::Path(Branch::Second),
+        (LawPlace::BesidePack2, Displacement),
+        &Bell,
+        GROOVE_M,
+        1e-7,
+    ),
+    law(
+        "strength of pack 1 over displacement",
+        Site::Path(Branch::First),
+        (LawPlace::Pack1, Displacement),
+        &Factor,
+        STROKE_M,
+        0.05,
+    ),
+    law(
+        "strength of pack 2 over displacement",
+        Site::Path(Branch::Second),
+        (LawPlace::Pack2, Displacement),
+        &Factor,
+        STROKE_M,
+        0.05,
+    ),
+    law(
+        "flow of the open valves over pressure drop",
+        Site::Valves,
+        (LawPlace::Valves, PressureDrop),
+        &Choke,
+        VALVE_PA,
+        1e-8,
+    ),
+    law(
+        "flow of open valve 1 over pressure drop",
+        Site::Valve(Valve::Bypass1),
+        (LawPlace::Valve1, PressureDrop),
+        &Choke,
+        VALVE_PA,
+        1e-8,
+    ),
+    law(
+        "flow of open valve 2 over pressure drop",
+        Site::Valve(Valve::Bypass2),
+        (LawPlace::Valve2, PressureDrop),
+        &Choke,
+        VALVE_PA,
+        1e-8,
+    ),
+    law(
+        "flow of open valve 3 over pressure drop",
+        Site::Valve(Valve::Spring),
+        (LawPlace::Valve3, PressureDrop),
+        &Choke,
+        VALVE_PA,
+        1e-8,
+    ),
+    law(
+        "gas pressure over volume, accumulator 1",
+        Site::Accumulator(Branch::First),
+        (LawPlace::Accumulator1, RelativeVolume),
+        &Factor,
+        RELATIVE_VOLUME,
+        0.01,
+    ),
+    law(
+        "gas pressure over volume, accumulator 2",
+        Site::Accumulator(Branch::Second),
+        (LawPlace::Accumulator2, RelativeVolume),
+        &Factor,
+        RELATIVE_VOLUME,
+        0.01,
+    ),
+];
+
+impl Law {
+    /// At rest a law adds nothing and leaves everything as believed: displacement, speed, flow and drop zero, gas volume
+    /// the static one, smallest pressure.
+    fn grid(&self) -> Grid {
+        Grid {
+            knots: self.knots,
+            at_rest: if self.depends_on == RelativeVolume { 1.0 } else { 0.0 },
+            visible: self.visible,
+        }
+    }
+}
+
+/// Candidates for every law.
+pub fn candidates() -> Vec<Candidate> {
+    let candidate = |law: &Law| {
+        Candidate::new(EffectId::Unlisted, law.site.clone(), law.form.parameters(&law.grid()))
+            .labelled(law.label)
+            .starting_at(law.form.starts())
+            .in_place_of(EffectId::Unlisted)
+    };
+    LAWS.iter().map(candidate).collect()
+}
+
+/// The law of a candidate with its fitted numbers, as a model file holds it; `None` for a label that no law has.
+#[must_use]
+pub fn table(label: &str, fitted: &[f64]) -> Option<UnlistedLaw> {
+    let law = LAWS.iter().find(|law| law.label == label)?;
+    Some(UnlistedLaw {
+        place: law.place,
+        depends_on: law.depends_on,
+        argument: law.knots.to_vec(),
+        value: law.form.values(&law.grid(), fitted),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plant_sim_reads_every_law_where_it_is_put() {
+        for law in LAWS {
+            assert!(law.place.arguments().contains(&law.depends_on), "{}", law.label);
+            assert!(law.knots.windows(2).all(|w| w[0] < w[1]), "{}", law.label);
+            let others = LAWS.iter().filter(|other| other.label == law.label);
+            assert_eq!(others.count(), 1, "{}", law.label);
+        }
+    }
+
+    #[test]
+    fn a_law_whose_numbers_say_absent_leaves_the_model_as_it_is() {
+        for law in LAWS {
+            let fitted: Vec<f64> = law.form.parameters(&law.grid()).iter().map(|p| p.start).collect();
+            let table = table(law.label, &fitted).expect("a law");
+            // What is added is zero, a factor is one.
+            let first = table.value[0];
+            assert!(first == 0.0 || first == 1.0, "{}", law.label);
+            assert!(table.value.iter().all(|v| *v == first), "{}", law.label);
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! Laws of textbook form that the vocabulary does not hold, for the self-test to conceal.
+
+use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
+
+use crate::effect::drawn::Drawn;
+use crate::vocabulary::{Branch, Site};
+
+/// Points of a concealed table: many, and not those that the search uses.
+const POINTS: usize = 61;
+
+/// A law to conceal.
+struct Law {
+    /// Where it should be reported.
+    site: Site,
+    /// Where it acts in the model.
+    place: LawPlace,
+    /// What it depends on.
+    depends_on: LawArgument,
+    /// Largest argument of its table.
+    end: f64,
+    /// Its value at an argument, for an amount of 1e-5 to 1; the second number is `end`.
+    value: fn(f64, f64, &Drawn, f64) -> f64,
+}
+
+const LAWS: [Law; 7] = [
+    Law {
+        site: Site::Path(Branch::First),
+        place: LawPlace::Path1,
+        depends_on: LawArgument::Flow,
+        end: 2e-3,
+        value: turbulent_line,
+    },
+    Law {
+        site: Site::Path(Branch::Second),
+        place: LawPlace::Path2,
+        depends_on: LawArgument::Flow,
+        end: 2e-3,
+        value: turbulent_line,
+    },
+    Law {
+        site: Site::MainSeal,
+        place: LawPlace::MainSeal,
+        depends_on: LawArgument::Speed,
+        end: 1.2,
+        value: viscous_seal,
+    },
+    Law {
+        site: Site::MainSeal,
+        place: LawPlace::MainSeal,
+        depends_on: LawArgument::Displacement,
+        end: 0.11,
+        value: dust_boot,
+    },
+    Law {
+        site: Site::Path(Branch::First),
+        place: LawPlace::BesidePack1,
+        depends_on: LawArgument::Displacement,
+        end: 0.11,
+        value: groove,
+    },
+    Law {
+        site: Site::Path(Branch::Second),
+        place: LawPlace::BesidePack2,
+        depends_on: LawArgument::Displacement,
+        end: 0.11,
+        value: groove,
+    },
+    Law {
+        site: Site::Valves,
+        place: LawPlace::Valves,
+        depends_on: LawArgument::PressureDrop,
+        end: 1.3e7,
+        value: saturating_valve,
+    },
+];
+
+/// Pressure drop over flow squared, Pa: 3 MPa at 2 l/s at most.
+fn turbulent_line(flow: f64, end: f64, _drawn: &Drawn, amount: f64) -> f64 {
+    amount * 3e6 * (flow / end) * (flow / end).abs()
+}
+
+/// Force over speed, N: 1.5 kN at 1.2 m/s at most, with a drawn curvature.
+fn viscous_seal(speed: f64, end: f64, drawn: &Drawn, amount: f64) -> f64 {
+    amount * 1.5e3 * (speed / end) * libm::pow((speed / end).abs(), 0.6 * drawn.shape[0])
+}
+
+/// Force over displacement, N: the air spring of a sealed dust boot.
+fn dust_boot(displacement: f64, end: f64, drawn: &Drawn, amount: f64) -> f64 {
+    let a = displacement;
+    drawn.sign * amount * 1e3 * (0.5 * a / end + (a / end) * (a / end) * (a / end))
+}
+
+/// Opening over displacement, m3/s/sqrt(Pa): a groove beside the pack of drawn place and width with ends that run out
+/// linearly; 2e-6 at most.
+fn groove(displacement: f64, _end: f64, drawn: &Drawn, amount: f64) -> f64 {
+    let (at, half) = (0.03 * (2.0 * drawn.shape[0] - 1.0), 0.012 + 0.02 * drawn.shape[1]);
+    amount * 2e-6 * (1.5 - (displacement - at).abs() / half).clamp(0.0, 1.0)
+}
+
+/// Fraction left of a flow over the root of the drop, which approaches a constant one.
+fn saturating_valve(drop: f64, end: f64, _drawn: &Drawn, amount: f64) -> f64 {
+    1.0 / (1.0 + 30.0 * amount * drop.abs() / end).sqrt()
+}
+
+/// How many laws there are to draw from.
+pub const COUNT: usize = LAWS.len();
+
+/// The drawn law of an amount, and where it should be reported.
+pub fn law(drawn: &Drawn, amount: f64) -> (Site, UnlistedLaw) {
+    let law = &LAWS[drawn.variant];
+    let argument: Vec<f64> = (0..POINTS)
+        .map(|k| law.end * (2.0 * k as f64 / (POINTS - 1) as f64 - 1.0))
+        .collect();
+    let value = argument
+        .iter()
+        .map(|a| (law.value)(*a, law.end, drawn, amount))
+        .collect();
+    let table = UnlistedLaw {
+        place: law.place,
+        depends_on: law.depends_on,
+        argument,
+        value,
+    };
+    (law.site.clone(), table)
+}

@@ -1,0 +1,18 @@
+//! What the recordings of a specimen excite, so that effects they cannot show are listed as not tested instead of absent.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `strut`, `cylinder`, `gas_spring` | ranges and events that the effects of this kind of specimen need |
+//! | `extent` | ranges of columns, duration and sampling interval |
+//! | `corner` | corners of a motion, and what they say about the clocks of two columns |
+
+mod corner;
+mod cylinder;
+mod extent;
+mod gas_spring;
+mod strut;
+
+pub use corner::{Clock, corners};
+pub use cylinder::{Cylinder, pressing};
+pub use gas_spring::GasSpring;
+pub use strut::Strut;

@@ -1,0 +1,109 @@
+//! What the recordings of a strut excite.
+
+use crate::recording::Recording;
+use crate::vocabulary::Branch;
+
+/// Effects on a flow need a pressure drop of this size to be seen, Pa.
+const LEAST_DROP_PA: f64 = 1e5;
+
+/// Extremes and events over all recordings of a strut.
+#[derive(Debug, Clone, Default)]
+pub struct Strut {
+    /// Displacement range, m.
+    pub displacement_m: (f64, f64),
+    /// Largest departure from the first value of each channel: force, N, and p1 to p4, Pa.
+    pub departure: [f64; 5],
+    /// Switching edges of each valve.
+    pub edges: [usize; 3],
+    /// Time with valve 3 closed and p3 apart from p4 by more than ten times the noise, s.
+    pub valve3_holding_s: f64,
+    /// Largest pressure drops p1-p2, p1-p3, Pa.
+    pub drop_pa: [f64; 2],
+    /// Longest recording, s.
+    pub duration_s: f64,
+    /// Shortest sampling interval, s.
+    pub interval_s: f64,
+    /// Does anything move at all?
+    pub moves: bool,
+}
+
+impl Strut {
+    /// Goes through all recordings once. `noise` are the standard deviations of force, N, and p1 to p4, Pa;
+    /// `displacement_noise` is that of the displacement, m.
+    #[must_use]
+    pub fn of(recordings: &[Recording], noise: &[f64; 5], displacement_noise: f64) -> Self {
+        let mut e = Self {
+            interval_s: f64::INFINITY,
+            displacement_m: (f64::MAX, f64::MIN),
+            ..Self::default()
+        };
+        for r in recordings {
+            let first = r.columns[0][0];
+            for &x in &r.columns[0] {
+                e.displacement_m = (e.displacement_m.0.min(x), e.displacement_m.1.max(x));
+                e.moves |= (x - first).abs() > 10.0 * displacement_noise.max(1e-6);
+            }
+            for c in 0..5 {
+                let rest = r.columns[1 + c][0];
+                e.departure[c] = r.columns[1 + c]
+                    .iter()
+                    .fold(e.departure[c], |m, v| m.max((v - rest).abs()));
+            }
+            for v in 0..3 {
+                e.edges[v] += r.columns[6 + v].windows(2).filter(|w| w[0] != w[1]).count();
+            }
+            let interval = r.interval_s();
+            let apart = 10.0 * noise[3].max(noise[4]);
+            for k in 0..r.len() {
+                let p = |c: usize| r.columns[1 + c][k];
+                e.drop_pa[0] = e.drop_pa[0].max((p(1) - p(2)).abs());
+                e.drop_pa[1] = e.drop_pa[1].max((p(1) - p(3)).abs());
+                if r.columns[8][k] < 0.5 && (p(3) - p(4)).abs() > apart {
+                    e.valve3_holding_s += interval;
+                }
+            }
+            e.duration_s = e.duration_s.max(r.time_s[r.len() - 1] - r.time_s[0]);
+            e.interval_s = e.interval_s.min(interval);
+        }
+        e
+    }
+
+    /// Why nothing can be tested, where the strut does not move.
+    #[must_use]
+    pub fn still(&self) -> Option<String> {
+        (!self.moves).then(|| "the strut does not move; record moves of at least 10 mm".to_owned())
+    }
+
+    /// Why the timing of the valves cannot be tested, where none is switched.
+    #[must_use]
+    pub fn no_edges(&self) -> Option<String> {
+        let switched = self.edges.iter().any(|&n| n > 0);
+        (!switched).then(|| "no valve is switched; record steps at several pressure differences".to_owned())
+    }
+
+    /// Why what acts on the flow in a path cannot be tested, where its damper has no drop.
+    #[must_use]
+    pub fn no_drop(&self, branch: Branch) -> Option<String> {
+        let path = branch.number();
+        (self.drop_pa[path - 1] < LEAST_DROP_PA).then(|| {
+            format!(
+                "the drop across damper {path} never reaches 0.1 MPa; record sines above 0.2 m/s with valve {path} closed"
+            )
+        })
+    }
+
+    /// Recordings in which everything is excited.
+    #[cfg(test)]
+    pub fn of_everything() -> Self {
+        Self {
+            displacement_m: (-0.06, 0.07),
+            departure: [5e3, 3e6, 3e6, 3e6, 3e6],
+            edges: [4; 3],
+            valve3_holding_s: 10.0,
+            drop_pa: [1e6; 2],
+            duration_s: 20.0,
+            interval_s: 0.002,
+            moves: true,
+        }
+    }
+}

@@ -1,0 +1,25 @@
+//! The kinds of specimen, as `specimen.kind` of a model file names them.
+
+use strum::{Display, EnumString, IntoStaticStr, VariantArray, VariantNames};
+
+/// A kind of specimen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Display, EnumString, IntoStaticStr, VariantNames, VariantArray)]
+pub enum SpecimenKind {
+    /// Hydropneumatic strut with two accumulators, two dampers and three valves, on a test rig.
+    #[strum(serialize = "two-stage hydropneumatic strut")]
+    TwoStageStrut,
+    /// One chamber of gas behind a piston.
+    #[strum(serialize = "gas spring")]
+    GasSpring,
+    /// Chambers under pressure that is measured, and the force of the rod.
+    #[strum(serialize = "cylinder")]
+    Cylinder,
+}
+
+impl SpecimenKind {
+    /// The text in a model file.
+    #[must_use]
+    pub fn as_str(self) -> &'static str {
+        self.into()
+    }
+}

@@ -10,7 +10,16 @@ fn main() {
     let seeds: u64 = arguments[2].parse().unwrap();
     let bench = Bench::defender110();
     let controlled = |strategy: Strategy| {
-        let builder = oleo_controller::Builder { strategy, ..bench.controller() };
+        let mut builder = oleo_controller::Builder { strategy, ..bench.controller() };
+        let env = |name: &str, value: f32| std::env::var(name).map_or(value, |v| v.parse().unwrap());
+        let t = &mut builder.tuning.strategy.road_and_cornering;
+        t.cornering_floor_m_s2 = env("FLOOR", t.cornering_floor_m_s2);
+        t.cornering_multiple = env("K", t.cornering_multiple);
+        t.release_share = env("REL", t.release_share);
+        t.lateral_memory_s = env("MEM", t.lateral_memory_s);
+        t.very_rough_m_s2.begin = env("VB", t.very_rough_m_s2.begin);
+        t.very_rough_m_s2.end = env("VE", t.very_rough_m_s2.end);
+        builder.tuning.estimate.lateral_corner_hz = env("LP", builder.tuning.estimate.lateral_corner_hz);
         Setting::Controlled(strategy.name(), Box::new(builder.build().unwrap()))
     };
     let mut settings = vec![Setting::AsSold];

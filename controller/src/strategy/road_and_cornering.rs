@@ -31,6 +31,8 @@ use crate::vehicle::VehicleDescription;
 
 /// Time for which the lateral acceleration must stay low before cornering is over: a lane change crosses zero in between.
 const HOLD_TICKS: u16 = ticks(1_500);
+/// Time before the road is known well enough to tell a bend from it.
+const LEARNING_TICKS: u16 = ticks(2_000);
 /// Shortest time that the road counts as rough, or as smooth.
 const ROAD_DWELL_TICKS: u16 = ticks(1_000);
 
@@ -45,6 +47,8 @@ pub struct Tuning {
     pub release_share: f32,
     /// Time constant of the running RMS of the lateral acceleration, s, 0.5 to 60.
     pub lateral_memory_s: f32,
+    /// Running RMS of the vertical acceleration at which damper 1 begins to be high (`begin`), and low again (`end`), m/s2, 0.01 to 20.
+    pub very_rough_m_s2: Hysteresis,
     /// Running RMS of the vertical acceleration at which a smooth road begins to count as rough (`begin`) and at which a rough
     /// one begins to count as smooth (`end`), m/s2, 0.01 to 10. The first is felt with stiff springs, the second with soft.
     pub rough_m_s2: Hysteresis,
@@ -59,6 +63,7 @@ impl Default for Tuning {
             cornering_multiple: 3.5,
             release_share: 0.6,
             lateral_memory_s: 6.0,
+            very_rough_m_s2: Hysteresis { begin: 1.3, end: 1.0 },
             rough_m_s2: Hysteresis { begin: 0.30, end: 0.10 },
             rollover_guard: rollover_guard::Tuning::default(),
         }
@@ -72,7 +77,11 @@ pub struct RoadAndCornering {
     multiple_2: f32,
     release_share_2: f32,
     lateral_memory: LowPass,
+    lateral_memory_in_bends: LowPass,
+    first_memory: LowPass,
+    slow: LowPass,
     rough_2: Hysteresis,
+    very_rough_2: Hysteresis,
     guard: rollover_guard::Tuning,
 }
 
@@ -84,6 +93,9 @@ pub struct State {
     /// Ticks for which cornering is held yet.
     cornering: u16,
     rough: bool,
+    very_rough: bool,
+    slow_m_s2: f32,
+    known: u16,
     /// Ticks before the road may be judged again.
     dwell: u16,
     guard: rollover_guard::State,
@@ -112,6 +124,10 @@ impl Decide for RoadAndCornering {
             multiple_2: square(tuning.cornering_multiple),
             release_share_2: square(tuning.release_share),
             lateral_memory: LowPass::from_time_constant_s(tuning.lateral_memory_s),
+            lateral_memory_in_bends: LowPass::from_time_constant_s(5.0 * tuning.lateral_memory_s),
+            first_memory: LowPass::from_time_constant_s(0.7),
+            slow: LowPass::from_time_constant_s(0.4),
+            very_rough_2: tuning.very_rough_m_s2.squared(),
             rough_2: tuning.rough_m_s2.squared(),
             guard: tuning.rollover_guard,
         }
@@ -127,7 +143,7 @@ impl Decide for RoadAndCornering {
         let valves = if cornering || rollover_guard || !state.rough {
             ValveCommand::SAFE
         } else {
-            ValveCommand::from_corners(Corners::splat(StrutValves::new(false, true, true)))
+            ValveCommand::from_corners(Corners::splat(StrutValves::new(!state.very_rough, true, true)))
         };
         let urgency = if rollover_guard || (cornering && entered) {
             Urgency::Emergency
@@ -148,16 +164,24 @@ impl Decide for RoadAndCornering {
 impl RoadAndCornering {
     /// Whether the vehicle corners.
     fn corners(&self, state: &mut State, estimate: &Estimate) -> bool {
-        let square = estimate.lateral_acceleration_m_s2 * estimate.lateral_acceleration_m_s2;
+        let lateral = estimate.lateral_acceleration_m_s2;
+        let slow = self.slow.step(&mut state.slow_m_s2, lateral);
+        let (square, slow_2) = (lateral * lateral, slow * slow);
         let threshold_2 = at_least(self.multiple_2 * state.lateral_mean_square, self.floor_2);
-        if square > threshold_2 {
+        state.known = state.known.saturating_add(1);
+        if state.known > LEARNING_TICKS && square > threshold_2 {
             state.cornering = HOLD_TICKS;
-        } else if state.cornering > 0 && square < self.release_share_2 * threshold_2 {
+        } else if state.cornering > 0 && slow_2 < self.release_share_2 * threshold_2 {
             state.cornering -= 1;
         }
-        if state.cornering == 0 {
-            self.lateral_memory.step(&mut state.lateral_mean_square, square);
-        }
+        let memory = if state.known <= LEARNING_TICKS {
+            &self.first_memory
+        } else if state.cornering == 0 {
+            &self.lateral_memory
+        } else {
+            &self.lateral_memory_in_bends
+        };
+        memory.step(&mut state.lateral_mean_square, square);
         state.cornering > 0
     }
 
@@ -169,6 +193,11 @@ impl RoadAndCornering {
         } else {
             vertical_mean_square > self.rough_2.begin
         };
+        if state.very_rough {
+            state.very_rough = vertical_mean_square > self.very_rough_2.end;
+        } else {
+            state.very_rough = vertical_mean_square > self.very_rough_2.begin;
+        }
         if changes && state.dwell == 0 {
             state.rough = !state.rough;
             state.dwell = ROAD_DWELL_TICKS;

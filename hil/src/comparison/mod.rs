@@ -12,11 +12,12 @@ mod bench;
 mod case;
 mod drive;
 mod figures;
-mod sensors;
+pub mod sensors;
 mod setting;
 
 pub use bench::{Bench, describe};
 pub use case::DriveCase;
 pub use drive::{ComparisonError, drive};
 pub use figures::Figures;
+pub use sensors::Sensors;
 pub use setting::Setting;

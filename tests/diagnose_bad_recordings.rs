@@ -468,6 +468,52 @@ fn an_output_that_cannot_be_written() {
     assert!(!target.exists());
 }
 
+/// The improved model does not replace the one that the user wrote, nor a prediction the recording that it was made from.
+#[test]
+fn no_output_replaces_an_input() {
+    let campaign = Campaign::of_spring(&spring(500, 0.02, 0.5));
+    let folder = campaign.0.path().join("campaign");
+    let contents = || -> Vec<(PathBuf, Vec<u8>)> {
+        let mut files: Vec<PathBuf> = (fs::read_dir(&folder).expect("a folder"))
+            .map(|e| e.expect("an entry").path())
+            .collect();
+        files.sort();
+        (files.into_iter())
+            .map(|path| (path.clone(), fs::read(path).expect("a file")))
+            .collect()
+    };
+    let before = contents();
+    let recording = (before.iter().map(|(path, _)| path))
+        .find(|path| path.extension().is_some_and(|e| e == "csv"))
+        .expect("a recording");
+    let mut predict = Command::new(env!("CARGO_BIN_EXE_oleo"));
+    predict
+        .arg("predict")
+        .arg("--model")
+        .arg(folder.join("model.toml"))
+        .arg(recording);
+    let mut over_model = Command::new(env!("CARGO_BIN_EXE_oleo"));
+    over_model
+        .args(predict.get_args())
+        .arg("--out")
+        .arg(folder.join("model.toml"));
+    let over_recording = predict.arg("--out").arg(recording);
+    for command in [
+        &mut campaign.command(Path::new("campaign/../campaign")),
+        over_recording,
+        &mut over_model,
+    ] {
+        let run = command.output().expect("the program starts");
+        let line = String::from_utf8_lossy(&run.stderr).into_owned();
+        assert_eq!(run.status.code(), Some(2), "{line}");
+        assert!(
+            line.lines().count() == 1 && line.contains("is an input of this command"),
+            "{line}"
+        );
+        assert_eq!(contents(), before);
+    }
+}
+
 /// Ctrl-C while it works: the program ends as interrupted programs do, and nothing is there.
 #[cfg(unix)]
 #[test]

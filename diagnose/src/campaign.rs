@@ -20,8 +20,8 @@ pub struct Campaign {
     pub notes: Vec<String>,
 }
 
-/// Name of the belief.
-const MODEL_FILE: &str = "model.toml";
+/// Name of the model file of a campaign, and of the improved model among the results.
+pub const MODEL_FILE: &str = "model.toml";
 
 /// What of a campaign is kept from the fit, to be predicted.
 #[derive(Debug, Clone, Default, PartialEq)]

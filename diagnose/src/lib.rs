@@ -39,7 +39,7 @@ pub mod specimen;
 pub mod vocabulary;
 pub mod whiteness;
 
-pub use campaign::{Campaign, KeptBack};
+pub use campaign::{Campaign, KeptBack, MODEL_FILE};
 pub use diagnosis::Diagnosis;
 pub use error::DiagnoseError;
 pub use prediction::Predictions;

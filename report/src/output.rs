@@ -41,6 +41,12 @@ pub enum OutputError {
         /// The system's reason.
         source: io::Error,
     },
+    /// A result would replace what it was made from.
+    #[error("{}: is an input of this command, and the result would replace it; name another output", path.display())]
+    Input {
+        /// The input.
+        path: PathBuf,
+    },
     /// A name that would leave the folder.
     #[error("{name}: not a name inside the output folder")]
     Name {
@@ -64,6 +70,8 @@ pub struct OutputDirectory {
     existed: bool,
     staging: Option<TempDir>,
     names: Vec<PathBuf>,
+    /// Files that the command reads, as the system knows them.
+    inputs: Vec<PathBuf>,
 }
 
 impl OutputDirectory {
@@ -106,7 +114,26 @@ impl OutputDirectory {
             existed,
             staging: Some(staging),
             names: Vec::new(),
+            inputs: Vec::new(),
         })
+    }
+
+    /// Refuses from now on to write over a file that the command reads. Names of files that do not exist are no inputs.
+    pub fn keep<P: AsRef<Path>>(&mut self, inputs: impl IntoIterator<Item = P>) {
+        let known = inputs.into_iter().filter_map(|input| fs::canonicalize(input).ok());
+        self.inputs.extend(known);
+    }
+
+    /// Says before the work whether `name` will be refused because it is an input.
+    ///
+    /// # Errors
+    /// [`OutputError::Input`].
+    pub fn refuse_input(&self, name: &str) -> Result<(), OutputError> {
+        let path = self.destination.join(name);
+        match fs::canonicalize(&path) {
+            Ok(target) if self.inputs.contains(&target) => Err(OutputError::Input { path }),
+            _ => Ok(()),
+        }
     }
 
     /// Destination as given.
@@ -130,6 +157,7 @@ impl OutputDirectory {
         let Some(staging) = self.staging.as_ref().filter(|_| inside && !name.is_empty()) else {
             return Err(OutputError::Name { name: name.to_owned() });
         };
+        self.refuse_input(name)?;
         let path = staging.path().join(relative);
         if let Some(folder) = path.parent() {
             fs::create_dir_all(folder).map_err(|source| self.refused("make the folder of", name, source))?;
@@ -317,6 +345,26 @@ mod tests {
         assert_eq!(entries(parent.path()), ["out"]);
         let text = fs::read_to_string(destination.join("a.csv")).expect("a file");
         assert_eq!(text, "time_s,force_N\n0,1\n0.1,-0.00000025\n");
+    }
+
+    #[test]
+    fn an_input_is_not_replaced_by_whatever_name_it_is_reached() {
+        let parent = tempfile::tempdir().expect("a folder");
+        let folder = parent.path().join("campaign");
+        fs::create_dir(&folder).expect("made");
+        fs::write(folder.join("model.toml"), "mine").expect("written");
+        let mut out = OutputDirectory::stage(folder.join("..").join("campaign")).expect("writable");
+        out.keep([folder.join("model.toml"), folder.join("absent.csv")]);
+        assert!(matches!(out.refuse_input("model.toml"), Err(OutputError::Input { .. })));
+        let error = out.write("model.toml", "theirs").expect_err("an input").to_string();
+        assert!(
+            error.contains("is an input of this command") && error.lines().count() == 1,
+            "{error}"
+        );
+        out.write("report.json", "{}").expect("no input");
+        out.commit().expect("moved");
+        assert_eq!(entries(&folder), ["model.toml", "report.json"]);
+        assert_eq!(fs::read_to_string(folder.join("model.toml")).expect("a file"), "mine");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use oleo_diagnose::estimation::LeastSquares;
-use oleo_diagnose::{Campaign, Diagnosis, KeptBack, Predictions, json, page};
+use oleo_diagnose::{Campaign, Diagnosis, KeptBack, MODEL_FILE, Predictions, json, page};
 use oleo_report::{Cell, Column, OutputDirectory, Progress, Table};
 
 use crate::failure::Failure;
@@ -72,6 +72,8 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     };
     // Staged before the work: Ctrl-C from here on removes the folder and ends with nothing half-written.
     let mut out = OutputDirectory::stage(destination)?;
+    out.keep([folder.join(MODEL_FILE)]);
+    out.refuse_input(MODEL_FILE)?;
     let stop = AtomicBool::new(false);
     let problem = LeastSquares::new(&*campaign.specimen, &stop);
     let progress = Progress::new(&campaign.name, STEPS);
@@ -93,7 +95,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     }
     out.json("report.json", &report)?;
     out.page(&page)?;
-    out.write("model.toml", &diagnosis.model_toml)?;
+    out.write(MODEL_FILE, &diagnosis.model_toml)?;
     out.commit()?;
     let mut text = format!(
         "{}: {} (held-out noise ratio {:.2} before, {:.2} after)\n",

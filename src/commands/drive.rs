@@ -17,7 +17,11 @@ use plan::Plan;
 
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
-    let out = args.out.as_ref().map(oleo_report::OutputDirectory::stage).transpose()?;
+    let mut out = args.out.as_ref().map(oleo_report::OutputDirectory::stage).transpose()?;
+    if let Some(out) = &mut out {
+        out.keep([&args.vehicle, &args.handling].into_iter().flatten());
+        out.keep(&args.road);
+    }
     let (vehicle, handling) = parameters(args.vehicle.as_ref(), args.handling.as_ref())?;
     let plan = Plan::new(&args, vehicle, handling)?;
     if !(args.score_from_s >= 0.0 && args.score_from_s <= 3600.0) {

@@ -94,7 +94,10 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         return controller(&scenario, args.out);
     }
     // A folder that cannot be written to is refused before the run.
-    let staged = args.out.as_ref().map(OutputDirectory::stage).transpose()?;
+    let mut staged = args.out.as_ref().map(OutputDirectory::stage).transpose()?;
+    if let Some(out) = &mut staged {
+        out.keep([&args.scenario, &scenario.road, &scenario.strut, &scenario.vehicle]);
+    }
     let plant = Plant::build(&scenario)?;
     let progress = Progress::new(&scenario.name, scenario.ticks.into());
     // In real time Ctrl-C ends the run, and what has been driven is reported.

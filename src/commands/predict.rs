@@ -55,6 +55,8 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         .map_err(|error| Failure::new(format!("{file}: cannot read the recording: {error}; check the path")))?;
     let (folder, name) = place(&args.out)?;
     let mut out = OutputDirectory::stage(&folder)?;
+    out.keep([&args.model, &args.recording]);
+    out.refuse_input(&name)?;
 
     let kind = specimen_name(&text, &model_file)?.kind;
     let (inputs, channels) = match kind.as_str() {

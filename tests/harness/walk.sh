@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# What the two steps that follow docs/adding-physics.md share. The target folder is shared with the checkout, so only what
+# the page changes is built again.
+readonly copy=$CARGO_TARGET_DIR/adding-physics
+
+# Make the copy and apply the page to it. False where that cannot be done.
+walk() {
+    if ! need patch patch; then
+        skip "the page's files and changes apply" "no patch to be had"
+        return 1
+    fi
+    rm -rf -- "$copy/diagnose" "$copy/plant-sim"
+    check "the page's files and changes apply" python3 tests/harness/walk.py docs/adding-physics.md "$copy"
+}
+
+# Run a command in the copy.
+in_copy() { (cd "$copy" && "$@"); }

@@ -13,10 +13,12 @@ pub struct DriveCase {
     pub driver: DriverStyle,
     /// Of the road and of the sensors' noise.
     pub seed: u64,
+    /// When the manoeuvre begins, s: [`drive::beginning_s`](super::beginning_s) tells.
+    pub begins_s: Option<f64>,
 }
 
 /// Time driven straight ahead before a manoeuvre begins, s: start-up, and time for the controller to know the road.
-pub const RUN_UP_S: f64 = 6.0;
+pub const RUN_UP_S: f64 = 8.0;
 
 impl DriveCase {
     /// Straight ahead, m/s and s.
@@ -52,6 +54,7 @@ impl DriveCase {
             manoeuvre,
             driver,
             seed,
+            begins_s: None,
         }
     }
 
@@ -64,8 +67,14 @@ impl DriveCase {
     pub fn manoeuvre_name(&self) -> &'static str {
         match self.manoeuvre {
             Manoeuvre::Straight { .. } => "straight",
-            Manoeuvre::LaneChange { kind: LaneChange::Severe, .. } => "iso-3888-1",
-            Manoeuvre::LaneChange { kind: LaneChange::ObstacleAvoidance, .. } => "iso-3888-2",
+            Manoeuvre::LaneChange {
+                kind: LaneChange::Severe,
+                ..
+            } => "iso-3888-1",
+            Manoeuvre::LaneChange {
+                kind: LaneChange::ObstacleAvoidance,
+                ..
+            } => "iso-3888-2",
             Manoeuvre::StepSteer { .. } => "step-steer",
             Manoeuvre::ConstantRadius { .. } => "constant-radius",
             Manoeuvre::Braking { .. } => "braking",

@@ -3,14 +3,15 @@
 use std::sync::Arc;
 
 use oleo_controller::{State, ValveCommand, tick};
+use oleo_interface::tick::TICK_S;
 use oleo_interface::{Corners, StrutValves};
-use oleo_plant_sim::course::{Course, Drive, Manoeuvre, NotFinite};
+use oleo_plant_sim::course::{Course, Drive, NotFinite};
+use oleo_plant_sim::handling::HandlingModel;
 use oleo_plant_sim::measures::SeatMeter;
 use oleo_plant_sim::road::{self, Road, RoadError};
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::suspension::{CoilElement, StrutElement, SuspensionElement};
 use oleo_plant_sim::vehicle::{RideError, Seats};
-use oleo_plant_sim::handling::HandlingModel;
 
 use super::bench::Bench;
 use super::case::DriveCase;
@@ -35,6 +36,9 @@ pub enum ComparisonError {
     Road(#[from] RoadError),
 }
 
+/// True lateral acceleration at which a manoeuvre counts as begun, m/s2.
+const BEGUN_M_S2: f64 = 0.5;
+
 /// Drives a case with a setting.
 ///
 /// # Errors
@@ -58,6 +62,19 @@ pub fn drive(bench: &Bench, case: &DriveCase, setting: &Setting) -> Result<Figur
             let command = ValveCommand::from_corners(Corners::splat(*open));
             let drive = Drive::begin(&course, vehicle, handling, struts(bench, *open)?)?;
             follow(drive, case, |_| (command.corners(), command, false))
+        }
+        Setting::Oracle { before, delay_s } => {
+            let drive = Drive::begin(&course, vehicle, handling, struts(bench, *before)?)?;
+            let decided_tick = case
+                .begins_s
+                .map_or(u64::MAX, |begins| ((begins + delay_s) / TICK_S).round() as u64);
+            let (before, mut ticks) = (ValveCommand::from_corners(Corners::splat(*before)), 0);
+            follow(drive, case, |_| {
+                let corners = ticks >= decided_tick;
+                ticks += 1;
+                let command = if corners { ValveCommand::SAFE } else { before };
+                (command.corners(), command, corners)
+            })
         }
         Setting::Controlled(_, configuration) => {
             let drive = Drive::begin(&course, vehicle, handling, struts(bench, StrutValves::splat(false))?)?;
@@ -86,7 +103,7 @@ fn follow<E: SuspensionElement>(
     mut decide: impl FnMut(&HandlingModel<E>) -> (Corners<E::Signal>, ValveCommand, bool),
 ) -> Result<Figures, ComparisonError> {
     let speed_m_s = case.manoeuvre.initial_speed_m_s();
-    let mut watch = Watch::new(begins_s(case, speed_m_s));
+    let mut watch = Watch::new(case.begins_s);
     let step_s = drive.model().step_s();
     let mut meters = Seats::from_fn(|_| SeatMeter::new(step_s, SCORED_FROM_S));
     let places = drive.seat_places_m();
@@ -95,7 +112,6 @@ fn follow<E: SuspensionElement>(
         let motion = drive.model().motion();
         watch.tick(&Instant {
             roll_rad: motion.roll_rad,
-            lateral_m_s2: motion.lateral_acceleration_m_s2,
             command,
             handling,
         });
@@ -110,12 +126,27 @@ fn follow<E: SuspensionElement>(
     }
 }
 
-/// When the driver begins to steer, s.
-fn begins_s(case: &DriveCase, speed_m_s: f64) -> Option<f64> {
-    match case.manoeuvre {
-        // The driver looks ahead: a second before the cones the steering wheel may move already.
-        Manoeuvre::LaneChange { entry_m, .. } => Some((entry_m / speed_m_s - 1.0).max(0.0)),
-        Manoeuvre::StepSteer { at_s, .. } => Some(at_s),
-        _ => None,
+/// When a manoeuvre begins, s: the first time that the same manoeuvre on a flat road, with all valves closed, asks for more than
+/// 0.5 m/s2. On a rough road the road itself makes that much, so it cannot be seen there. `None` for a drive straight ahead.
+///
+/// # Errors
+/// A vehicle that its springs do not carry.
+pub fn beginning_s(bench: &Bench, case: &DriveCase) -> Result<Option<f64>, ComparisonError> {
+    if case.is_straight() {
+        return Ok(None);
     }
+    let course = Course {
+        manoeuvre: case.manoeuvre,
+        driver: case.driver,
+        road: Arc::new(road::Flat),
+    };
+    let closed = StrutValves::splat(false);
+    let mut drive = Drive::begin(&course, &bench.vehicle, &bench.handling, struts(bench, closed)?)?;
+    while drive.ending().is_none() {
+        if drive.model().motion().lateral_acceleration_m_s2.abs() > BEGUN_M_S2 {
+            return Ok(Some(f64::from(drive.ticks()) * TICK_S));
+        }
+        drive.tick(Corners::splat(closed), |_| {})?;
+    }
+    Ok(None)
 }

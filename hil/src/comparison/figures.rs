@@ -7,8 +7,6 @@ use oleo_plant_sim::course::Ending;
 
 /// Scores begin after this time, s: start-up of the controller and the smooth entry of the road are over.
 pub const SCORED_FROM_S: f64 = 3.0;
-/// True lateral acceleration at which a manoeuvre counts as begun, m/s2.
-const BEGUN_M_S2: f64 = 0.5;
 
 /// Figures of one drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,8 +17,8 @@ pub struct Figures {
     pub weighted_rms_m_s2: f64,
     /// Largest roll of the body, degrees; 90 for a vehicle that rolled over.
     pub peak_roll_deg: f64,
-    /// From the first |a_y| > 0.5 m/s2 of a manoeuvre until all valves are commanded closed, s; `None` without a manoeuvre or where
-    /// it never happened.
+    /// From when the manoeuvre began until all valves are commanded closed, s; `None` without a manoeuvre or where it never
+    /// happened.
     pub decision_s: Option<f64>,
     /// Times that the controller took the drive for cornering.
     pub entries: u32,
@@ -33,10 +31,9 @@ pub struct Figures {
 /// Follows a drive, tick by tick.
 pub(super) struct Watch {
     scored_from_tick: u32,
-    manoeuvre_from_tick: Option<u32>,
+    begun_tick: Option<u32>,
     ticks: u32,
     peak_roll_rad: f64,
-    begun: Option<u32>,
     decided: Option<u32>,
     handling: bool,
     entries: u32,
@@ -47,21 +44,19 @@ pub(super) struct Watch {
 /// One tick as the watch sees it.
 pub(super) struct Instant {
     pub roll_rad: f64,
-    pub lateral_m_s2: f64,
     pub command: ValveCommand,
     pub handling: bool,
 }
 
 impl Watch {
-    /// `manoeuvre_from_s` is when the driver begins to steer.
-    pub fn new(manoeuvre_from_s: Option<f64>) -> Self {
+    /// `begun_s` is when the manoeuvre begins.
+    pub fn new(begun_s: Option<f64>) -> Self {
         let tick = |time_s: f64| (time_s / TICK_S).round() as u32;
         Self {
             scored_from_tick: tick(SCORED_FROM_S),
-            manoeuvre_from_tick: manoeuvre_from_s.map(tick),
+            begun_tick: begun_s.map(tick),
             ticks: 0,
             peak_roll_rad: 0.0,
-            begun: None,
             decided: None,
             handling: false,
             entries: 0,
@@ -73,13 +68,8 @@ impl Watch {
     pub fn tick(&mut self, now: &Instant) {
         let tick = self.ticks;
         self.ticks += 1;
-        if self.manoeuvre_from_tick.is_some_and(|from| tick >= from)
-            && self.begun.is_none()
-            && now.lateral_m_s2.abs() > BEGUN_M_S2
-        {
-            self.begun = Some(tick);
-        }
-        if self.begun.is_some() && self.decided.is_none() && now.command == ValveCommand::SAFE {
+        let begun = self.begun_tick.is_some_and(|begun| tick >= begun);
+        if begun && self.decided.is_none() && now.command == ValveCommand::SAFE {
             self.decided = Some(tick);
         }
         if tick >= self.scored_from_tick {
@@ -105,7 +95,7 @@ impl Watch {
                 Ending::RolledOver(_) => 90.0,
                 _ => self.peak_roll_rad.to_degrees(),
             },
-            decision_s: (self.begun.zip(self.decided)).map(|(begun, decided)| f64::from(decided - begun) * TICK_S),
+            decision_s: (self.begun_tick.zip(self.decided)).map(|(begun, decided)| f64::from(decided - begun) * TICK_S),
             entries: self.entries,
             distance_km: 1e-3 * scored_s * speed_m_s,
             valve_changes: self.changes,

@@ -17,7 +17,7 @@ mod setting;
 
 pub use bench::{Bench, describe};
 pub use case::DriveCase;
-pub use drive::{ComparisonError, drive};
+pub use drive::{ComparisonError, beginning_s, drive};
 pub use figures::Figures;
 pub use sensors::Sensors;
 pub use setting::Setting;

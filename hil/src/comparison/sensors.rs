@@ -33,9 +33,8 @@ impl Sensors {
             (((value + noise * disturbance) / step).round() * step) as f32
         };
         let displacement_m = displacement_m.map(|x| reading(x, NOISE.0, STEP.0));
-        let pressure = struts.map(|strut| {
-            StrutPressures::from_array(strut.pressure_pa.map(|p| Gauge(reading(p, NOISE.1, STEP.1))))
-        });
+        let pressure = struts
+            .map(|strut| StrutPressures::from_array(strut.pressure_pa.map(|p| Gauge(reading(p, NOISE.1, STEP.1)))));
         Inputs::from_values(displacement_m, pressure)
     }
 }

@@ -10,6 +10,14 @@ pub enum Setting {
     AsSold,
     /// The struts with their valves held.
     Fixed(StrutValves<bool>),
+    /// The struts with valves held as `before` until `delay_s` after a manoeuvre began, and closed from then on. No controller can know
+    /// when that is; this is a bound.
+    Oracle {
+        /// Open valves before.
+        before: StrutValves<bool>,
+        /// Delay of the decision, s.
+        delay_s: f64,
+    },
     /// The struts with a controller, and the name of its strategy.
     Controlled(&'static str, Box<Configuration>),
 }
@@ -38,6 +46,7 @@ impl Setting {
                 let numbers = (1..=3).zip(open.into_array()).filter(|(_, open)| *open);
                 numbers.fold("open-".into(), |name, (number, _)| format!("{name}{number}"))
             }
+            Self::Oracle { delay_s, .. } => format!("oracle-{delay_s}-s"),
             Self::Controlled(strategy, _) => (*strategy).into(),
         }
     }

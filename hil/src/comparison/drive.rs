@@ -78,7 +78,7 @@ pub fn drive(bench: &Bench, case: &DriveCase, setting: &Setting) -> Result<Figur
         }
         Setting::Controlled(_, configuration) => {
             let drive = Drive::begin(&course, vehicle, handling, struts(bench, StrutValves::splat(false))?)?;
-            let (mut state, mut sensors) = (State::new(), Sensors::new(case.seed));
+            let (mut state, mut sensors) = (State::new(), Sensors::new(bench, case.seed));
             follow(drive, case, |model| {
                 let inputs = sensors.read(model.strut_displacement_m(), model.strut_output());
                 let outputs = tick(configuration, &mut state, &inputs);
@@ -88,11 +88,10 @@ pub fn drive(bench: &Bench, case: &DriveCase, setting: &Setting) -> Result<Figur
     }
 }
 
-/// Four struts of the preset, each charged for the load that its corner carries.
+/// The bench's four struts at rest.
 fn struts(bench: &Bench, open: StrutValves<bool>) -> Result<Corners<StrutElement>, ComparisonError> {
-    let load_n = bench.vehicle.static_strut_load_n();
-    let strut = |load_n: f64| Strut::at_rest(&StrutModel::defender110(load_n), open).map(StrutElement::new);
-    let [a, b, c, d] = load_n.into_array();
+    let strut = |model: &StrutModel| Strut::at_rest(model, open).map(StrutElement::new);
+    let [a, b, c, d] = bench.struts.each_ref().into_array();
     Ok(Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]))
 }
 

@@ -61,12 +61,7 @@ fn spring(samples: usize, interval_s: f64, amplitude_m: f64) -> String {
     let mut noise = white_noise(9);
     let mut csv = "time_s,displacement_m,p_Pa\n".to_owned();
     for ((t, x), p) in time.iter().zip(&x).zip(&p) {
-        let _ = writeln!(
-            csv,
-            "{t:.6},{:.7},{:.1}",
-            x + 1e-5 * noise(),
-            p + 300.0 * noise()
-        );
+        let _ = writeln!(csv, "{t:.6},{:.7},{:.1}", x + 1e-5 * noise(), p + 300.0 * noise());
     }
     csv
 }

@@ -105,7 +105,7 @@ mod tests {
         let candidates = [FRICTION, VIBRATION, CUBIC, GAIN];
         assert_eq!(found(&[(FRICTION, 0.1)], &candidates), [FRICTION]);
         assert_eq!(found(&[(CUBIC, 0.3)], &candidates), [CUBIC]);
-        // The friction alone makes 24 times its own size in noise, the cubic law two.
+        // At these sizes the friction is the larger part of the misfit.
         assert_eq!(found(&[(CUBIC, 0.05), (FRICTION, 0.1)], &candidates), [FRICTION]);
     }
 

@@ -13,6 +13,16 @@ pub enum Scale {
 }
 
 /// One fitted number.
+///
+/// ```
+/// use oleo_diagnose::parameter::Parameter;
+/// // A gas volume that may be 2 % off: one coordinate is half of that.
+/// let volume = Parameter::calibration("static_gas_volume", 0.02);
+/// assert_eq!(volume.value(-1.0), -0.01);
+/// // A positive number that is known to an order of magnitude.
+/// let modulus = Parameter::log("bulk_modulus_Pa", 1.4e9, (1e8, 1e10));
+/// assert!((modulus.z(modulus.value(0.7)) - 0.7).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Parameter {
     /// Name with unit, as in the report.

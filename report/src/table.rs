@@ -175,6 +175,12 @@ impl fmt::Display for Table {
 }
 
 /// `value` with `digits` significant digits, plain between 1e-3 and 1e7 and with an exponent outside: "4.18", "1.50e9".
+///
+/// ```
+/// use oleo_report::significant;
+/// assert_eq!(significant(4.1789, 3), "4.18");
+/// assert_eq!(significant(1.5e9, 3), "1.50e9");
+/// ```
 pub fn significant(value: f64, digits: usize) -> String {
     let digits = digits.max(1);
     if !value.is_finite() {

@@ -1,4 +1,4 @@
-//! Places, keys and values in words. What an effect is called the effect itself says ([`crate::effect::Words`]).
+//! Places, keys and values in words. What an effect is called the effect itself says ([`crate::effect::Effect`]).
 
 use oleo_interface::Valve;
 

@@ -37,6 +37,18 @@ fn count_lines(mut file: std::fs::File) -> std::io::Result<usize> {
 
 /// Reads one recording from anything. `rows` is about how many there are; `path` names the recording and is not opened.
 ///
+/// ```
+/// use oleo_diagnose::recording::{ColumnKind, ColumnSpec, GapPolicy, parse};
+/// let columns = [ColumnSpec::new("p_Pa", ColumnKind::Output)];
+/// let read = |text: &str| parse(text.as_bytes(), 100, "strokes.csv".as_ref(), &columns, GapPolicy::Cut);
+/// let rows: String = (0..100).map(|k| format!("{},{}\n", 0.01 * f64::from(k), 1e6 + f64::from(k))).collect();
+/// let recording = read(&format!("time_s,p_Pa\n{rows}"))?;
+/// assert_eq!((recording.len(), recording.columns[0][99]), (100, 1_000_099.0));
+/// let complaint = read("time_s,p_bar\n0,10\n").unwrap_err().to_string();
+/// assert!(complaint.contains("p_Pa"), "{complaint}");
+/// # Ok::<(), oleo_diagnose::DiagnoseError>(())
+/// ```
+///
 /// # Errors
 /// As [`read`].
 pub fn parse(

@@ -2,6 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use oleo_plant_sim::model_file::InvalidValue;
+use oleo_plant_sim::model_file::instruments::noise_of_compared;
+
 use crate::vocabulary::{Column, State};
 
 /// A measured quantity that the model predicts.
@@ -11,6 +14,17 @@ pub struct Channel {
     pub column: Column,
     /// Standard deviation of its white noise, in the unit of the column.
     pub noise: f64,
+}
+
+impl Channel {
+    /// A compared column with the noise that the table `[noise]` of the model file states.
+    ///
+    /// # Errors
+    /// The table states no noise for it, or zero.
+    pub fn of(column: Column, noise: &BTreeMap<String, f64>) -> Result<Self, InvalidValue> {
+        let noise = noise_of_compared(noise, column.as_str())?;
+        Ok(Self { column, noise })
+    }
 }
 
 /// One series a channel, each as long as the recording.
@@ -31,10 +45,4 @@ impl StateSeries {
     pub const fn new(state: State, values: Vec<f64>) -> Self {
         Self { state, values }
     }
-}
-
-/// The number above zero that a table of a model file (`[noise]`, `[tolerance]`) states for a key.
-#[must_use]
-pub fn stated(table: &BTreeMap<String, f64>, key: &str) -> Option<f64> {
-    table.get(key).copied().filter(|value| *value > 0.0)
 }

@@ -1,5 +1,7 @@
 //! What every specimen offers, and all that the search, the report and the page know of it.
 
+use oleo_plant_sim::model_file::InvalidValue;
+
 use super::channel::{Channel, Series, StateSeries};
 use super::hypothesis::Hypothesis;
 use super::relation::MeasuredRelation;
@@ -15,6 +17,12 @@ pub trait BelievedModel {
     /// The columns that its recordings must have: first the displacement or other main input, then the compared channels,
     /// then all other inputs.
     fn columns(&self) -> Vec<ColumnSpec>;
+
+    /// Refuse a model that does not state the noise of every channel, by which its residuals are judged.
+    ///
+    /// # Errors
+    /// The channels whose noise is missing; a compared channel whose noise is zero.
+    fn check_noise(&self) -> Result<(), InvalidValue>;
 
     /// What is done with a hole in the time column of a recording.
     fn gap_policy(&self) -> GapPolicy;

@@ -31,6 +31,7 @@ impl ModelFile {
             SpecimenKind::GasSpring => Box::new(GasSpringModel::from_toml(text, source)?),
             SpecimenKind::Cylinder => Box::new(CylinderModel::from_toml(text, source)?),
         };
+        model.check_noise().map_err(|invalid| invalid.in_file(text, source))?;
         Ok(Self { name: head.name, model })
     }
 }

@@ -97,7 +97,7 @@ impl Drive {
         .map(|p| Absolute(p).gauge())
     }
 
-    /// White, -1..1 (xorshift32, Marsaglia 2003).
+    /// White, -1..1 (xorshift32, Marsaglia 2003). A generator of a crate would change the golden hash of the valve words.
     fn noise(&mut self) -> f32 {
         self.random ^= self.random << 13;
         self.random ^= self.random >> 17;

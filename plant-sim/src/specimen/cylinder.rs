@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::name::SpecimenName;
-use crate::model_file::instruments::{check_noise, check_tolerance};
+use crate::model_file::instruments::{check_noise, check_noise_is_complete, check_tolerance};
 use crate::model_file::limits::each_checked;
 use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
 use crate::strut::{
@@ -260,8 +260,7 @@ impl Checked for CylinderModel {
         check_columns(TermId::SensorLag, e.sensor_lag.as_ref(), &[FORCE])
             .map_err(|invalid| invalid.inside("effects"))?;
         check_tolerance(&self.tolerance, &["area", "force_offset_N", "pressure_offset_Pa"])?;
-        let channels: Vec<&str> = ["displacement_m", FORCE].into_iter().chain(chambers).collect();
-        check_noise(&self.noise, &channels)
+        check_noise(&self.noise, &self.channels())
     }
 }
 
@@ -269,6 +268,21 @@ impl Checked for CylinderModel {
 const FORCE: &str = "force_N";
 
 impl CylinderModel {
+    /// The displacement, the force, which is compared with the model, and the pressure of every chamber.
+    fn channels(&self) -> Vec<&str> {
+        let chambers = self.chamber.iter().map(|chamber| chamber.column.as_str());
+        ["displacement_m", FORCE].into_iter().chain(chambers).collect()
+    }
+
+    /// Refuse a model that does not state the noise of every channel, which only a diagnosis needs. Displacement and
+    /// pressures, which are not compared, may be without noise (0).
+    ///
+    /// # Errors
+    /// The channels whose noise is missing, or a force without noise.
+    pub fn check_noise_is_complete(&self) -> Result<(), InvalidValue> {
+        check_noise_is_complete(&self.noise, &self.channels(), &[FORCE])
+    }
+
     /// Read and check a model. `file` is the name that appears in errors.
     ///
     /// ```

@@ -8,7 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::name::SpecimenName;
-use crate::model_file::instruments::{check_noise, check_tolerance};
+use crate::model_file::instruments::{check_noise, check_noise_is_complete, check_tolerance};
 use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
 use crate::strut::{
     Effects, Equation, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K, SensorEffect, TermId, check_columns, record_column,
@@ -228,11 +228,23 @@ impl Checked for GasSpringModel {
             &self.tolerance,
             &["volume_at_zero", "initial_pressure", "temperature_K", "time_constant"],
         )?;
-        check_noise(&self.noise, &["displacement_m", PRESSURE])
+        check_noise(&self.noise, &CHANNELS)
     }
 }
 
+/// Channels of a gas spring: the displacement and the pressure, which is compared with the model.
+const CHANNELS: [&str; 2] = ["displacement_m", PRESSURE];
+
 impl GasSpringModel {
+    /// Refuse a model that does not state the noise of both channels, which only a diagnosis needs. The displacement, which is
+    /// not compared, may be without noise (0).
+    ///
+    /// # Errors
+    /// The channels whose noise is missing, or a pressure without noise.
+    pub fn check_noise_is_complete(&self) -> Result<(), InvalidValue> {
+        check_noise_is_complete(&self.noise, &CHANNELS, &[PRESSURE])
+    }
+
     /// Read and check a model. `file` is the name that appears in errors.
     ///
     /// ```

@@ -326,7 +326,7 @@ impl StrutModel {
     }
 
     /// Refuse a model that does not state the noise of every channel. A simulation does without; a diagnosis, which judges
-    /// every residual by it, does not.
+    /// every residual by it, does not. Only the displacement, which is not compared, may be without noise (0).
     ///
     /// ```
     /// use oleo_plant_sim::strut::StrutModel;
@@ -334,13 +334,14 @@ impl StrutModel {
     /// assert_eq!(model.check_noise_is_complete(), Ok(()));
     /// model.noise.remove("p3_Pa");
     /// let missing = model.check_noise_is_complete().unwrap_err();
-    /// assert!(missing.to_string().starts_with("noise says nothing of p3_Pa: "));
+    /// assert!(missing.to_string().starts_with("[noise] p3_Pa is missing: "));
     /// ```
     ///
     /// # Errors
-    /// The channels whose noise is missing. [`InvalidValue::in_file`] adds file and line.
+    /// The channels whose noise is missing, or a zero. [`InvalidValue::in_file`] adds file and line.
     pub fn check_noise_is_complete(&self) -> Result<(), InvalidValue> {
-        check_noise_is_complete(&self.noise, &COLUMNS)
+        let [_, compared @ ..] = &COLUMNS;
+        check_noise_is_complete(&self.noise, &COLUMNS, compared)
     }
 }
 
@@ -403,7 +404,7 @@ mod tests {
         let line = 1 + text.lines().position(|line| line == "[noise]").unwrap();
         let shown = missing.in_file(&text, "model.toml").to_string();
         assert!(
-            shown.starts_with(&format!("model.toml:{line}: noise says nothing of p3_Pa: ")),
+            shown.starts_with(&format!("model.toml:{line}: [noise] p3_Pa is missing: ")),
             "{shown}"
         );
     }

@@ -267,6 +267,17 @@ impl Checked for SolverParameters {
 impl VehicleParameters {
     /// Read and check a vehicle file. `file` is the name that appears in errors.
     ///
+    /// ```
+    /// use oleo_plant_sim::vehicle::VehicleParameters;
+    /// let vehicle = VehicleParameters::defender110();
+    /// assert_eq!(VehicleParameters::from_toml(&vehicle.to_toml(), "copy.toml"), Ok(vehicle.clone()));
+    /// // Struts carry the body, wheels the whole vehicle.
+    /// let (struts, wheels) = (vehicle.static_strut_load_n(), vehicle.static_wheel_load_n());
+    /// let sum = |load_n: &[f64; 4]| load_n.iter().sum::<f64>() / 9.806_65;
+    /// assert!((sum(struts.as_array()) - vehicle.body.sprung_mass_kg).abs() < 1e-6);
+    /// assert!((sum(wheels.as_array()) - vehicle.total_mass_kg()).abs() < 1e-6);
+    /// ```
+    ///
     /// # Errors
     /// Unknown, missing or mistyped keys and values outside their physical range, each with its line.
     pub fn from_toml(text: &str, file: &str) -> Result<Self, ModelFileError> {

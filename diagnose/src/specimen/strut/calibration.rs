@@ -3,7 +3,6 @@
 use oleo_plant_sim::strut::{COLUMNS, StrutModel};
 
 use crate::parameter::Parameter;
-use crate::specimen::channel::stated;
 
 /// What a calibration parameter changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +61,7 @@ impl Calibration {
 /// Everything that the model states a tolerance for.
 #[must_use]
 pub fn of(model: &StrutModel) -> (Vec<Calibration>, Vec<Parameter>) {
-    let tolerance = |key: &str| stated(&model.tolerance, key);
+    let tolerance = |key: &str| model.tolerance.get(key).copied().filter(|size| *size > 0.0);
     let mut out = Vec::new();
     let mut add = |what: Calibration, key: String, tolerance: Option<f64>| {
         if let Some(t) = tolerance {

@@ -109,11 +109,6 @@ impl<E: SuspensionElement> HandlingModel<E> {
         &self.elements
     }
 
-    /// Twist of the body's front half against its rear half, rad.
-    pub fn twist_rad(&self) -> f64 {
-        self.twist
-    }
-
     /// What an accelerometer at a place of the body reads; the place in body axes (ahead, left, up) from its centre of mass, m.
     pub fn acceleration_at(&self, place_m: [f64; 3]) -> SeatAcceleration {
         let place = Vector3::from(place_m);

@@ -1,4 +1,4 @@
-//! A folder of recordings of one specimen, and what is believed about it.
+//! A campaign: a folder with the recordings of one specimen and the given model.
 
 use std::path::{Path, PathBuf};
 
@@ -10,11 +10,11 @@ use crate::specimen::{ModelFile, Specimen};
 
 /// A campaign, ready to be diagnosed.
 pub struct Campaign {
-    /// Folder.
+    /// Folder of the campaign.
     pub folder: PathBuf,
     /// Name in its model file.
     pub name: String,
-    /// Specimen with recordings.
+    /// The specimen: its given model and its recordings.
     pub specimen: Box<dyn Specimen>,
     /// Remarks about the recordings, one line each.
     pub notes: Vec<String>,
@@ -84,7 +84,7 @@ impl Campaign {
             }
             if samples < MIN_SAMPLES {
                 let what = format!(
-                    "recording {} would be fitted on {samples} samples, at least {MIN_SAMPLES} are needed; \
+                    "recording {} would be fitted on {samples} samples, but at least {MIN_SAMPLES} are needed; \
                      fit a larger part or hold the recording out",
                     recording.name
                 );
@@ -143,8 +143,12 @@ fn read_folder(folder: &Path) -> Result<(ModelFile, Vec<Recording>, Vec<String>)
             "is not a folder; a campaign is a folder with model.toml and recordings",
         ));
     }
-    let text = std::fs::read_to_string(&model_path)
-        .map_err(|e| DiagnoseError::file(&model_path, format!("{e}; a campaign needs the model that is believed")))?;
+    let text = std::fs::read_to_string(&model_path).map_err(|e| {
+        DiagnoseError::file(
+            &model_path,
+            format!("{e}; a campaign needs a model.toml with the model of the specimen"),
+        )
+    })?;
     let file = ModelFile::read(&text, &model_path.display().to_string())?;
     let (columns, gaps) = (file.model.columns(), file.model.gap_policy());
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
@@ -178,7 +182,7 @@ fn read_all(
                 recordings.push(recording);
             }
             Err(e @ DiagnoseError::TooShort { .. }) => {
-                notes.push(format!("left out: {e}"));
+                notes.push(format!("This recording was left out: {e}"));
                 last = Some(e);
             }
             Err(e) => return Err(e),

@@ -1,4 +1,4 @@
-//! Finds the physics a model left out.
+//! Finds the physics that a model leaves out.
 //!
 //! The user's words: *when simulation and real recordings differ, the tool should locate the mismatch, say what physics
 //! was left out, model it and show the fit improve.* [`Campaign`] reads recordings and the belief about a specimen;

@@ -8,7 +8,7 @@ use crate::vocabulary::{EffectId, Place, Site};
 pub struct Candidate {
     /// Id of the vocabulary, `unlisted` for laws without a name.
     pub id: EffectId,
-    /// Where it acts.
+    /// Place where the candidate acts.
     pub place: Place,
     /// What tells laws without a name apart, such as `force over speed`; empty for everything else.
     pub label: String,

@@ -1,4 +1,4 @@
-//! What every effect says of itself, and what it does in each kind of specimen.
+//! The traits of an effect: its texts, and what it does in each kind of specimen.
 
 use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel};
 use oleo_plant_sim::strut::{Equation, StrutModel};
@@ -11,13 +11,13 @@ use crate::vocabulary::{EffectId, Site, SpecimenKind};
 
 /// A law that a model may lack, or a fault of an instrument.
 pub trait Effect: Sync {
-    /// Its id.
+    /// Id of the effect in the vocabulary.
     fn id(&self) -> EffectId;
 
     /// What it is called in a sentence: "gas heat transfer".
     fn name(&self) -> &'static str;
 
-    /// What its equation means, as a clause that follows the equation and names symbols that the equation leaves open.
+    /// What its equation means, as a main clause without capital and full stop. It explains the symbols of the equation.
     fn meaning(&self) -> &'static str;
 
     /// The symbol in the equation of each number that is reported, by its key. A key that counts places has `i` there:
@@ -145,11 +145,11 @@ impl<E: ActsOn<Strut> + Concealed> StrutEffect for E {}
 pub trait Kind {
     /// What is believed of it.
     type Model;
-    /// What its recordings excite.
+    /// What the recordings of this kind excite.
     type Excitation;
 }
 
-/// Two-stage hydropneumatic struts.
+/// The kind of specimen "two-stage hydropneumatic strut".
 pub struct Strut;
 
 impl Kind for Strut {
@@ -157,7 +157,7 @@ impl Kind for Strut {
     type Excitation = excitation::Strut;
 }
 
-/// Gas springs.
+/// The kind of specimen "gas spring".
 pub struct GasSpring;
 
 impl Kind for GasSpring {
@@ -165,7 +165,7 @@ impl Kind for GasSpring {
     type Excitation = excitation::GasSpring;
 }
 
-/// Cylinders.
+/// The kind of specimen "cylinder".
 pub struct Cylinder;
 
 impl Kind for Cylinder {
@@ -178,7 +178,7 @@ impl Kind for Cylinder {
 pub enum ShowsIn {
     /// Those next to the place where it acts.
     NextToItsPlace,
-    /// All alike.
+    /// All channels.
     EveryChannel,
 }
 

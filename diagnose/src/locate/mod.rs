@@ -1,4 +1,4 @@
-//! Where the misfit is: in which recording, when, under which condition; and which measured relation breaks.
+//! Locates the misfit: the recording, the time, the condition, and the relation that does not hold.
 
 pub mod condition;
 pub mod decay;
@@ -18,15 +18,15 @@ pub use relations::{ChangedRelation, relations_changed_alone};
 /// A place with the misfit that belongs to it.
 #[derive(Debug, Clone)]
 pub struct Location {
-    /// The place.
+    /// Place where the effect acts.
     pub place: Place,
     /// Part of the excess misfit of the calibrated model that disappears with the effect found there.
     pub share_of_excess: f64,
     /// Recording in which it shows most.
     pub recording: usize,
-    /// When, s.
+    /// Start and end of the interval with the most misfit, s.
     pub t_s: [f64; 2],
-    /// Under which condition.
+    /// Condition in which the misfit occurs, over all recordings.
     pub condition: Condition,
     /// Channel in which it shows most.
     pub channel: usize,
@@ -206,7 +206,7 @@ fn strongest(
         condition.decays = true;
         let sharp = (condition.region.as_ref()).is_some_and(|region| region.concentration() > SHARP);
         if sharp {
-            condition.text += &format!("; decays with {constant} s while nothing moves");
+            condition.text += &format!("; decays with a time constant of {constant} s while nothing moves");
         } else {
             let time = specimen.time_s(r);
             recording = r;
@@ -215,7 +215,7 @@ fn strongest(
                 .region
                 .as_ref()
                 .map_or(String::new(), |r| format!("; {}", r.words()));
-            condition.text = format!("after a step, decays with {constant} s{region}");
+            condition.text = format!("after a step, decays with a time constant of {constant} s{region}");
         }
     }
     Location {

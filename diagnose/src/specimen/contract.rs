@@ -1,4 +1,4 @@
-//! What every specimen offers, and all that the search, the report and the page know of it.
+//! The trait of a specimen, which is all that the search, the report and the page know of it.
 
 use super::channel::{Channel, Series, StateSeries};
 use super::hypothesis::Hypothesis;
@@ -28,7 +28,7 @@ pub trait BelievedModel {
 
 /// A specimen: its recordings, what is believed of it, what that may lack, and what a model with all that predicts.
 pub trait Specimen: Sync {
-    /// Its kind.
+    /// The kind of specimen.
     fn kind(&self) -> SpecimenKind;
 
     /// The recordings, each with the columns of [`BelievedModel::columns`].

@@ -1,4 +1,4 @@
-//! The suspension controller: four displacements and sixteen pressures in, twelve valve positions out, every 5 ms.
+//! The suspension controller: every 5 ms it reads four displacements and sixteen pressures and sets twelve valves.
 //!
 //! ```text
 //!  frames --> Node --> tick:  plausibility --> estimate --> strategy --> spring, dwell --> failsafe --> Node --> frames

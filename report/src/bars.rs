@@ -1,4 +1,4 @@
-//! Figures of named things side by side, with intervals where they are estimates.
+//! Bar charts of named quantities, with intervals if the values are estimates.
 
 use plotly::common::{ErrorData, ErrorType, Marker};
 use plotly::{Bar, Trace};

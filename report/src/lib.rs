@@ -1,4 +1,4 @@
-//! What every command leaves behind, so that no command invents its own.
+//! The output of every command: folders of results, tables, and report pages.
 //!
 //! * [`OutputDirectory`]: files of a run are staged in a hidden folder and appear in `--out DIR` at once, or not at all.
 //! * [`Page`]: one self-contained `report.html` that opens offline: what was run, the outcome, figures that zoom.

@@ -17,7 +17,7 @@ use crate::vocabulary::Column;
 pub struct ModelPrediction {
     /// Name of the model, such as "improved".
     pub model: String,
-    /// Noise ratio of every channel on what was fitted.
+    /// Noise ratio of each channel on the fitted part.
     pub fitted: Vec<f64>,
     /// Noise ratio of each channel on the held-out part.
     pub kept_back: Vec<f64>,
@@ -28,7 +28,7 @@ pub struct ModelPrediction {
 pub struct Predictions {
     /// Columns of the channels.
     pub channels: Vec<Column>,
-    /// Models: as given, recalibrated, improved, then rivals, the best predictor first.
+    /// The models: as given, recalibrated, improved, then the rivals with the best predictor first.
     pub models: Vec<ModelPrediction>,
 }
 

@@ -100,7 +100,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     out.write(MODEL_FILE, &diagnosis.model_toml)?;
     out.commit()?;
     let mut text = format!(
-        "{}: {} (held-out noise ratio {:.2} before, {:.2} after)\n",
+        "{}: {}. The held-out noise ratio is {:.2} for the recalibrated and {:.2} for the improved model.\n",
         campaign.name,
         diagnosis.verdict(),
         diagnosis.selection.calibrated_ratio,

@@ -21,7 +21,7 @@ pub enum HandshakeError {
         waited_s: f64,
     },
     /// The two nodes want different runs.
-    #[error("the {} on {bus} runs with a different {what}: give both nodes the same scenario, --strategy and --clock", .partner.name())]
+    #[error("the {} on {bus} runs another {what}: give both nodes the same scenario, --strategy and --clock", .partner.name())]
     Terms {
         /// The node that answered.
         partner: Role,

@@ -228,7 +228,10 @@ fn what_is_no_number() {
         );
     }
     let ragged = Campaign::of_spring(&with_line(&good, 300, "5.98,0.1"));
-    refused(&ragged, &["a.csv, line 300", "2 fields where the header names 3"]);
+    refused(
+        &ragged,
+        &["a.csv, line 300", "the row has 2 fields, but the header has 3"],
+    );
     let (model, csv) = strut(0.01, [true; 3]);
     let half_open = csv.replacen(",1,1,1\n", ",1,0.5,1\n", 1);
     refused(
@@ -321,7 +324,7 @@ fn a_model_that_is_wrong() {
     }
     let none = Campaign::of_spring(&csv);
     fs::remove_file(none.0.path().join("campaign/model.toml")).expect("removed");
-    refused(&none, &["model.toml", "a campaign needs the model"]);
+    refused(&none, &["model.toml", "a campaign needs a model.toml"]);
     fs::remove_dir_all(none.0.path().join("campaign")).expect("removed");
     fs::write(none.0.path().join("campaign"), "not a folder").expect("written");
     refused(&none, &["campaign", "is not a folder"]);
@@ -334,7 +337,7 @@ fn a_hole_is_said_and_what_is_before_it_used() {
     lines.drain(3001..3500);
     let report = Campaign::of_spring(&(lines.join("\n") + "\n")).report();
     assert!(
-        notes(&report).contains("hole from 59.98 s to 69.98 s: the 2501 samples after it were not used"),
+        notes(&report).contains("there is a gap from 59.98 s to 69.98 s; the 2501 samples after it were not used"),
         "{report}"
     );
     assert_eq!(ids(&report, "effects"), ["gas_heat_transfer"]);
@@ -354,7 +357,7 @@ fn files_of_different_rates_and_one_too_short() {
         .expect("a number");
     assert!((tau / TAU_S - 1.0).abs() < 0.02, "{tau}");
     assert!(
-        notes(&report).contains("left out: campaign/c.csv: 20 usable samples"),
+        notes(&report).contains("was left out: campaign/c.csv: there are 20 usable samples"),
         "{}",
         notes(&report)
     );
@@ -447,7 +450,7 @@ fn ten_million_samples_in_bounded_memory() {
     let text = fs::read_to_string(campaign.0.path().join("found/report.json")).expect("a report");
     let report: Value = serde_json::from_str(&text).expect("JSON");
     assert!(
-        notes(&report).contains("one of 49 samples was used"),
+        notes(&report).contains("one of every 49 samples was used"),
         "{}",
         notes(&report)
     );

@@ -1,4 +1,4 @@
-//! `oleo hil` end to end: the same commands every time, an answer to every fault, one line for every bad input.
+//! `oleo hil` end to end: the same commands in every run, the reaction to every fault, one line for every bad input.
 
 mod support;
 

@@ -1,4 +1,4 @@
-//! The labelled campaigns with their answers: does the strut model reproduce what was recorded?
+//! Tests whether the strut model with the known answers reproduces the labelled recordings.
 //!
 //! For each campaign the concealed terms are put into its model as `answer.json` states them, the rest is calibrated within
 //! `[tolerance]` on the campaign's ten recordings (the calibration of `oleo diagnose`, no candidate added), and the model is

@@ -1,8 +1,8 @@
-//! Finds the physics a model left out.
+//! Finds the physics that a model leaves out.
 //!
-//! The user's words: *when simulation and real recordings differ, the tool should locate the mismatch, say what physics
-//! was left out, model it and show the fit improve.* [`Campaign`] reads recordings and the belief about a specimen;
-//! [`search`] finds what is missing; the report says where, what, and how much better the model became.
+//! If simulation and recordings differ, this crate locates the misfit, names the physics that the model leaves out, models
+//! it, and shows how much the prediction of held-out recordings improves. [`Campaign`] reads the recordings and the given
+//! model of a specimen, [`search`] finds the missing effects, and [`Diagnosis`] states the result.
 //!
 //! ```text
 //! recording --> campaign --> specimen (strut | gas spring | cylinder: one trait) <-- effect (what may be missing: one file each)
@@ -48,7 +48,7 @@
 //! # Ok::<(), DiagnoseError>(())
 //! ```
 //!
-//! `docs/architecture.md` draws who may know whom, and the way of a column through all of it.
+//! `docs/architecture.md` draws the dependencies of the modules, and the path of a column through them.
 
 #[cfg(test)]
 mod analytic;

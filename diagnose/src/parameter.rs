@@ -12,7 +12,7 @@ pub enum Scale {
     Log(f64),
 }
 
-/// One fitted number.
+/// A parameter that is fitted, with its start value and range.
 ///
 /// ```
 /// use oleo_diagnose::parameter::Parameter;
@@ -31,9 +31,9 @@ pub struct Parameter {
     pub start: f64,
     /// Map between `z` and value.
     pub scale: Scale,
-    /// Smallest value.
+    /// Smallest value that the parameter may have.
     pub lower: f64,
-    /// Largest value.
+    /// Largest value that the parameter may have.
     pub upper: f64,
     /// Calibration: `z` is normal with standard deviation 1 before the recordings are seen.
     pub prior: bool,
@@ -110,7 +110,7 @@ impl Parameter {
         }
     }
 
-    /// Value at `z`.
+    /// Value of the parameter at the fitted coordinate `z`.
     #[must_use]
     pub fn value(&self, z: f64) -> f64 {
         match self.scale {
@@ -120,7 +120,7 @@ impl Parameter {
         .clamp(self.lower, self.upper)
     }
 
-    /// `z` of a value.
+    /// Fitted coordinate `z` of a value.
     #[must_use]
     pub fn z(&self, value: f64) -> f64 {
         match self.scale {
@@ -129,7 +129,7 @@ impl Parameter {
         }
     }
 
-    /// Range of `z`.
+    /// Smallest and largest value of the fitted coordinate `z`.
     #[must_use]
     pub fn z_range(&self) -> (f64, f64) {
         let (a, b) = (self.z(self.lower), self.z(self.upper));

@@ -1,4 +1,4 @@
-//! How two nodes on a bus find each other, whichever was started first, and agree on the run.
+//! The handshake by which two nodes find each other on a bus, in either order, and agree on the run.
 //!
 //! Each repeats its `Hello` until it has received the other's and knows that its own was received.
 
@@ -30,7 +30,7 @@ pub enum HandshakeError {
         /// What differs: `strategy` or `clock`.
         what: &'static str,
     },
-    /// The bus failed.
+    /// The bus failed during the handshake.
     #[error(transparent)]
     Bus(#[from] BusError),
 }

@@ -1,4 +1,4 @@
-//! The plant's electronics with their faults: its sensors, and valves that do not follow.
+//! The electronics of the plant with their faults: sensors, and valves that do not follow.
 //!
 //! ```text
 //!   vehicle -> Instruments (sensor faults) -> frames

@@ -1,4 +1,4 @@
-//! The loop: plant and controller, talking only through CAN frames.
+//! The loop: plant and controller communicate only through CAN frames.
 //!
 //! ```text
 //!   scenario (TOML)
@@ -12,9 +12,9 @@
 //!      record, trace --> metrics --> checks --> output (summary, logs, CSV, JUnit, page)
 //! ```
 //!
-//! * [`bus`] carries frames and holds the decorators around a bus; [`sync`] and [`handshake`] keep two nodes in step; [`clock`] is
-//!   real time.
-//! * [`scenario`] says what is driven, what goes wrong and what must hold; [`run`] turns a scenario into a recording.
+//! * [`bus`] contains the buses and the decorators around them; [`sync`] and [`handshake`] synchronise two nodes; [`clock`] paces a
+//!   run in real time.
+//! * [`scenario`] describes what is driven, which faults occur and which checks must be met; [`run`] turns a scenario into a recording.
 //! * [`metrics`] and [`output`] turn a recording into figures and files; [`bit_timing`] computes when a wire would have carried each
 //!   frame.
 #![forbid(unsafe_code)]

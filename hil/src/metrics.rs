@@ -1,4 +1,4 @@
-//! From a recording to figures: ride measures, extremes, and the number of ticks that the answer to a fault took.
+//! Computes the figures of a run from its record: ride measures, extremes, and reaction times to faults in ticks.
 //!
 //! Everything here is computed from what the run left in memory. So it costs the loop nothing, and it is the same for every bus.
 

@@ -1,4 +1,4 @@
-//! A run's files: `summary.json`, `timeseries.csv`, `candump.log`, `junit.xml`, `report.html`.
+//! Writes the files of a run: `summary.json`, `timeseries.csv`, `candump.log`, `junit.xml`, `report.html`.
 //!
 //! They are written through [`OutputDirectory`], so that all of them appear or none. Between two runs of one scenario only wall-clock
 //! figures differ; everything else has the same bytes.
@@ -30,7 +30,7 @@ pub struct CheckOutcome {
     pub figure: String,
 }
 
-/// Content of `summary.json`.
+/// The contents of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// Version of this file's layout.
@@ -39,7 +39,7 @@ pub struct Summary {
     pub scenario: String,
     /// Name or path of the road.
     pub road: String,
-    /// Forward speed, km/h.
+    /// Forward speed of the vehicle, km/h.
     pub speed_km_h: f64,
     /// Name of the strategy that decided the valves.
     pub strategy: &'static str,
@@ -51,7 +51,7 @@ pub struct Summary {
     pub seed: u64,
     /// Number of ticks that were run.
     pub ticks: u32,
-    /// Simulated time, s.
+    /// Simulated time of the run, s.
     pub simulated_s: f64,
     /// Wall-clock time of the loop alone, s.
     pub wall_s: f64,
@@ -95,11 +95,11 @@ pub struct Summary {
     pub modes: Vec<ModeEntry>,
     /// See [`Metric::TicksToDetect`]; `null` is "never", here and in the next three.
     pub ticks_to_detect: Option<f64>,
-    /// See [`Metric::TicksToSafe`].
+    /// Ticks until the controller was safe, as [`Metric::TicksToSafe`].
     pub ticks_to_safe: Option<f64>,
-    /// See [`Metric::TicksToClosed`].
+    /// Ticks until all valves were closed, as [`Metric::TicksToClosed`].
     pub ticks_to_closed: Option<f64>,
-    /// See [`Metric::TicksToRecover`].
+    /// Ticks until the mode was normal again, as [`Metric::TicksToRecover`].
     pub ticks_to_recover: Option<f64>,
     /// Tick in which a silent controller was taken to be gone.
     pub controller_lost_at_tick: Option<u32>,
@@ -133,7 +133,7 @@ pub struct NodeLateness {
 }
 
 impl Summary {
-    /// Summarises a run.
+    /// Collects the figures of a run.
     pub fn of(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics) -> Self {
         let number = |metric| match metrics.figure(metric) {
             Figure::Number(number) => Some(number),

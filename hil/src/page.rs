@@ -31,8 +31,8 @@ pub fn page(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summary: 
     let failed = summary.checks.iter().filter(|check| !check.passed).count();
     let (verdict, sentence) = match (failed, summary.checks.len()) {
         (0, 0) => (Verdict::Attention, "The scenario has no checks.".to_owned()),
-        (0, all) => (Verdict::Pass, format!("All {all} checks met.")),
-        (failed, all) => (Verdict::Fail, format!("{failed} of {all} checks not met.")),
+        (0, all) => (Verdict::Pass, format!("All {all} checks are met.")),
+        (failed, all) => (Verdict::Fail, format!("{failed} of {all} checks are not met.")),
     };
     page.verdict(verdict, &sentence);
     page.outcome(outcome_table(summary));
@@ -59,19 +59,19 @@ pub fn outcome_table(summary: &Summary) -> Table {
     row("real time factor", significant(summary.real_time_factor, 3), "");
     row("command hash", summary.command_hash.clone(), "");
     row(
-        "weighted RMS, driver (BS 6841)",
+        "vertical weighted RMS, driver (BS 6841)",
         significant(summary.weighted_rms_driver_m_s2, 3),
         "m/s2",
     );
     row(
-        "weighted RMS, left rear",
+        "vertical weighted RMS, left rear passenger",
         significant(summary.weighted_rms_rear_left_m_s2, 3),
         "m/s2",
     );
     row(
-        "vibration dose, driver",
+        "vertical vibration dose, driver",
         significant(summary.vdv_driver_m_s1_75, 3),
-        "m/s1.75",
+        "m/s^1.75",
     );
     row("largest roll", significant(summary.max_roll_deg, 3), "degrees");
     row(
@@ -91,7 +91,7 @@ pub fn outcome_table(summary: &Summary) -> Table {
         ("fault detected after", summary.ticks_to_detect),
         ("mode safe after", summary.ticks_to_safe),
         ("valves closed after", summary.ticks_to_closed),
-        ("normal again after its end", summary.ticks_to_recover),
+        ("mode normal again after the fault ended", summary.ticks_to_recover),
     ];
     for (quantity, ticks) in answers {
         if let Some(ticks) = ticks {
@@ -99,12 +99,12 @@ pub fn outcome_table(summary: &Summary) -> Table {
         }
     }
     if let Some(tick) = summary.controller_lost_at_tick {
-        row("controller given up in tick", tick.to_string(), "");
+        row("controller counted as lost in tick", tick.to_string(), "");
     }
     for node in &summary.lateness {
         let late = &node.lateness;
         row(
-            &format!("{} late, median / p99 / worst", node.node),
+            &format!("{} lateness, median / 99 % / largest", node.node),
             format!("{} / {} / {}", late.p50_us, late.p99_us, late.max_us),
             "us",
         );
@@ -222,8 +222,8 @@ fn body(page: &mut Page, outcome: &Outcome, time: &Time) {
 fn struts(page: &mut Page, outcome: &Outcome, time: &Time) {
     let samples = &outcome.plant.recording.samples;
     page.section("Struts").text(
-        "Compression is positive, and pressures are gauge pressures. Valves 1 and 2 bypass the dampers: open, they give low damping. Valve 3 \
-         connects the 0.4 l accumulator: open, it gives the soft spring.",
+        "Compression is positive, and pressures are gauge pressures. Valves 1 and 2 bypass the dampers; when they are open, the \
+         damping is low. Valve 3 connects the 0.4 l accumulator; when it is open, the spring is soft.",
     );
     for corner in Corner::ALL {
         let column = |value: &dyn Fn(usize) -> f64| (0..samples.len()).map(value).collect::<Vec<f64>>();
@@ -264,7 +264,7 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
         .iter()
         .map(|account| account.map_or(f64::NAN, |(mode, _)| f64::from(mode.raw())))
         .collect();
-    let mut curves = time.curves("Mode machine and strategy");
+    let mut curves = time.curves("Mode and strategy");
     let names = Mode::VARIANTS.iter().map(|mode| (f64::from(mode.raw()), mode.name()));
     curves.panel(Axis::new("Mode", "").ticks(names).range(-0.4, 4.4));
     curves.series(Style::Step, "mode", &time.s, &mode);
@@ -275,7 +275,7 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
         status.iter().map(|(_, message)| value(message)).collect()
     };
     curves.panel(Axis::new("Running RMS", "m/s2"));
-    curves.line("lateral surrogate", &status_s, &of(&|m| m.lateral_rms_m_s2.into()));
+    curves.line("lateral, estimated", &status_s, &of(&|m| m.lateral_rms_m_s2.into()));
     curves.line("vertical", &status_s, &of(&|m| m.vertical_rms_m_s2.into()));
     curves.panel(
         Axis::new("Strategy", "")
@@ -289,7 +289,7 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
         &of(&|m| f64::from(u8::from(m.handling))),
     );
     page.section("Controller")
-        .text("This is what the controller's own frames say, before any injected fault.")
+        .text("The values are taken from the frames that the controller sent, before any injected fault changed them.")
         .figure(curves);
 
     let mut table = Table::new([
@@ -331,16 +331,16 @@ fn bus(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &Summary)
     for (name, count) in [
         ("messages on the wire, both directions", summary.frames_sent),
         ("lost by the bus itself", summary.bus_frames_lost),
-        ("of third parties, ignored", summary.foreign_frames),
-        ("failed their end-to-end check, both ends", summary.e2e_errors),
+        ("of other nodes, ignored", summary.foreign_frames),
+        ("failed the end-to-end check in either node", summary.e2e_errors),
         ("injected: dropped", injected.dropped),
         ("injected: corrupted", injected.corrupted),
         ("injected: delayed", injected.delayed),
         ("injected: duplicated", injected.duplicated),
-        ("plant's end: thrown away by the kernel", counters.receive_lost),
-        ("plant's end: not sent, queue full", counters.send_lost),
-        ("plant's end: waits for a full queue", counters.back_offs),
-        ("plant's end: unreadable", counters.unreadable),
+        ("plant node: dropped by the kernel", counters.receive_lost),
+        ("plant node: not sent because the queue was full", counters.send_lost),
+        ("plant node: waits for a full queue", counters.back_offs),
+        ("plant node: unreadable", counters.unreadable),
     ] {
         table.row([name.to_owned(), count.to_string()]);
     }

@@ -167,7 +167,7 @@ impl<B: Bus> PlantNode<B> {
         self.ticks_without_command
     }
 
-    /// The node's bus.
+    /// The bus through which the node sends and receives.
     pub fn bus(&mut self) -> &mut dyn Bus {
         &mut self.bus
     }

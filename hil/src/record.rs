@@ -1,4 +1,4 @@
-//! What a run keeps in memory: one sample for each tick, and what can be read from the traced frames.
+//! The record of a run in memory: one sample for each tick, and what is read from the traced frames.
 //!
 //! All memory is reserved before the run starts, so that in the loop a sample is only a copy. Measures, logs and pictures are
 //! computed afterwards.
@@ -38,7 +38,7 @@ pub struct Recording {
     pub samples: Vec<Sample>,
     /// Vertical acceleration at the driver's and at the left rear passenger's seat for every integration step, m/s2.
     pub seat_acceleration_m_s2: Vec<[f64; 2]>,
-    /// Integration step, s.
+    /// Integration step of the vehicle, s.
     pub step_s: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Frames that keep two nodes in step. They belong to the simulation and are no messages of the vehicle.
+//! Frames that synchronise the two nodes. They belong to the simulation and are not messages of the vehicle.
 //!
 //! A node in lockstep must know when the other has sent everything in a tick, even if a fault has dropped the last message. So each
 //! ends its tick with a `TickDone`, which no injected fault touches. It carries the number of frames sent so far, which shows
@@ -28,12 +28,12 @@ use crate::frame::extended;
 pub enum Role {
     /// The plant: sensors, vehicle and valves.
     Plant,
-    /// The suspension controller.
+    /// The node with the suspension controller.
     Controller,
 }
 
 impl Role {
-    /// The node opposite.
+    /// The other node of the loop.
     pub fn other(self) -> Self {
         match self {
             Self::Plant => Self::Controller,
@@ -65,7 +65,7 @@ pub struct Terms {
 /// Content of a frame that keeps nodes in step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sync {
-    /// The sender is there.
+    /// The sender is ready for the handshake.
     Hello {
         /// What both must agree on.
         terms: Terms,

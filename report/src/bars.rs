@@ -1,4 +1,4 @@
-//! Figures of named things side by side.
+//! Bar charts of named quantities.
 
 use plotly::common::Marker;
 use plotly::{Bar, Trace};

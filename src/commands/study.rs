@@ -1,4 +1,4 @@
-//! `oleo study`: which springs and dampers suit the ride, which the handling (seed report 3.2).
+//! `oleo study`: which springs and dampers suit the ride, and which suit the handling (report 3.2).
 
 mod drive;
 mod optimise;
@@ -8,11 +8,12 @@ use std::process::ExitCode;
 
 use crate::failure::Failure;
 
-/// Sweep or optimise gas volume and damping for ride and handling.
+/// Compare or optimise gas volumes and damper characteristics for ride and handling.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  oleo study sweep --check --out study\n  oleo study optimise --ride 1 --roll 0 --out study\n\n\
-                  Finished runs are kept in DIR/runs.csv: an interrupted command goes on there, and both commands share it."
+                  Both commands store every finished run in DIR/runs.csv and use the runs that they find there. An interrupted \
+                  command resumes when it is repeated with the same DIR."
 )]
 pub struct Args {
     #[command(subcommand)]

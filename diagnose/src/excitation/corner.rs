@@ -24,10 +24,10 @@ const MOST_LEFT: f64 = 0.05;
 /// A bend must stand out of the noise of the effect this many times.
 const LEAST_BEND: f64 = 8.0;
 
-/// One corner.
+/// A corner of a motion: a sharp start or stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
-    /// When, s.
+    /// Time of the corner, s.
     pub time_s: f64,
     /// By how much the effect is late, s.
     pub delay_s: f64,
@@ -162,7 +162,7 @@ fn without_line(time_s: &[f64], series: &[f64]) -> Vec<f64> {
 /// Delays of enough corners to speak for the whole recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {
-    /// Number of corners.
+    /// Number of corners that were evaluated.
     pub corners: usize,
     /// Smallest, median and largest delay, s; of ten corners and more the outermost tenth at either end is left out.
     pub delay_s: [f64; 3],

@@ -21,9 +21,9 @@ pub struct Cylinder {
     pub force_n: f64,
     /// Range of the displacement, m.
     pub stroke_m: f64,
-    /// Largest speed, m/s.
+    /// Largest speed in all recordings, m/s.
     pub speed_m_s: f64,
-    /// Largest acceleration, m/s2.
+    /// Largest acceleration in all recordings, m/s2.
     pub acceleration_m_s2: f64,
     /// Largest mean pressing force of a recording, N.
     pub pressing_n: f64,
@@ -62,9 +62,9 @@ impl Cylinder {
             acceleration_m_s2: largest(|m| &m.acceleration_m_s2),
             pressing_n: high.max(LEAST_SIZE),
             extent,
-            still: still.then(|| "the piston does not move; record strokes both ways".to_owned()),
+            still: still.then(|| "the piston does not move; record strokes in both directions".to_owned()),
             one_pressure: one_pressure
-                .then(|| "one pressure only; record the same strokes at half and at twice the pressure".to_owned()),
+                .then(|| "the recordings contain only one pressure; record the same strokes at half and at twice the pressure".to_owned()),
         }
     }
 }

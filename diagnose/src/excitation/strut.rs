@@ -14,7 +14,7 @@ const LEAST_NOISE_M: f64 = 1e-6;
 /// Extremes and events over all recordings of a strut.
 #[derive(Debug, Clone, Default)]
 pub struct Strut {
-    /// Displacement range, m.
+    /// Smallest and largest displacement in all recordings, m.
     pub displacement_m: (f64, f64),
     /// Largest departure from the first value of each channel: force, N, and p1 to p4, Pa.
     pub departure: [f64; 5],
@@ -24,7 +24,7 @@ pub struct Strut {
     pub valve3_holding_s: f64,
     /// Largest pressure drops p1-p2, p1-p3, Pa.
     pub drop_pa: [f64; 2],
-    /// Longest recording, s.
+    /// Duration of the longest recording, s.
     pub duration_s: f64,
     /// Shortest sampling interval, s.
     pub interval_s: f64,
@@ -76,7 +76,7 @@ impl Strut {
     /// Why nothing can be tested, where the strut does not move.
     #[must_use]
     pub fn still(&self) -> Option<String> {
-        (!self.moves).then(|| "the strut does not move; record moves of at least 10 mm".to_owned())
+        (!self.moves).then(|| "the strut does not move; record strokes of at least 10 mm".to_owned())
     }
 
     /// Why the timing of the valves cannot be tested, where none is switched.

@@ -1,4 +1,4 @@
-//! Reads a recording from CSV; whatever cannot be used is refused with one line: file, line, remedy.
+//! Reads a recording from CSV. Input that cannot be used is refused with one line that names file, line and remedy.
 
 use std::path::Path;
 
@@ -124,7 +124,7 @@ pub fn parse(
         return Err(DiagnoseError::TooShort {
             path: path.to_path_buf(),
             what: format!(
-                "{} usable samples{why}, at least {MIN_SAMPLES} are needed; record longer or leave the file out",
+                "there are {} usable samples{why}, but at least {MIN_SAMPLES} are needed; record longer or leave the file out",
                 recording.len()
             ),
         });
@@ -138,15 +138,15 @@ fn csv_error(path: &Path, error: &csv::Error) -> DiagnoseError {
             path: path.to_path_buf(),
             line: p.line(),
             what: format!(
-                "{len} fields where the header names {expected_len}; the file may have been cut off while written"
+                "the row has {len} fields, but the header has {expected_len}; the file may have been cut off while it was written"
             ),
         },
         (Some(p), csv::ErrorKind::Utf8 { .. }) => DiagnoseError::Line {
             path: path.to_path_buf(),
             line: p.line(),
-            what: "not text; a recording is a CSV file in UTF-8".to_owned(),
+            what: "the file is not text; a recording is a CSV file in UTF-8".to_owned(),
         },
-        _ => DiagnoseError::file(path, format!("not readable as CSV: {error}")),
+        _ => DiagnoseError::file(path, format!("the file is not readable as CSV: {error}")),
     }
 }
 
@@ -185,7 +185,7 @@ fn cut_at_gap(recording: &mut Recording) {
         recording.time_s.truncate(gap + 1);
         recording.columns.iter_mut().for_each(|c| c.truncate(gap + 1));
         recording.notes.push(format!(
-            "hole from {from} s to {to} s: the {lost} samples after it were not used"
+            "there is a gap from {from} s to {to} s; the {lost} samples after it were not used"
         ));
     }
 }
@@ -220,7 +220,7 @@ mod tests {
             assert!((r.columns[0][k] - 0.1 * r.time_s[k]).abs() < 1e-9, "input at {k}");
             assert!((r.columns[1][k] - 2.0 * r.time_s[k]).abs() < 1e-9, "output at {k}");
         }
-        assert!(r.notes[0].contains("one of 3 samples"), "{:?}", r.notes);
+        assert!(r.notes[0].contains("one of every 3 samples"), "{:?}", r.notes);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! What is compared, and over which quantities residuals are explained.
+//! The channels that are compared, and the states on which residuals may depend.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::vocabulary::{Column, State};
 /// A measured quantity that the model predicts.
 #[derive(Debug, Clone)]
 pub struct Channel {
-    /// Its column.
+    /// Column of the recordings that the channel is.
     pub column: Column,
     /// Standard deviation of its white noise, in the unit of the column.
     pub noise: f64,
@@ -33,9 +33,9 @@ pub type Series = Vec<Vec<f64>>;
 /// A state over the samples of one recording, or of several one after the other; NaN where it is not defined.
 #[derive(Debug, Clone)]
 pub struct StateSeries {
-    /// Which state.
+    /// The state whose values these are.
     pub state: State,
-    /// Its values.
+    /// Value of the state at each sample, in the state's unit.
     pub values: Vec<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! A synthetic drive: what the sensors say in each tick, the same to the bit on every machine.
+//! A synthetic drive: sensor readings for each tick that are bit-identical on every machine.
 //!
 //! It is not a model of a vehicle, which would need f64 and std, but it gives each part of the controller work: four struts on a
 //! rough road, a slalom on a smooth one, sensor noise, and at the end readings that are missing or wrong. The gas follows the

@@ -1,4 +1,4 @@
-//! A bus that disturbs frames on purpose, in the same way every time.
+//! A bus decorator that disturbs frames deliberately and reproducibly.
 //!
 //! Each [`Injection`] disturbs some messages during some ticks with some probability. Every injection has a random stream of its
 //! own (ChaCha8, seeded by the scenario), so that adding one does not change what the others do. Only messages of the vehicle's
@@ -26,14 +26,14 @@ pub enum Disturbance {
     },
     /// The frame arrives later, after the other frames of that tick.
     Delay {
-        /// By how many ticks.
+        /// Number of ticks by which the frame is late.
         ticks: u16,
     },
     /// The frame arrives twice.
     Duplicate,
 }
 
-/// Which frames are disturbed.
+/// Frames that a fault disturbs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// Every message of the database.
@@ -128,7 +128,7 @@ impl<B: Bus> FaultInjector<B> {
         self.counts
     }
 
-    /// The wrapped bus.
+    /// The bus that this decorator wraps.
     pub fn inner(&self) -> &B {
         &self.inner
     }

@@ -1,4 +1,4 @@
-//! Road, struts and vehicle of a scenario, made before the clock starts.
+//! Builds the road, the struts and the vehicle of a scenario before the clock starts.
 
 use std::sync::Arc;
 

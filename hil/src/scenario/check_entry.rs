@@ -1,4 +1,4 @@
-//! `[[check]]` tables of a scenario file: keys to a checked [`Check`].
+//! `[[check]]` tables of a scenario file, converted into a [`Check`].
 
 use oleo_plant_sim::model_file::names::suggestion;
 use oleo_plant_sim::model_file::{Checked, InvalidValue, Limit, Range};
@@ -39,7 +39,7 @@ impl Checked for CheckEntry {
 }
 
 impl CheckEntry {
-    /// The check.
+    /// Converts the entry of the file into a check.
     pub fn check(&self) -> Result<Check, InvalidValue> {
         let metric = Metric::from_name(&self.metric).ok_or_else(|| {
             let names: Vec<&str> = Metric::ALL.iter().map(|metric| metric.name()).collect();

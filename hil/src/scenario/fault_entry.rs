@@ -1,4 +1,4 @@
-//! `[[fault]]` tables of a scenario file: keys to a checked [`Fault`].
+//! `[[fault]]` tables of a scenario file, converted into a [`Fault`].
 
 use oleo_controller::can::MESSAGES;
 use oleo_interface::tick::TICK_S;

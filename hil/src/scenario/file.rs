@@ -1,4 +1,4 @@
-//! Scenario files: TOML to checked values, or one line with file, line and key.
+//! Reads scenario files: TOML is converted into valid values, or into one error line with file, line and key.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use crate::bus::BusAddress;
 
 pub use super::fault_entry::LONGEST_S;
 
-/// Fastest vehicle, km/h.
+/// Highest forward speed that a scenario may have, km/h.
 pub const FASTEST_KM_H: f64 = 250.0;
 /// Name of the built-in vehicle and strut.
 pub const DEFENDER: &str = "defender110";

@@ -1,4 +1,4 @@
-//! A vehicle on a course, tick by tick: the plant of a loop.
+//! Drives a vehicle along a course tick by tick, so that it can be the plant of a loop.
 //!
 //! ```text
 //!  valves' signals --> tick: 5 ms of driver, vehicle and road --> sample: everything measured; ending, once there is one
@@ -232,12 +232,12 @@ impl<E: SuspensionElement> Drive<E> {
         margins.reduce(f64::min)
     }
 
-    /// The vehicle.
+    /// The vehicle model that drives.
     pub fn model(&self) -> &HandlingModel<E> {
         &self.model
     }
 
-    /// Ticks driven.
+    /// Number of ticks of 5 ms that were driven.
     pub fn ticks(&self) -> u32 {
         self.ticks
     }

@@ -1,4 +1,4 @@
-//! What is asked of vehicle and driver: the standards' manoeuvres with their speeds.
+//! The manoeuvres of the standards with their speeds, times and dimensions.
 
 use super::style::DriverStyle;
 use super::track::Track;
@@ -12,12 +12,12 @@ pub enum LaneChange {
     ObstacleAvoidance,
 }
 
-/// What is driven.
+/// A manoeuvre with its speeds, times and dimensions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Manoeuvre {
     /// Straight ahead at constant speed.
     Straight {
-        /// Speed, m/s.
+        /// Forward speed, m/s.
         speed_m_s: f64,
         /// Time to drive, s.
         duration_s: f64,
@@ -26,7 +26,7 @@ pub enum Manoeuvre {
     LaneChange {
         /// Which of the standard's two.
         kind: LaneChange,
-        /// Speed, m/s.
+        /// Forward speed, m/s.
         speed_m_s: f64,
         /// Station of the first cones, m: how far the vehicle drives straight ahead before.
         entry_m: f64,
@@ -39,12 +39,12 @@ pub enum Manoeuvre {
         from_m_s: f64,
         /// Speed at the end, m/s.
         to_m_s: f64,
-        /// Time between, s.
+        /// Time in which the speed rises from the first to the last, s.
         duration_s: f64,
     },
     /// ISO 7401, step of steer at constant speed: after `at_s` to `angle_rad` at the steering's highest rate, then held.
     StepSteer {
-        /// Speed, m/s.
+        /// Forward speed, m/s.
         speed_m_s: f64,
         /// Angle of the steering wheel over the steering ratio, rad, left positive.
         angle_rad: f64,
@@ -55,7 +55,7 @@ pub enum Manoeuvre {
     },
     /// Braking from constant speed to a stop, straight ahead or (ISO 7975) in a bend with the steering wheel held as it was.
     Braking {
-        /// Speed before, m/s.
+        /// Speed before the brakes are applied, m/s.
         speed_m_s: f64,
         /// Radius of the bend, m, positive to the left; `None` is straight ahead.
         radius_m: Option<f64>,
@@ -68,7 +68,7 @@ pub enum Manoeuvre {
     },
     /// Acceleration straight ahead from constant speed.
     Acceleration {
-        /// Speed before, m/s.
+        /// Speed before the acceleration begins, m/s.
         speed_m_s: f64,
         /// Acceleration that the drive force is set for, m/s2; engine power may give less.
         acceleration_m_s2: f64,

@@ -39,7 +39,7 @@ use crate::vehicle::VehicleParameters;
 pub struct Course {
     /// What is driven, and how fast.
     pub manoeuvre: Manoeuvre,
-    /// Who drives.
+    /// The driver of the manoeuvre.
     pub driver: DriverStyle,
     /// What it is driven on.
     pub road: Arc<dyn Road>,
@@ -55,7 +55,7 @@ impl Course {
 /// How a drive ended. Roll-over, spinning and hit cones are outcomes, not failures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ending {
-    /// To the end.
+    /// The vehicle completed the manoeuvre.
     Completed,
     /// The body lay on its side or beyond at this time, s.
     RolledOver(f64),

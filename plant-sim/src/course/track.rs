@@ -1,4 +1,4 @@
-//! Where the driver wants to go, and the cones beside it.
+//! The line that the driver wants to follow, and the cones beside it.
 //!
 //! ISO 3888-1 (severe double lane change) and ISO 3888-2 (obstacle avoidance) as lanes of cones whose width depends on the
 //! vehicle's width w; ISO 4138 as a circle.
@@ -42,7 +42,7 @@ impl LaneChangeLine {
 pub struct Gate {
     /// First and last cone, station, m.
     pub from_m: f64,
-    /// Last cone, m.
+    /// Station of the last cone, m.
     pub to_m: f64,
     /// Cones on the right, lateral, m (left positive).
     pub right_m: f64,
@@ -78,7 +78,7 @@ pub struct Track {
 }
 
 impl Track {
-    /// Straight ahead.
+    /// A track that leads straight ahead, without cones.
     pub fn straight() -> Self {
         Self {
             line: Line::Straight,

@@ -1,4 +1,4 @@
-//! The handling model in time: a fixed step, the same bits on every machine.
+//! Time integration of the handling model with a fixed step and bit-identical results on every machine.
 //!
 //! The step is the ride model's (velocity Verlet, kick-drift-kick; see `vehicle::ride` for why it is stable with struts that
 //! solve their own flows): half a kick, move, forces at the new place with predicted speeds, half a kick. Tyre slips

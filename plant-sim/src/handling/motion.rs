@@ -1,4 +1,4 @@
-//! What goes into the vehicle from its driver and what can be seen of it: plain numbers, world axes.
+//! Inputs of the vehicle from its driver, and its observable motion, as plain numbers in world axes.
 
 /// What driver or test asks of the vehicle in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -17,7 +17,7 @@ use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, che
 pub struct Specimen {
     /// Name of the individual.
     pub name: String,
-    /// Kind: [`StrutModel::KIND`].
+    /// Kind of the specimen, which must be [`StrutModel::KIND`].
     pub kind: String,
 }
 
@@ -33,11 +33,11 @@ impl Checked for Specimen {
     }
 }
 
-/// Main cylinder.
+/// The main cylinder of the strut.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cylinder {
-    /// Bore, m.
+    /// Bore of the cylinder, m.
     pub bore_m: f64,
     /// Oil volume at displacement zero, m3.
     pub oil_volume_m3: f64,
@@ -81,7 +81,7 @@ impl Checked for GasCharge {
     }
 }
 
-/// One accumulator.
+/// An accumulator with its gas charge.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Accumulator {
@@ -196,17 +196,17 @@ pub struct StrutModel {
     pub accumulator: [Accumulator; 2],
     /// Valves 1 to 3.
     pub valve: [Valve; 3],
-    /// Name and kind.
+    /// Name and kind of the specimen.
     pub specimen: Specimen,
-    /// Main cylinder.
+    /// The main cylinder of the strut.
     pub cylinder: Cylinder,
-    /// Gas filling.
+    /// Species and temperature of the gas.
     pub gas: GasCharge,
     /// Damper packs 1 and 2.
     pub damper: [DamperTable; 2],
-    /// Orifice law.
+    /// Flow law of the valves and leaks.
     pub orifice: Orifice,
-    /// Valve timing.
+    /// Response times of the valves.
     pub valve_timing: ValveTiming,
     /// The terms that the model has.
     #[serde(default)]
@@ -300,7 +300,7 @@ impl StrutModel {
         model
     }
 
-    /// Piston area, m2.
+    /// Area of the piston, m2.
     #[must_use]
     pub fn piston_area_m2(&self) -> f64 {
         0.25 * std::f64::consts::PI * self.cylinder.bore_m * self.cylinder.bore_m

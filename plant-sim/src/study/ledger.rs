@@ -22,7 +22,7 @@ const MODEL_VERSION: u32 = 4;
 
 /// A ledger that cannot be read or written.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {problem}: give another --out folder or free this one", path.display())]
+#[error("{}: {problem}: give another --out folder, or empty this one", path.display())]
 pub struct LedgerError {
     path: PathBuf,
     problem: std::io::Error,
@@ -90,7 +90,7 @@ impl Ledger {
         self.known.len()
     }
 
-    /// Nothing known.
+    /// Whether no run is stored.
     pub fn is_empty(&self) -> bool {
         self.known.is_empty()
     }

@@ -1,4 +1,4 @@
-//! What the command line asks for, ready to be driven with either model.
+//! Converts the options of the command line into a drive for either model.
 
 use std::sync::Arc;
 
@@ -41,7 +41,7 @@ impl Plan {
         let kind = args.manoeuvre;
         if kind.steers() && args.model != Model::Handling {
             return Err(Failure::new(
-                "--model: the ride model neither steers nor brakes: take --model handling for this manoeuvre",
+                "--model: the ride model can neither steer nor brake; use --model handling for this manoeuvre",
             ));
         }
         let own_road = match kind {
@@ -51,7 +51,7 @@ impl Plan {
         };
         if own_road.is_some() && args.road.is_some() {
             return Err(Failure::new(
-                "--road: this manoeuvre has its own; take --manoeuvre straight for another",
+                "--road: this manoeuvre has a road of its own; use --manoeuvre straight to drive over another road",
             ));
         }
         let manoeuvre = manoeuvre(args, vehicle.layout.wheelbase_m)?;
@@ -69,7 +69,7 @@ impl Plan {
         }
         if args.setting == Setting::Baseline && args.gas_temperature_c.is_some() {
             return Err(Failure::new(
-                "--gas-temperature-c: coil springs have no gas; take another --setting",
+                "--gas-temperature-c: coil springs contain no gas; use another --setting or leave the option out",
             ));
         }
         let celsius = args.gas_temperature_c.unwrap_or(CHARGED_AT_C);

@@ -1,4 +1,4 @@
-//! What a drive leaves: a table, CSV histories, pictures.
+//! Writes the results of a drive: tables, CSV files and the page.
 
 use std::io::Write as _;
 
@@ -116,7 +116,7 @@ pub fn publish(plan: &Plan, args: &Args, runs: &[(&str, Run)], out: Option<Outpu
     columns.push(Column::text("Unit"));
     let mut table = Table::new(columns);
     let mut summary = Map::new();
-    let mut row = vec!["ending".to_owned()];
+    let mut row = vec!["end of the run".to_owned()];
     row.extend(runs.iter().map(|(_, run)| ending(run.ending)));
     row.push(String::new());
     table.row(row);
@@ -145,7 +145,7 @@ pub fn publish(plan: &Plan, args: &Args, runs: &[(&str, Run)], out: Option<Outpu
     if let [(_, one), (_, other)] = runs {
         let mut rows = Table::new([
             Column::text("Signal"),
-            Column::number("RMS difference over RMS of the ride model, place by place"),
+            Column::number("RMS difference at the same place on the road / RMS of the ride model"),
         ]);
         for (key, words, of) in COMPARED {
             let ratio = difference(&one.history, &other.history, of);
@@ -291,7 +291,7 @@ fn page(plan: &Plan, args: &Args, runs: &[(&str, Run)], table: &Table, compariso
 
 /// The course from above with its cones.
 fn map(plan: &Plan, runs: &[(&str, Run)]) -> Curves {
-    let mut figure = Curves::new("From above", Axis::new("Ahead", "m"));
+    let mut figure = Curves::new("Path of the vehicle, seen from above", Axis::new("Ahead", "m"));
     let panel = figure.panel(Axis::new("Left", "m"));
     for (name, run) in runs {
         panel.line(
@@ -315,7 +315,7 @@ fn map(plan: &Plan, runs: &[(&str, Run)]) -> Curves {
             .map(|i| first + (last - first) * f64::from(i) / 200.0)
             .collect();
         let line: Vec<f64> = stations.iter().map(|x| plan.track.lateral_m(*x)).collect();
-        panel.series(Style::Dashed, "line wanted", &stations, &line);
+        panel.series(Style::Dashed, "desired line", &stations, &line);
     }
     figure
 }

@@ -1,4 +1,5 @@
-//! The suspension as set on the command line: fixed valves, or the controller called directly, without a bus between.
+//! The suspension that the command line selects: fixed valves, or the controller, which is called directly without a
+//! bus.
 
 use oleo_controller::{Configuration, Inputs, State, tick};
 use oleo_interface::{Corners, Gauge, StrutPressures, StrutValves};

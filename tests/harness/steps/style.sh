@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# formatting, clippy and documentation without warnings, no unused dependency, shellcheck
+# checks formatting, clippy and documentation without warnings, unused dependencies, and shellcheck
 . tests/harness/lib.sh
 check "host code is formatted" cargo fmt --all --check -- --color=never
 check "firmware is formatted" cargo fmt --manifest-path firmware/Cargo.toml -p oleo-firmware -p oleo-bench --check -- --color=never

@@ -75,9 +75,9 @@ fn clock(model: &GasSpringModel, recording: &Recording, noise_pa: f64) -> Option
 fn remark(recording: &Recording, clock: &Clock) -> String {
     let [low, middle, high] = clock.delay_s;
     let verdict = if clock.is_late(recording.interval_s()) {
-        "no gas does that: the clocks of the two columns differ"
+        "no gas can cause this, so the clocks of the two columns differ"
     } else {
-        "one clock, as far as the corners tell"
+        "as far as the corners show, the two columns have one clock"
     };
     format!(
         "{}: at {} corners of the motion p_Pa follows displacement_m after {middle:.2} s ({low:.2} to {high:.2} s), \

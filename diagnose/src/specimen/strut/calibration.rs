@@ -9,7 +9,7 @@ use crate::parameter::Parameter;
 pub enum Calibration {
     /// Static gas volume of accumulator 1 or 2 (counted from 0), relative.
     GasVolume(usize),
-    /// Static pressure, relative.
+    /// Static pressure, as a relative deviation.
     StaticPressure,
     /// Oil volume of the main chamber, relative.
     OilVolume,
@@ -19,7 +19,7 @@ pub enum Calibration {
     BulkModulus,
     /// Thermal time constant of accumulator 1 or 2 (counted from 0), relative.
     TimeConstant(usize),
-    /// Ambient temperature, K.
+    /// Ambient temperature, as a deviation in K.
     Temperature,
     /// Offset of `COLUMNS[i]`, in the unit of the column.
     Offset(usize),

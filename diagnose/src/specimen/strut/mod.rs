@@ -181,7 +181,7 @@ impl Specimen for TwoStageStrut {
         if series.iter().all(|s| s.iter().all(|v| v.is_finite())) {
             Ok(series)
         } else {
-            Err("the model ran to values that are not numbers".to_owned())
+            Err("the simulation diverged to values that are not numbers".to_owned())
         }
     }
 

@@ -69,7 +69,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
         }
     }
 
-    /// The four wheels.
+    /// Load, position and motion of the four wheels.
     pub fn wheels(&self) -> Corners<WheelState> {
         self.wheels
     }

@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use oleo_plant_sim::course::DriverStyle;
-use oleo_plant_sim::vehicle::Load;
+use oleo_plant_sim::course::ManoeuvreKind;
 use strum::IntoStaticStr;
 
-use crate::commands::word::word;
+use crate::commands::course_arguments::CourseArgs;
 
 /// Drive the vehicle through a manoeuvre and report its motion, comfort and handling.
 #[derive(clap::Args)]
@@ -37,33 +36,14 @@ pub struct Args {
     /// bump have their own]
     #[arg(long, value_name = "ROAD")]
     pub road: Option<String>,
-    /// Side slope of the road, %, positive where the left side is the higher one; it grows over 30 m
-    #[arg(long, value_name = "PERCENT", default_value_t = 0.0, allow_negative_numbers = true)]
-    pub side_slope_percent: f64,
-    /// Who drives: eased cuts corners, hard asks for all that a lane change takes
-    #[arg(long, value_name = "eased|hard", default_value = "eased", value_parser = word::<DriverStyle>)]
-    pub driver: DriverStyle,
-    /// What the vehicle carries: as-sold (nothing), laden (900 kg), roof (150 kg on the roof) or laden-roof (750 and 150 kg)
-    #[arg(long, value_name = "LOAD", default_value = "as-sold", value_parser = word::<Load>)]
-    pub load: Load,
+    #[command(flatten)]
+    pub course: CourseArgs,
     /// Temperature of the struts' gas, degrees Celsius; they were charged at 20
     #[arg(long, value_name = "CELSIUS", allow_negative_numbers = true)]
     pub gas_temperature_c: Option<f64>,
-    /// Time to drive, s [default: 20; lane changes end behind the last cones]
+    /// Time to drive, s [default: 20; lane changes end behind the last cones; with a time they go on straight ahead]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub duration_s: Option<f64>,
-    /// Way to drive straight ahead before the first cones of a lane change, m
-    #[arg(long, value_name = "M", default_value_t = 25.0, allow_negative_numbers = true)]
-    pub entry_m: f64,
-    /// Radius of constant-radius and braking-in-bend, m, positive to the left
-    #[arg(long, value_name = "M", default_value_t = 40.0, allow_negative_numbers = true)]
-    pub radius_m: f64,
-    /// Angle of the steering wheel over the steering ratio in step-steer, degrees, positive to the left
-    #[arg(long, value_name = "DEG", default_value_t = 2.0, allow_negative_numbers = true)]
-    pub steer_deg: f64,
-    /// Deceleration or acceleration asked for, m/s2 [default: 5 for braking, 2 for acceleration]
-    #[arg(long, value_name = "M_S2", allow_negative_numbers = true)]
-    pub change_m_s2: Option<f64>,
     /// Time at the start that does not count for comfort, s
     #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
     pub score_from_s: f64,
@@ -113,19 +93,35 @@ impl Kind {
         !matches!(self, Self::Belgian | Self::Bump | Self::Straight)
     }
 
+    /// What is driven; the first two are straight drives over roads of their own.
+    pub fn manoeuvre(self) -> ManoeuvreKind {
+        match self {
+            Self::Belgian | Self::Bump | Self::Straight => ManoeuvreKind::Straight,
+            Self::LaneChange => ManoeuvreKind::LaneChange,
+            Self::LaneChange2 => ManoeuvreKind::LaneChange2,
+            Self::ConstantRadius => ManoeuvreKind::ConstantRadius,
+            Self::StepSteer => ManoeuvreKind::StepSteer,
+            Self::Braking => ManoeuvreKind::Braking,
+            Self::BrakingInBend => ManoeuvreKind::BrakingInBend,
+            Self::Acceleration => ManoeuvreKind::Acceleration,
+        }
+    }
+
+    /// The road that it has, whatever others are given.
+    pub fn own_road(self) -> Option<&'static str> {
+        match self {
+            Self::Belgian => Some("belgian"),
+            Self::Bump => Some("apg-left"),
+            _ => None,
+        }
+    }
+
     /// Heading of the report.
     pub fn title(self) -> &'static str {
         match self {
             Self::Belgian => "Belgian block",
             Self::Bump => "APG obstacle, left wheels",
-            Self::LaneChange => "Severe double lane change, ISO 3888-1",
-            Self::LaneChange2 => "Obstacle avoidance, ISO 3888-2",
-            Self::ConstantRadius => "Constant radius, ISO 4138",
-            Self::StepSteer => "Step of steer, ISO 7401",
-            Self::Straight => "Straight ahead",
-            Self::Braking => "Braking straight ahead",
-            Self::BrakingInBend => "Braking in a bend, ISO 7975",
-            Self::Acceleration => "Acceleration straight ahead",
+            _ => self.manoeuvre().title(),
         }
     }
 }

@@ -56,7 +56,7 @@ impl<B: Bus> PlantNode<B> {
             end: PlantEnd::new(),
             recording: Recording::with_capacity(ticks, vehicle.steps_per_tick() as usize, vehicle.step_s()),
             vehicle,
-            instruments: Instruments::new(&scenario.faults),
+            instruments: Instruments::new(&scenario.faults, scenario.seed),
             stuck: StuckValves::new(&scenario.faults),
             ticks_without_command: 0,
             tick: 0,

@@ -337,6 +337,8 @@ fn bus(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &Summary)
         ("injected: corrupted", injected.corrupted),
         ("injected: delayed", injected.delayed),
         ("injected: duplicated", injected.duplicated),
+        ("injected: replaced by an old one", injected.replayed),
+        ("injected: forged", injected.forged),
         ("plant's end: thrown away by the kernel", counters.receive_lost),
         ("plant's end: not sent, queue full", counters.send_lost),
         ("plant's end: waits for a full queue", counters.back_offs),

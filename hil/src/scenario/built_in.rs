@@ -33,6 +33,8 @@ built_in!(
     "step-steer",
     "side-slope",
     "bus-silence-in-lane-change",
+    "masquerade",
+    "replay",
 );
 
 /// A built-in scenario by its name, or a file by its path.

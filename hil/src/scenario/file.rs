@@ -338,6 +338,22 @@ mod tests {
                 "x.toml:5: score_from_s is -1: must be from 0 to 3600 s",
             ),
             (
+                "[[fault]]\nkind = \"sensor-swap\"\nat_s = 1\nsensor = \"front-left.p1\"\n",
+                "x.toml:6: [fault 1] kind is \"sensor-swap\", which needs other too",
+            ),
+            (
+                "[[fault]]\nkind = \"sensor-swap\"\nat_s = 1\nsensor = \"front-left.p1\"\nother = \"rear-left.displacement\"\n",
+                "x.toml:9: [fault 1] other must be another sensor",
+            ),
+            (
+                "[[fault]]\nkind = \"sensor-noise\"\nat_s = 1\nsensor = \"front-left.p1\"\nvalue = -1\n",
+                "x.toml:9: [fault 1] value is -1: a standard deviation is 0 or more",
+            ),
+            (
+                "[[fault]]\nkind = \"masquerade\"\nat_s = 1\nprobability = 0.5\n",
+                "x.toml:8: [fault 1] probability does not belong",
+            ),
+            (
                 "[[check]]\nmetric = \"decision_s\"\nat_most = 1\n",
                 "x.toml:6: [check 1] metric is \"decision_s\", which the ride model does not have",
             ),

@@ -63,7 +63,7 @@ pub(super) fn section(page: &mut Page, outcome: &Outcome, time: &Time) {
         }],
     ));
     let mut curves = time.curves("Steering and response");
-    curves.height(760);
+    curves.height(960);
     let mut panel = |quantity: &str, unit: &str, value: &dyn Fn(&CourseMotion) -> f64| {
         let values = column(value);
         if values.iter().any(|value| value.is_finite()) {

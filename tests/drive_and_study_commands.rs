@@ -174,6 +174,24 @@ fn bad_input_is_one_line_and_nothing_written() {
             ],
             "none.toml",
         ),
+        (
+            &["drive", "--manoeuvre", "step-steer", "--entry-m", "50", "--out", "o"],
+            "--entry-m does not belong to the manoeuvre step-steer",
+        ),
+        (
+            &[
+                "drive",
+                "--manoeuvre",
+                "straight",
+                "--model",
+                "ride",
+                "--driver",
+                "hard",
+                "--out",
+                "o",
+            ],
+            "--driver: the ride model",
+        ),
         (&["study", "optimise", "--ride", "-1", "--out", "o"], "--ride"),
     ] {
         let run = oleo(folder.path(), arguments);

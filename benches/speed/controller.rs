@@ -25,7 +25,7 @@ fn readings() -> Vec<Inputs> {
     let road = road::from_name_or_path("belgian", length_m, 1).expect("a road");
     let mut vehicle = RideVehicle::new(&parameters, struts, road, SPEED_M_S).expect("a vehicle");
     let steps = (TICK_S / vehicle.step_s()).round() as u32;
-    let mut sensors = Instruments::new(&[]);
+    let mut sensors = Instruments::new(&[], 1);
     (0..TICKS)
         .map(|tick| {
             (0..steps).for_each(|_| vehicle.step(Corners::splat(soft)));

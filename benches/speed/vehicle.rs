@@ -2,7 +2,7 @@
 
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use oleo_hil::run::{self, Plant};
+use oleo_hil::run;
 use oleo_hil::scenario;
 
 /// A second of Belgian block at 60 km/h in lockstep on one thread. Items are ticks of 5 ms.
@@ -12,6 +12,6 @@ fn loop_tick(bencher: Bencher) {
     scenario.ticks = 200;
     bencher
         .counter(ItemsCount::new(scenario.ticks))
-        .with_inputs(|| Plant::build(&scenario).expect("a plant"))
-        .bench_local_values(|plant| run::both(&scenario, plant, 1, &mut |_| true).map(|outcome| outcome.wall_s));
+        .with_inputs(|| run::vehicle(&scenario).expect("a vehicle"))
+        .bench_local_values(|vehicle| run::both(&scenario, vehicle, 1, &mut |_| true).map(|outcome| outcome.wall_s));
 }

@@ -24,6 +24,7 @@ pub mod bus;
 pub mod candump;
 pub mod clock;
 pub mod controller_node;
+pub mod description;
 pub mod frame;
 pub mod handshake;
 pub mod instruments;
@@ -35,6 +36,8 @@ pub mod record;
 pub mod run;
 pub mod scenario;
 pub mod sync;
+mod time_series;
+pub mod vehicle;
 
 pub use frame::Frame;
 pub use scenario::Scenario;

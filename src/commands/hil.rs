@@ -11,13 +11,15 @@ use oleo_hil::bus::BusAddress;
 use oleo_hil::metrics::Metrics;
 use oleo_hil::output::{self, Summary};
 use oleo_hil::record::command_hash;
-use oleo_hil::run::{self, ControllerOutcome, Outcome, Plant};
+use oleo_hil::run::{self, ControllerOutcome, Outcome};
 use oleo_hil::scenario::{self, Clock, Scenario};
 use oleo_hil::{page, sync::Role};
 use oleo_interface::tick::TICK_S;
+use oleo_plant_sim::course::{CourseSettings, ManoeuvreKind};
 use oleo_report::{Column, OutputDirectory, Progress, Table, interrupt::Graceful, significant};
 use strum::VariantNames;
 
+use super::course_arguments::{CourseArgs, option_failure};
 use crate::failure::Failure;
 
 /// Drive the vehicle with controller and plant communicating only through CAN frames.
@@ -30,6 +32,8 @@ Examples:
   oleo hil --out belgian                                    run the default scenario and write report.html
   oleo hil --scenario bus-silence                           run a built-in fault scenario (--list shows all)
   oleo hil --road ../shared/roads/belgian_block.crg         drive over a measured road
+  oleo hil --scenario lane-change-on-belgian --out lane     change lanes in the middle of a rough road
+  oleo hil --manoeuvre lane-change-2 --driver hard --load laden --road flat
   oleo hil --bus socketcan:vcan0                            send the frames over SocketCAN
   oleo hil --clock realtime --duration 5                    run in real time
   oleo hil --node controller --bus socketcan:vcan0          run the two nodes as two processes,
@@ -54,11 +58,23 @@ pub struct Args {
     /// Road: belgian, apg-left, apg-right, apg-both, iso-a .. iso-f, flat, or a .crg or .csv file [default: the scenario's]
     #[arg(long, value_name = "FILE|NAME")]
     road: Option<String>,
-    /// Forward speed, km/h [default: the scenario's]
-    #[arg(long, value_name = "KM_H", allow_negative_numbers = true)]
+    /// Manoeuvre that is driven with the handling model and its driver [default: the scenario's; a scenario without a manoeuvre
+    /// drives straight ahead with the ride model]. A manoeuvre other than the scenario's uses none of the scenario's settings of its
+    /// own manoeuvre
+    #[arg(long, value_name = "NAME", value_parser = by_name::<ManoeuvreKind>())]
+    manoeuvre: Option<ManoeuvreKind>,
+    #[command(flatten)]
+    course: CourseArgs,
+    /// Forward speed, km/h; in a circle the speed at the end [default: the scenario's]
+    #[arg(
+        long,
+        visible_alias = "speed-km-h",
+        value_name = "KM_H",
+        allow_negative_numbers = true
+    )]
     speed: Option<f64>,
     /// Simulated time, s [default: the scenario's]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, visible_alias = "duration-s", value_name = "S", allow_negative_numbers = true)]
     duration: Option<f64>,
     /// Strategy by which the controller sets the valves [default: the scenario's]
     #[arg(long, value_name = "NAME", value_parser = by_name::<Strategy>())]
@@ -72,6 +88,9 @@ pub struct Args {
     /// File of vehicle parameters [default: the scenario's]
     #[arg(long, value_name = "VEHICLE.toml")]
     vehicle: Option<String>,
+    /// Handling parameters [default: the scenario's]
+    #[arg(long, value_name = "HANDLING.toml")]
+    handling: Option<String>,
     /// Seed of random roads and of injected faults [default: the scenario's]
     #[arg(long)]
     seed: Option<u64>,
@@ -99,9 +118,15 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     // A folder that cannot be written to is refused before the run.
     let mut staged = args.out.as_ref().map(OutputDirectory::stage).transpose()?;
     if let Some(out) = &mut staged {
-        out.keep([&args.scenario, &scenario.road, &scenario.strut, &scenario.vehicle]);
+        out.keep([
+            &args.scenario,
+            &scenario.road,
+            &scenario.strut,
+            &scenario.vehicle,
+            &scenario.handling,
+        ]);
     }
-    let plant = Plant::build(&scenario)?;
+    let vehicle = run::vehicle(&scenario)?;
     let progress = Progress::new(&scenario.name, scenario.ticks.into());
     // In real time Ctrl-C ends the run, and what has been driven is reported.
     let graceful = (scenario.clock == Clock::RealTime).then(Graceful::begin);
@@ -110,8 +135,8 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         !graceful.as_ref().is_some_and(Graceful::requested)
     };
     let outcome = match args.node {
-        Some(_) => run::plant_alone(&scenario, plant, &mut watch)?,
-        None => run::both(&scenario, plant, args.threads.into(), &mut watch)?,
+        Some(_) => run::plant_alone(&scenario, vehicle, &mut watch)?,
+        None => run::both(&scenario, vehicle, args.threads.into(), &mut watch)?,
     };
     drop(progress);
     report(&scenario, &outcome, staged)
@@ -137,6 +162,8 @@ fn chosen(args: &Args) -> Result<Scenario, Failure> {
     own(&args.road, &mut chosen.road);
     own(&args.strut, &mut chosen.strut);
     own(&args.vehicle, &mut chosen.vehicle);
+    own(&args.handling, &mut chosen.handling);
+    chosen.load = args.course.load.unwrap_or(chosen.load);
     if let Some(bus) = &args.bus {
         chosen.bus = bus
             .parse::<BusAddress>()
@@ -154,7 +181,31 @@ fn chosen(args: &Args) -> Result<Scenario, Failure> {
     if let Some(seed) = args.seed {
         chosen.seed = seed;
     }
+    chosen.course = course(args, chosen.course.take())?;
+    if let Some(settings) = &chosen.course {
+        let manoeuvre = settings.manoeuvre(chosen.speed_m_s, Some(chosen.duration_s()));
+        manoeuvre.map_err(|invalid| option_failure(&invalid))?;
+    }
     Ok(chosen)
+}
+
+/// The manoeuvre with its settings, from the scenario's and the options.
+fn course(args: &Args, of_scenario: Option<CourseSettings>) -> Result<Option<CourseSettings>, Failure> {
+    let before = match args.manoeuvre {
+        Some(kind) => Some(match of_scenario {
+            Some(settings) if settings.kind == kind => settings,
+            _ => CourseSettings::new(kind),
+        }),
+        None => of_scenario,
+    };
+    match (before, args.course.first_of_manoeuvre()) {
+        (Some(settings), _) => Ok(Some(args.course.changed(settings))),
+        (None, None) => Ok(None),
+        (None, Some(option)) => Err(Failure::new(format!(
+            "{option}: the scenario {} has no manoeuvre, and the ride model drives straight ahead: add --manoeuvre straight or another",
+            args.scenario
+        ))),
+    }
 }
 
 /// Reads an enum of a library by the names that the library gives its variants.

@@ -13,6 +13,7 @@
 mod address;
 mod faults;
 mod in_process;
+mod recorder;
 mod serial_line;
 mod slcan;
 mod socket_can;

@@ -22,6 +22,12 @@ pub enum RunError {
     /// The road cannot be read or made.
     #[error(transparent)]
     Road(#[from] oleo_plant_sim::road::RoadError),
+    /// The manoeuvre has a setting that it cannot have.
+    #[error("{0}")]
+    Course(oleo_plant_sim::model_file::InvalidValue),
+    /// The vehicle's motion is not finite.
+    #[error(transparent)]
+    NotFinite(#[from] oleo_plant_sim::course::NotFinite),
     /// The controller cannot be configured.
     #[error(transparent)]
     Configuration(#[from] ConfigurationError),

@@ -46,6 +46,14 @@ metrics! {
     MaxPressure, "max_pressure_pa", "Highest gauge pressure in any strut, Pa.";
     WheelLift, "wheel_lift_share", "Fraction of ticks in which a wheel is off the ground, 0 to 1.";
     ValveSwitches, "valve_switches_total", "Number of edges of all twelve valve signals.";
+    HandlingEntries, "handling_entries", "Number of times that the controller entered handling mode.";
+    MaxLateral, "max_lateral_m_s2", "Largest lateral acceleration of the body's centre of mass, m/s2. This metric and the next six need a manoeuvre.";
+    MaxPathDeviation, "max_path_deviation_m", "Largest distance of the body's centre of mass from the driver's line, m.";
+    ConeMargin, "cone_margin_m", "Smallest clearance to the cones, m; negative if one was hit.";
+    Decision, "decision_s", "Time from the first lateral acceleration above 0.5 m/s2 to the decision for handling, s.";
+    RideBefore, "weighted_rms_driver_before_m_s2", "Weighted RMS at the driver's seat before the manoeuvre, m/s2.";
+    RideAfter, "weighted_rms_driver_after_m_s2", "Weighted RMS at the driver's seat behind the last cones, m/s2.";
+    Ending, "ending", "How the manoeuvre ended: completed, rolled over, spun or lost the track.";
     FramesLost, "frames_lost", "Frames that were sent but not received, including injected losses.";
     BusFramesLost, "bus_frames_lost", "Frames that the bus itself lost, without injected losses.";
     E2eErrors, "e2e_errors", "Frames that failed their end-to-end check, at either end.";
@@ -67,7 +75,24 @@ impl Metric {
 
     /// Whether the figure is a word.
     pub fn is_word(self) -> bool {
-        matches!(self, Self::WorstMode | Self::FinalMode | Self::FirstFault)
+        matches!(
+            self,
+            Self::WorstMode | Self::FinalMode | Self::FirstFault | Self::Ending
+        )
+    }
+
+    /// Whether only a manoeuvre has this figure.
+    pub fn needs_manoeuvre(self) -> bool {
+        matches!(
+            self,
+            Self::MaxLateral
+                | Self::MaxPathDeviation
+                | Self::ConeMargin
+                | Self::Decision
+                | Self::RideBefore
+                | Self::RideAfter
+                | Self::Ending
+        )
     }
 }
 

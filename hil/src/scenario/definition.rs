@@ -2,6 +2,8 @@
 
 use oleo_controller::{DamperPolicy, Strategy};
 use oleo_interface::tick::TICK_S;
+use oleo_plant_sim::course::CourseSettings;
+use oleo_plant_sim::vehicle::Load;
 use strum::{EnumString, IntoStaticStr, VariantNames};
 
 use super::check::Check;
@@ -46,7 +48,9 @@ pub struct Scenario {
     pub description: String,
     /// Built-in road or path of a `.crg` or `.csv` file.
     pub road: String,
-    /// Forward speed of the vehicle, m/s, 0 to 250 km/h.
+    /// The manoeuvre that is driven with the handling model; `None` drives straight ahead with the ride model.
+    pub course: Option<CourseSettings>,
+    /// Forward speed of the vehicle, m/s, 0 to 250 km/h; in a circle the speed at the end.
     pub speed_m_s: f64,
     /// Number of ticks of the run.
     pub ticks: u32,
@@ -58,6 +62,12 @@ pub struct Scenario {
     pub strut: String,
     /// Vehicle: `defender110` or the path of a parameter file.
     pub vehicle: String,
+    /// Handling parameters: `defender110` or the path of a file.
+    pub handling: String,
+    /// What the vehicle carries. The controller does not know it.
+    pub load: Load,
+    /// Time at the start that does not count for ride measures, s.
+    pub score_from_s: f64,
     /// Of the road and of all fault randomness.
     pub seed: u64,
     /// Bus that carries the frames.
@@ -80,7 +90,7 @@ impl Scenario {
         f64::from(self.ticks) * TICK_S
     }
 
-    /// Length of road needed, m, with room for the smooth entry and the rear axle.
+    /// Length of road that the ride model needs, m, with room for the smooth entry and the rear axle.
     pub fn road_length_m(&self) -> f64 {
         self.speed_m_s * self.duration_s() + 20.0
     }

@@ -94,6 +94,10 @@ pub enum SensorFault {
     Value(f32),
     /// The truth and this much more; SI.
     Offset(f32),
+    /// The truth and normally distributed noise of this standard deviation; SI.
+    Noise(f32),
+    /// The truth and an offset that grows by this much a second; SI.
+    Drift(f32),
 }
 
 /// Kind and place of a fault.
@@ -116,6 +120,13 @@ pub enum FaultKind {
         place: SensorPlace,
         /// What it reports instead of the true value.
         fault: SensorFault,
+    },
+    /// Two sensors of one quantity have changed their plugs.
+    SensorsSwapped {
+        /// One of them.
+        one: SensorPlace,
+        /// The other one.
+        other: SensorPlace,
     },
     /// A valve no longer follows its signal.
     SolenoidStuck {
@@ -153,7 +164,9 @@ impl Fault {
             } => (target, probability, disturbance),
             FaultKind::NodeKilled(Role::Plant) => (Target::All, 1.0, Disturbance::Drop),
             FaultKind::NodeKilled(Role::Controller) => (Target::Controller, 1.0, Disturbance::Drop),
-            FaultKind::Sensor { .. } | FaultKind::SolenoidStuck { .. } => return None,
+            FaultKind::Sensor { .. } | FaultKind::SensorsSwapped { .. } | FaultKind::SolenoidStuck { .. } => {
+                return None;
+            }
         };
         let (from_tick, until_tick) = (self.from_tick, self.until_tick);
         Some(Injection {

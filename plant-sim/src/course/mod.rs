@@ -7,14 +7,16 @@
 //!                                                                              Sample, Ending <---------------+
 //! ```
 //!
-//! Nothing here reads a file or knows a command line: a road is handed in.
+//! [`CourseSettings`] is a course as people describe it. Nothing here reads a file or knows a command line: a road is handed in.
 
 mod drive;
+mod kind;
 mod manoeuvre;
 mod optimal_preview;
 mod preview;
 mod run;
 mod sample;
+mod settings;
 mod speed;
 mod style;
 mod track;
@@ -22,11 +24,13 @@ mod track;
 use std::sync::Arc;
 
 pub use drive::{Drive, NotFinite};
-pub use manoeuvre::{LaneChange, Manoeuvre};
+pub use kind::ManoeuvreKind;
+pub use manoeuvre::{LaneChange, Manoeuvre, Phase};
 pub use optimal_preview::OptimalPreviewDriver;
 pub use preview::PreviewDriver;
 pub use run::Run;
 pub use sample::{Sample, Signals};
+pub use settings::CourseSettings;
 pub use speed::SpeedControl;
 pub use style::DriverStyle;
 pub use track::{Gate, LaneChangeLine, Track};

@@ -227,6 +227,7 @@ impl Bench {
             kind: LaneChange::Severe,
             speed_m_s: self.conditions.lane_change_speed_m_s,
             entry_m: ENTRY_M,
+            duration_s: None,
         };
         let drive = self.begin(case, manoeuvre, Arc::new(Flat))?;
         Ok(drive.to_end(|_| Default::default(), |_| {})?)

@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use oleo_plant_sim::course::DriverStyle;
-use oleo_plant_sim::vehicle::Load;
+use oleo_plant_sim::course::ManoeuvreKind;
 use strum::IntoStaticStr;
 
-use crate::commands::word::word;
+use crate::commands::course_arguments::CourseArgs;
 
 /// Drive the vehicle through a manoeuvre and report its motion, comfort and handling.
 #[derive(clap::Args)]
@@ -39,37 +38,14 @@ pub struct Args {
     /// belgian and bump have a road of their own]
     #[arg(long, value_name = "ROAD")]
     pub road: Option<String>,
-    /// Side slope of the road, %, positive if the left side is higher; it builds up from zero over 30 m
-    #[arg(long, value_name = "PERCENT", default_value_t = 0.0, allow_negative_numbers = true)]
-    pub side_slope_percent: f64,
-    /// Driver: eased follows a smooth line that cuts the corners of the course; hard steers hard left and hard right and demands
-    /// about twice as much of the vehicle
-    #[arg(long, value_name = "eased|hard", default_value = "eased", value_parser = word::<DriverStyle>)]
-    pub driver: DriverStyle,
-    /// Load: as-sold (none), laden (900 kg), roof (150 kg on the roof) or laden-roof (750 kg, and 150 kg on the roof)
-    #[arg(long, value_name = "LOAD", default_value = "as-sold", value_parser = word::<Load>)]
-    pub load: Load,
+    #[command(flatten)]
+    pub course: CourseArgs,
     /// Gas temperature of the struts, degrees Celsius; the struts were charged at 20 [default: 20]
     #[arg(long, value_name = "CELSIUS", allow_negative_numbers = true)]
     pub gas_temperature_c: Option<f64>,
-    /// Simulated time, s [default: 90 for constant-radius, 6 for step-steer and acceleration, otherwise 20; bump and lane changes
-    /// end behind the obstacle]
+    /// Simulated time, s [default: 20; lane changes end behind the last cones, and with a time they continue straight ahead]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub duration_s: Option<f64>,
-    /// Distance that is driven straight ahead before the first cones of a lane change, m
-    #[arg(long, value_name = "M", default_value_t = 25.0, allow_negative_numbers = true)]
-    pub entry_m: f64,
-    /// Radius of the circle in constant-radius and braking-in-bend, m, positive for a left turn
-    #[arg(long, value_name = "M", default_value_t = 40.0, allow_negative_numbers = true)]
-    pub radius_m: f64,
-    /// Steer angle in step-steer, degrees at the road wheels (steering-wheel angle divided by the steering ratio), positive to
-    /// the left
-    #[arg(long, value_name = "DEG", default_value_t = 2.0, allow_negative_numbers = true)]
-    pub steer_deg: f64,
-    /// Deceleration that the driver demands in braking, or acceleration in acceleration, m/s2 [default: 5 for braking, 2 for
-    /// acceleration]
-    #[arg(long, value_name = "M_S2", allow_negative_numbers = true)]
-    pub change_m_s2: Option<f64>,
     /// Time at the start that is left out of the comfort measures, s
     #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
     pub score_from_s: f64,
@@ -119,19 +95,35 @@ impl Kind {
         !matches!(self, Self::Belgian | Self::Bump | Self::Straight)
     }
 
+    /// What is driven; the first two are straight drives over roads of their own.
+    pub fn manoeuvre(self) -> ManoeuvreKind {
+        match self {
+            Self::Belgian | Self::Bump | Self::Straight => ManoeuvreKind::Straight,
+            Self::LaneChange => ManoeuvreKind::LaneChange,
+            Self::LaneChange2 => ManoeuvreKind::LaneChange2,
+            Self::ConstantRadius => ManoeuvreKind::ConstantRadius,
+            Self::StepSteer => ManoeuvreKind::StepSteer,
+            Self::Braking => ManoeuvreKind::Braking,
+            Self::BrakingInBend => ManoeuvreKind::BrakingInBend,
+            Self::Acceleration => ManoeuvreKind::Acceleration,
+        }
+    }
+
+    /// The road that it has, whatever others are given.
+    pub fn own_road(self) -> Option<&'static str> {
+        match self {
+            Self::Belgian => Some("belgian"),
+            Self::Bump => Some("apg-left"),
+            _ => None,
+        }
+    }
+
     /// Heading of the report.
     pub fn title(self) -> &'static str {
         match self {
             Self::Belgian => "Belgian block",
             Self::Bump => "APG obstacle, left wheels",
-            Self::LaneChange => "Severe double lane change, ISO 3888-1",
-            Self::LaneChange2 => "Obstacle avoidance, ISO 3888-2",
-            Self::ConstantRadius => "Constant radius, ISO 4138",
-            Self::StepSteer => "Step of steer, ISO 7401",
-            Self::Straight => "Straight ahead",
-            Self::Braking => "Braking straight ahead",
-            Self::BrakingInBend => "Braking in a bend, ISO 7975",
-            Self::Acceleration => "Acceleration straight ahead",
+            _ => self.manoeuvre().title(),
         }
     }
 }

@@ -1,0 +1,117 @@
+//! The controller's description of a vehicle, from the files that describe the vehicle to the plant.
+//!
+//! It holds what stands on a data sheet: dimensions, inertias over mass, anti-roll bars, oil and gas. What the vehicle carries is
+//! not told, because nobody tells it to a car; the struts measure it.
+
+use oleo_controller::VehicleDescription;
+use oleo_interface::{Axle, Axles};
+use oleo_plant_sim::handling::HandlingParameters;
+use oleo_plant_sim::strut::StrutModel;
+use oleo_plant_sim::vehicle::VehicleParameters;
+
+/// The description that a controller is built with: [`describe`], and for the built-in vehicle the description that is built into
+/// the controller.
+pub fn known_to_controller(
+    vehicle: &VehicleParameters,
+    handling: &HandlingParameters,
+    strut: &StrutModel,
+) -> VehicleDescription {
+    let described = describe(vehicle, handling, strut);
+    let is_built_in = *vehicle == VehicleParameters::defender110() && *handling == HandlingParameters::defender110();
+    if !is_built_in {
+        return described;
+    }
+    VehicleDescription {
+        piston_area_m2: described.piston_area_m2,
+        gas_volume_1_m3: described.gas_volume_1_m3,
+        gas_volume_2_m3: described.gas_volume_2_m3,
+        ..VehicleDescription::default()
+    }
+}
+
+/// The description of an unladen vehicle on four struts of one model.
+pub fn describe(vehicle: &VehicleParameters, handling: &HandlingParameters, strut: &StrutModel) -> VehicleDescription {
+    let ahead_m = vehicle.body_cg_behind_front_axle_m();
+    let wheelbase_m = vehicle.layout.wheelbase_m;
+    // The roll axis runs through both roll centres.
+    let centre = |axle: Axle| handling.axle(axle).roll_centre_height_m;
+    let axis_m = centre(Axle::Front) + (centre(Axle::Rear) - centre(Axle::Front)) * ahead_m / wheelbase_m;
+    let body = &vehicle.body;
+    let [volume_1_m3, volume_2_m3] = strut.accumulator.each_ref().map(|a| a.static_gas_volume_m3 as f32);
+    VehicleDescription {
+        piston_area_m2: strut.piston_area_m2() as f32,
+        gas_volume_1_m3: volume_1_m3,
+        gas_volume_2_m3: volume_2_m3,
+        strut_spacing_m: Axles::from_fn(|axle| vehicle.axle(axle).strut_spacing_m as f32),
+        axle_distance_m: Axles::new(ahead_m as f32, (wheelbase_m - ahead_m) as f32),
+        roll_arm_m: (vehicle.body_cg_height_m() - axis_m) as f32,
+        anti_roll_stiffness_n_m_rad: Axles::from_fn(|axle| vehicle.axle(axle).anti_roll_stiffness_n_m_rad as f32),
+        roll_gyration_m: (body.roll_inertia_kg_m2 / body.sprung_mass_kg).sqrt() as f32,
+        pitch_gyration_m: (body.pitch_inertia_kg_m2 / body.sprung_mass_kg).sqrt() as f32,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use oleo_plant_sim::vehicle::{GRAVITY_M_S2, Load};
+
+    fn of(vehicle: &VehicleParameters) -> VehicleDescription {
+        describe(
+            vehicle,
+            &HandlingParameters::defender110(),
+            &StrutModel::defender110(4000.0),
+        )
+    }
+
+    /// The arms from the moments of the axle loads, the roll arm from the lever rule: no use of the description's own formulas.
+    #[test]
+    fn lengths_follow_from_statics() {
+        let vehicle = VehicleParameters::defender110();
+        let described = of(&vehicle);
+        let load_n = vehicle.static_strut_load_n();
+        let rear_share = load_n.of_axle(Axle::Rear).into_iter().sum::<f64>() / load_n.values().sum::<f64>();
+        let front_m = f64::from(described.axle_distance_m.front);
+        assert!(
+            (front_m / vehicle.layout.wheelbase_m - rear_share).abs() < 1e-6,
+            "{front_m}"
+        );
+        let weight_n = vehicle.body.sprung_mass_kg * GRAVITY_M_S2;
+        assert!((load_n.values().sum::<f64>() / weight_n - 1.0).abs() < 1e-9);
+        let axis_m = 0.50 * (1.0 - rear_share) + 0.62 * rear_share;
+        assert!((f64::from(described.roll_arm_m) + axis_m - vehicle.body_cg_height_m()).abs() < 1e-6);
+    }
+
+    /// A load changes masses only, none of which are described. The laden vehicle's own description would be another one.
+    #[test]
+    fn a_load_is_not_in_the_description_of_the_unladen_vehicle() {
+        let vehicle = VehicleParameters::defender110();
+        assert_ne!(of(&vehicle), of(&Load::Laden.at_ride_height(&vehicle)));
+    }
+
+    /// Oil and gas of the built-in strut are those that the controller has built in, so the built-in vehicle is described by it whole.
+    #[test]
+    fn the_built_in_vehicle_is_built_into_the_controller() {
+        let (vehicle, handling) = (VehicleParameters::defender110(), HandlingParameters::defender110());
+        let strut = StrutModel::defender110(4000.0);
+        assert_eq!(
+            known_to_controller(&vehicle, &handling, &strut),
+            VehicleDescription::default()
+        );
+        let mut other = vehicle.clone();
+        other.layout.wheelbase_m += 0.1;
+        assert_eq!(
+            known_to_controller(&other, &handling, &strut),
+            describe(&other, &handling, &strut)
+        );
+    }
+
+    #[test]
+    fn the_controller_accepts_it() {
+        let builder = oleo_controller::Builder {
+            vehicle: of(&VehicleParameters::defender110()),
+            ..oleo_controller::Builder::default()
+        };
+        assert!(builder.build().is_ok());
+    }
+}

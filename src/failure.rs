@@ -1,4 +1,4 @@
-//! Why a command could not do its work: one line for the user, exit status 2.
+//! A failure of a command: one line for the user, and exit status 2.
 //!
 //! Libraries have typed errors; here, at the edge, only their text matters. `?` turns any of them into a [`Failure`];
 //! `Failure::new` is for what the command line itself finds wrong.

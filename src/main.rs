@@ -1,8 +1,8 @@
-//! The `oleo` command line: names the commands, hands each its arguments, and turns its answer into an exit status.
+//! The `oleo` command line: it passes the arguments to the commands and converts their results into an exit status.
 //!
 //! Everything a command does is in `commands/NAME.rs` (arguments, help and how to run it) and in the library it calls.
-//! Exit status: 0 done, 1 a check failed or the verdict is "no", 2 the input was bad or the work could not be done,
-//! with one line on standard error that says what, where and what to do.
+//! The exit status is 0 if the command succeeded, 1 if a check failed, and 2 if the input was bad or the work could not
+//! be done. In the last case one line on standard error says what is wrong, where, and what to do.
 
 mod commands;
 mod failure;
@@ -19,18 +19,18 @@ const STYLES: Styles = Styles::styled()
     .literal(AnsiColor::Cyan.on_default().bold())
     .placeholder(AnsiColor::Cyan.on_default());
 
-/// Controllable hydropneumatic suspension: controller, plant simulator, hardware-in-the-loop, diagnosis.
+/// Controllable hydropneumatic suspension: controller, plant simulator, hardware-in-the-loop runs and diagnosis.
 #[derive(Parser)]
 #[command(name = "oleo", version, styles = STYLES, max_term_width = 110, subcommand_required = true)]
 #[command(
-    after_help = "Exit status: 0 done; 1 a check failed; 2 bad input, with one line saying what, where and what to do."
+    after_help = "Exit status: 0 if the command succeeded, 1 if a check failed, 2 if an input was bad. For bad input, one line on standard error says what is wrong, where, and what to do."
 )]
 struct CommandLine {
     #[command(subcommand)]
     command: Command,
 }
 
-/// One line a command; its doc comment, arguments and examples are in its own file.
+/// The commands. The help text, the arguments and the examples of each are in its own file.
 #[derive(Subcommand)]
 enum Command {
     Drive(commands::drive::Args),

@@ -9,6 +9,9 @@ use std::process::{Command, Output};
 use oleo_interface::StrutValves;
 use oleo_plant_sim::specimen::GasSpringModel;
 use oleo_plant_sim::strut::{Inputs, StrutModel, replay};
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution as _, StandardNormal};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -34,19 +37,10 @@ p_Pa = 300.0
 /// Thermal time constant of the simulated gas spring, s, which its model lacks.
 const TAU_S: f64 = 6.0;
 
-/// xorshift64* (Vigna 2016) and a sum of twelve: noise of standard deviation 1 that is the same in every run.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        let uniform = |state: &mut u64| {
-            *state ^= *state >> 12;
-            *state ^= *state << 25;
-            *state ^= *state >> 27;
-            (state.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 11) as f64 / (1_u64 << 53) as f64
-        };
-        (0..12).map(|_| uniform(&mut self.0)).sum::<f64>() - 6.0
-    }
+/// White noise of standard deviation 1, the same in every run.
+fn white_noise(seed: u64) -> impl FnMut() -> f64 {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    move || StandardNormal.sample(&mut random)
 }
 
 /// Triangle of period 1 between -1 and 1, from 0 up.
@@ -64,15 +58,10 @@ fn spring(samples: usize, interval_s: f64, amplitude_m: f64) -> String {
         .map(|t| amplitude_m * (1.5 * triangle(t / 23.0)).clamp(-1.0, 1.0))
         .collect();
     let p = model.pressure_pa(&time, &x, 1e6).expect("possible");
-    let mut noise = Noise(9);
+    let mut noise = white_noise(9);
     let mut csv = "time_s,displacement_m,p_Pa\n".to_owned();
     for ((t, x), p) in time.iter().zip(&x).zip(&p) {
-        let _ = writeln!(
-            csv,
-            "{t:.6},{:.7},{:.1}",
-            x + 1e-5 * noise.next(),
-            p + 300.0 * noise.next()
-        );
+        let _ = writeln!(csv, "{t:.6},{:.7},{:.1}", x + 1e-5 * noise(), p + 300.0 * noise());
     }
     csv
 }
@@ -90,18 +79,18 @@ fn strut(amplitude_m: f64, signals: [bool; 3]) -> (String, String) {
     let x: Vec<f64> = time.iter().map(|t| amplitude_m * triangle(t / 2.0)).collect();
     let inputs = Inputs::from_recording(&time, &x, &vec![StrutValves::from_array(signals); time.len()], 0.0);
     let out = replay(&model, &inputs).expect("possible");
-    let mut noise = Noise(5);
+    let mut noise = white_noise(5);
     let mut csv = "time_s,displacement_m,force_N,p1_Pa,p2_Pa,p3_Pa,p4_Pa,valve1,valve2,valve3\n".to_owned();
     for k in 0..time.len() {
         let _ = write!(
             csv,
             "{:.4},{:.7},{:.2}",
             time[k],
-            x[k] + 5e-6 * noise.next(),
-            out.force_n[k] + 12.0 * noise.next()
+            x[k] + 5e-6 * noise(),
+            out.force_n[k] + 12.0 * noise()
         );
         for p in &out.pressure_pa {
-            let _ = write!(csv, ",{:.0}", p[k] + 4e3 * noise.next());
+            let _ = write!(csv, ",{:.0}", p[k] + 4e3 * noise());
         }
         let [a, b, c] = signals.map(u8::from);
         let _ = writeln!(csv, ",{a},{b},{c}");
@@ -239,7 +228,10 @@ fn what_is_no_number() {
         );
     }
     let ragged = Campaign::of_spring(&with_line(&good, 300, "5.98,0.1"));
-    refused(&ragged, &["a.csv, line 300", "2 fields where the header names 3"]);
+    refused(
+        &ragged,
+        &["a.csv, line 300", "the row has 2 fields, but the header has 3"],
+    );
     let (model, csv) = strut(0.01, [true; 3]);
     let half_open = csv.replacen(",1,1,1\n", ",1,0.5,1\n", 1);
     refused(
@@ -275,7 +267,7 @@ fn too_little_or_nothing() {
 #[test]
 fn a_model_that_is_wrong() {
     let csv = spring(500, 0.02, 0.5);
-    let cases: [(&str, &str, &[&str]); 6] = [
+    let cases: [(&str, &str, &[&str]); 10] = [
         (
             "area_m2 = 0.01",
             "area_m2 = -0.01",
@@ -306,13 +298,33 @@ fn a_model_that_is_wrong() {
             "volume_at_zero_m3 = 0.004",
             &["a", "gas volume", "volume_at_zero_m3"],
         ),
+        (
+            "p_Pa = 300.0\n",
+            "",
+            &["model.toml:15: [noise] p_Pa is missing: state the standard deviation"],
+        ),
+        (
+            "p_Pa = 300.0",
+            "p_pa = 300.0",
+            &["model.toml:17: [noise] p_pa is not a channel of this specimen: did you mean p_Pa?"],
+        ),
+        (
+            "p_Pa = 300.0",
+            "p_Pa = 0.0",
+            &["model.toml:17: [noise] p_Pa is 0: must be above 0"],
+        ),
+        (
+            "[noise]\ndisplacement_m = 1e-5\np_Pa = 300.0\n",
+            "",
+            &["model.toml", "[noise] displacement_m is missing, and so is p_Pa"],
+        ),
     ];
     for (from, to, parts) in cases {
         refused(&Campaign::new(&SPRING.replacen(from, to, 1), &[("a.csv", &csv)]), parts);
     }
     let none = Campaign::of_spring(&csv);
     fs::remove_file(none.0.path().join("campaign/model.toml")).expect("removed");
-    refused(&none, &["model.toml", "a campaign needs the model"]);
+    refused(&none, &["model.toml", "a campaign needs a model.toml"]);
     fs::remove_dir_all(none.0.path().join("campaign")).expect("removed");
     fs::write(none.0.path().join("campaign"), "not a folder").expect("written");
     refused(&none, &["campaign", "is not a folder"]);
@@ -325,7 +337,7 @@ fn a_hole_is_said_and_what_is_before_it_used() {
     lines.drain(3001..3500);
     let report = Campaign::of_spring(&(lines.join("\n") + "\n")).report();
     assert!(
-        notes(&report).contains("hole from 59.98 s to 69.98 s: the 2501 samples after it were not used"),
+        notes(&report).contains("there is a gap from 59.98 s to 69.98 s; the 2501 samples after it were not used"),
         "{report}"
     );
     assert_eq!(ids(&report, "effects"), ["gas_heat_transfer"]);
@@ -345,7 +357,7 @@ fn files_of_different_rates_and_one_too_short() {
         .expect("a number");
     assert!((tau / TAU_S - 1.0).abs() < 0.02, "{tau}");
     assert!(
-        notes(&report).contains("left out: campaign/c.csv: 20 usable samples"),
+        notes(&report).contains("was left out: campaign/c.csv: there are 20 usable samples"),
         "{}",
         notes(&report)
     );
@@ -438,7 +450,7 @@ fn ten_million_samples_in_bounded_memory() {
     let text = fs::read_to_string(campaign.0.path().join("found/report.json")).expect("a report");
     let report: Value = serde_json::from_str(&text).expect("JSON");
     assert!(
-        notes(&report).contains("one of 49 samples was used"),
+        notes(&report).contains("one of every 49 samples was used"),
         "{}",
         notes(&report)
     );

@@ -80,6 +80,40 @@ fn note(report: &Value, text: &str) -> bool {
     (report["notes"].as_array().expect("a list").iter()).any(|n| n.as_str().is_some_and(|n| n.contains(text)))
 }
 
+/// Campaigns whose kind of specimen is not one that can be diagnosed.
+const OTHER_KINDS: [&str; 4] = ["damper-mr-0A", "damper-mr-050A", "damper-mr-100A", "drive-emps"];
+
+#[test]
+#[cfg_attr(
+    debug_assertions,
+    ignore = "half a minute without optimisation; the recordings step of ./test runs it"
+)]
+fn every_campaign_beside_the_checkout_opens() {
+    let recordings = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/recordings");
+    if !recordings.is_dir() {
+        println!("SKIPPED: no recordings at ../shared/recordings");
+        return;
+    }
+    let mut opened = 0;
+    for group in ["labelled", "blind", "real"] {
+        for entry in std::fs::read_dir(recordings.join(group)).expect("a folder") {
+            let folder = entry.expect("an entry").path();
+            if !folder.is_dir() {
+                continue;
+            }
+            match oleo_diagnose::Campaign::open(&folder) {
+                Ok(_) => opened += 1,
+                Err(error) => {
+                    let other = OTHER_KINDS.iter().any(|name| folder.ends_with(name));
+                    assert!(other && error.to_string().contains("[specimen] kind is"), "{error}");
+                }
+            }
+        }
+    }
+    println!("{opened} campaigns");
+    assert!(opened >= 29, "{opened}");
+}
+
 #[test]
 #[cfg_attr(
     debug_assertions,

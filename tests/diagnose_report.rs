@@ -165,7 +165,7 @@ fn heat_that_was_left_out_is_named_located_sized_and_told() {
 
     let page = text(&folder.path().join("found/report.html"));
     for told in [
-        "The model leaves out gas heat transfer in the gas chamber.",
+        "The model leaves out gas heat transfer in the gas chamber. With this effect, ",
         "<h2>Where</h2>",
         "<h2>What</h2>",
         "<h2>The improved model</h2>",

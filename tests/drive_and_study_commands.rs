@@ -118,7 +118,7 @@ fn bad_input_is_one_line_and_nothing_written() {
     for (arguments, says) in [
         (
             &["drive", "--manoeuvre", "lane-change", "--model", "ride", "--out", "o"][..],
-            "neither steers",
+            "neither steer",
         ),
         (
             &["drive", "--manoeuvre", "straight", "--road", "mars", "--out", "o"],
@@ -126,7 +126,7 @@ fn bad_input_is_one_line_and_nothing_written() {
         ),
         (
             &["drive", "--manoeuvre", "bump", "--road", "iso-c", "--out", "o"],
-            "has its own",
+            "a road of its own",
         ),
         (
             &[
@@ -173,6 +173,24 @@ fn bad_input_is_one_line_and_nothing_written() {
                 "o",
             ],
             "none.toml",
+        ),
+        (
+            &["drive", "--manoeuvre", "step-steer", "--entry-m", "50", "--out", "o"],
+            "--entry-m does not belong to the manoeuvre step-steer",
+        ),
+        (
+            &[
+                "drive",
+                "--manoeuvre",
+                "straight",
+                "--model",
+                "ride",
+                "--driver",
+                "hard",
+                "--out",
+                "o",
+            ],
+            "--driver: the ride model",
         ),
         (&["study", "optimise", "--ride", "-1", "--out", "o"], "--ride"),
     ] {

@@ -1,4 +1,4 @@
-//! `oleo hil` end to end: the same commands every time, an answer to every fault, one line for every bad input.
+//! `oleo hil` end to end: the same commands in every run, the reaction to every fault, one line for every bad input.
 
 mod support;
 
@@ -48,6 +48,93 @@ fn the_same_commands_every_time() {
         first,
         "see the comment of this test"
     );
+}
+
+/// The summary of a lane change on Belgian block, less the wall clock's figures; `tests/golden/lane-change-on-belgian.json` is what
+/// it was when last looked at. Where a change of controller or plant is meant to change it: run with OLEO_BLESS=1.
+#[test]
+fn a_lane_change_in_the_middle_of_a_rough_road() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = |more: &[&str], name: &str| {
+        let arguments = [&["--scenario", "lane-change-on-belgian"], more].concat();
+        let mut summary = hil(&arguments, &folder.path().join(name));
+        for key in ["wall_s", "real_time_factor"] {
+            summary.as_object_mut().unwrap().remove(key);
+        }
+        summary
+    };
+    let first = scenario(&[], "first");
+    assert_eq!(first, scenario(&["--threads", "2"], "threads"));
+    for file in ["candump.log", "timeseries.csv"] {
+        let read = |name: &str| fs::read(folder.path().join(name).join(file)).unwrap();
+        assert!(read("first") == read("threads"), "{file}: the same bytes");
+    }
+    let golden = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/lane-change-on-belgian.json");
+    if std::env::var_os("OLEO_BLESS").is_some() {
+        fs::write(&golden, serde_json::to_string_pretty(&first).unwrap() + "\n").unwrap();
+    }
+    let expected: serde_json::Value = serde_json::from_str(&fs::read_to_string(&golden).unwrap()).unwrap();
+    assert_eq!(first, expected, "see the comment of this test");
+    let page = fs::read_to_string(folder.path().join("first/report.html")).unwrap();
+    assert!(page.contains("<h2>Manoeuvre</h2>"));
+    let hard = scenario(&["--driver", "hard", "--load", "laden", "--speed", "40"], "hard");
+    assert_ne!(hard["command_hash"], first["command_hash"]);
+    assert_eq!(
+        (&hard["driver"], &hard["load"], &first["driver"]),
+        (&"hard".into(), &"laden".into(), &"eased".into())
+    );
+}
+
+/// Columns of a CSV file, as text.
+fn columns(file: &Path, names: &[&str]) -> Vec<Vec<String>> {
+    let csv = fs::read_to_string(file).unwrap();
+    let heads: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
+    let places: Vec<usize> = (names.iter())
+        .map(|name| heads.iter().position(|head| head == name).expect(name))
+        .collect();
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        places.iter().map(|place| cells[*place].to_owned()).collect()
+    };
+    csv.lines().skip(1).map(row).collect()
+}
+
+/// With its valves never switched the vehicle drives over the bus what `oleo drive` drives without one, digit by digit.
+#[test]
+fn a_fixed_setting_drives_as_without_a_bus() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    let course = [
+        "--load",
+        "roof",
+        "--road",
+        "iso-d",
+        "--entry-m",
+        "40",
+        "--driver",
+        "hard",
+    ];
+    let manoeuvre = ["--manoeuvre", "lane-change", "--duration-s", "10", "--speed-km-h", "50"];
+    let out = path("drive");
+    let drive = ["drive", "--setting", "stiff", "--out", out.to_str().unwrap()];
+    let output = run(&[&drive[..], &course, &manoeuvre].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let fixed = ["--scenario", "belgian", "--strategy", "always-stiff"];
+    hil(&[&fixed[..], &course, &manoeuvre].concat(), &path("hil"));
+    let names = [
+        "station_m",
+        "lateral_m",
+        "roll_rad",
+        "yaw_rad",
+        "speed_m_s",
+        "steer_rad",
+    ];
+    let with = columns(&path("hil/timeseries.csv"), &names);
+    let without = columns(&path("drive/handling-model.csv"), &names);
+    assert_eq!(with.len(), 2000);
+    for (tick, (with, without)) in with.iter().zip(&without).enumerate() {
+        assert_eq!(with, without, "tick {tick}");
+    }
 }
 
 #[test]
@@ -207,6 +294,28 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         (&["--node", "driver"], "plant"),
         (&["--threads", "3"], "--threads"),
         (&["--rod", "flat"], "--road"),
+        (&["--handling", &path("strut.toml")], "strut.toml"),
+        (&["--manoeuvre", "lane_change"], "lane-change-2"),
+        (&["--load", "heavy"], "laden-roof"),
+        (&["--driver", "hard"], "--driver: the scenario belgian has no manoeuvre"),
+        (&["--entry-m", "50"], "add --manoeuvre straight or another"),
+        (
+            &["--scenario", "step-steer", "--entry-m", "50"],
+            "--entry-m does not belong",
+        ),
+        (
+            &["--scenario", "step-steer", "--driver", "hard"],
+            "--driver does not belong",
+        ),
+        (
+            &["--scenario", "step-steer", "--duration", "4"],
+            "--begin-s is 6: the drive ends",
+        ),
+        (&["--manoeuvre", "lane-change", "--speed", "0"], "--speed-km-h is 0"),
+        (
+            &["--manoeuvre", "straight", "--side-slope-percent", "50"],
+            "--side-slope-percent is 50",
+        ),
     ];
     for (arguments, expected) in table {
         let mut all = vec!["hil", "--out", &out];

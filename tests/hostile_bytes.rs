@@ -6,19 +6,18 @@ mod targets;
 
 use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::vehicle::VehicleParameters;
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
 
 /// Damaged inputs tried for each seed.
 const ROUNDS: u32 = 2_000;
 
-/// xorshift32 (Marsaglia 2003): enough to choose where to cut.
-struct Random(u32);
+/// Chooses where to cut, the same in every run.
+struct Random(ChaCha8Rng);
 
 impl Random {
     fn below(&mut self, bound: usize) -> usize {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 17;
-        self.0 ^= self.0 << 5;
-        self.0 as usize % bound.max(1)
+        self.0.random_range(0..bound.max(1))
     }
 }
 
@@ -58,7 +57,7 @@ fn damage(seed: &[u8], random: &mut Random) -> Vec<u8> {
 }
 
 fn drive(target: fn(&[u8]), seeds: &[&[u8]]) {
-    let mut random = Random(0x9E37_79B9);
+    let mut random = Random(ChaCha8Rng::seed_from_u64(1));
     target(&[]);
     for seed in seeds {
         target(seed);

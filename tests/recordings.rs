@@ -1,4 +1,4 @@
-//! The labelled campaigns with their answers: does the strut model reproduce what was recorded?
+//! Tests whether the strut model with the known answers reproduces the labelled recordings.
 //!
 //! For each campaign the concealed terms are put into its model as `answer.json` states them, the rest is calibrated within
 //! `[tolerance]` on the campaign's ten recordings (the calibration of `oleo diagnose`, no candidate added), and the model is
@@ -308,7 +308,8 @@ fn from_displacement(model: &StrutModel, recording: &RecordedStrut) -> [f64; 5] 
 /// Draws of displacement noise that are averaged.
 const SEEDS: u64 = 4;
 
-/// Standard normal by the sum of twelve uniform numbers: tails beyond six do not matter to a mean square.
+/// Standard normal by the sum of twelve uniform numbers: tails beyond six do not matter to a mean square. `rand_distr` would
+/// draw others, and the published figures were made with these.
 fn normal(rng: &mut ChaCha8Rng) -> f64 {
     (0..12)
         .map(|_| f64::from(rng.next_u32()) / 4_294_967_296.0)

@@ -94,7 +94,7 @@ fn bad_arguments_are_one_line_that_says_what_to_do() {
         (&["--self-test", "--terms", "seal_fraction"][..], "seal_friction"),
         (
             &["--self-test", "--terms", "none", "--without-names"],
-            "no name to leave out",
+            "cannot be combined with --without-names",
         ),
         (&["--self-test", "--campaigns", "0"], "above 0"),
         (&["--self-test", "--threads", "0"], "above 0"),

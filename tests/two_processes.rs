@@ -66,10 +66,26 @@ fn words(out: &Path) -> Vec<u16> {
 
 #[test]
 fn two_processes_command_what_one_does() {
+    same_in_two_processes(&["--duration", "3"]);
+}
+
+#[test]
+fn two_processes_command_what_one_does_in_a_lane_change() {
+    same_in_two_processes(&[
+        "--scenario",
+        "lane-change-on-belgian",
+        "--entry-m",
+        "30",
+        "--duration",
+        "9",
+    ]);
+}
+
+fn same_in_two_processes(driven: &[&str]) {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
     let [here, there] = cable();
-    run(&["hil", "--duration", "3", "--out", &path("one")]);
+    run(&[&["hil", "--out", &path("one")], driven].concat());
     let controller = start(&[
         "hil",
         "--node",
@@ -79,17 +95,8 @@ fn two_processes_command_what_one_does() {
         "--out",
         &path("controller"),
     ]);
-    let plant = start(&[
-        "hil",
-        "--node",
-        "plant",
-        "--duration",
-        "3",
-        "--bus",
-        &here,
-        "--out",
-        &path("plant"),
-    ]);
+    let plant = ["hil", "--node", "plant", "--bus", &here, "--out", &path("plant")];
+    let plant = start(&[&plant[..], driven].concat());
     for output in [end(plant), end(controller)] {
         no_panic(&output);
         assert_eq!(
@@ -201,6 +208,33 @@ fn a_killed_plant_leaves_a_safe_controller_that_ends() {
     assert!(text.contains("the plant fell silent after tick"), "{text}");
     let ticks = summary(&out)["ticks_to_safe"].as_u64();
     assert!(ticks.is_some_and(|ticks| ticks <= 5), "{ticks:?}");
+}
+
+/// A controller that was built for another vehicle is refused, because it would command something else than in one process.
+#[test]
+fn nodes_with_different_vehicles_say_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("wider.toml");
+    let text = include_str!("../plant-sim/presets/defender110.toml");
+    std::fs::write(&file, text.replace("strut_spacing_m = 1.0", "strut_spacing_m = 1.2")).unwrap();
+    let [here, there] = cable();
+    let controller = start(&["hil", "--node", "controller", "--bus", &there]);
+    let plant = [
+        "hil",
+        "--node",
+        "plant",
+        "--bus",
+        &here,
+        "--vehicle",
+        file.to_str().unwrap(),
+    ];
+    let plant = start(&plant);
+    let outputs = [end(plant), end(controller)];
+    let texts = outputs.each_ref().map(|output| String::from_utf8_lossy(&output.stderr));
+    assert!(texts.iter().any(|text| text.contains("another vehicle")), "{texts:?}");
+    for output in &outputs {
+        support::complaint(output);
+    }
 }
 
 #[test]

@@ -24,9 +24,22 @@ fn on_vcan(test: impl FnOnce(&str)) {
     test(&format!("socketcan:{interface}"));
 }
 
-fn hash_in_process(folder: &Path, duration: &str) -> serde_json::Value {
+/// What is driven on every bus: the default ride, and a lane change in the middle of Belgian block.
+const DRIVEN: [&[&str]; 2] = [
+    &["--duration", "5"],
+    &[
+        "--scenario",
+        "lane-change-on-belgian",
+        "--entry-m",
+        "30",
+        "--duration",
+        "9",
+    ],
+];
+
+fn hash_in_process(folder: &Path, driven: &[&str]) -> serde_json::Value {
     let out = folder.join("inproc");
-    run(&["hil", "--duration", duration, "--out", out.to_str().unwrap()]);
+    run(&[&["hil", "--out", out.to_str().unwrap()], driven].concat());
     summary(&out)["command_hash"].clone()
 }
 
@@ -63,23 +76,14 @@ fn listen(bus: &str) -> SocketCan {
 fn one_process_commands_what_the_bus_in_memory_commands() {
     on_vcan(|bus| {
         let folder = tempfile::tempdir().unwrap();
-        for threads in ["1", "2"] {
+        for (driven, threads) in DRIVEN.into_iter().flat_map(|driven| [(driven, "1"), (driven, "2")]) {
             let out = folder.path().join(threads);
             let out = out.to_str().unwrap();
-            let output = run(&[
-                "hil",
-                "--duration",
-                "5",
-                "--bus",
-                bus,
-                "--threads",
-                threads,
-                "--out",
-                out,
-            ]);
+            let hil = ["hil", "--bus", bus, "--threads", threads, "--out", out];
+            let output = run(&[&hil[..], driven].concat());
             no_panic(&output);
             let summary = summary(Path::new(out));
-            assert_eq!(summary["command_hash"], hash_in_process(folder.path(), "5"));
+            assert_eq!(summary["command_hash"], hash_in_process(folder.path(), driven));
             assert_eq!(
                 (&summary["frames_lost"], &summary["e2e_errors"]),
                 (&0.into(), &0.into())
@@ -119,20 +123,11 @@ fn doubled_and_late_frames_close_the_valves() {
 fn two_processes_in_either_order_with_a_stranger_on_the_bus() {
     on_vcan(|bus| {
         let folder = tempfile::tempdir().unwrap();
-        let expected = hash_in_process(folder.path(), "5");
-        for plant_first in [true, false] {
+        for (driven, plant_first) in DRIVEN.into_iter().zip([true, false]) {
+            let expected = hash_in_process(folder.path(), driven);
             let out = folder.path().join(format!("plant-{plant_first}"));
-            let plant = [
-                "hil",
-                "--node",
-                "plant",
-                "--duration",
-                "5",
-                "--bus",
-                bus,
-                "--out",
-                out.to_str().unwrap(),
-            ];
+            let plant = ["hil", "--node", "plant", "--bus", bus, "--out", out.to_str().unwrap()];
+            let plant = [&plant[..], driven].concat();
             let other = folder.path().join(format!("controller-{plant_first}"));
             let controller = [
                 "hil",
@@ -143,9 +138,9 @@ fn two_processes_in_either_order_with_a_stranger_on_the_bus() {
                 "--out",
                 other.to_str().unwrap(),
             ];
-            let first = start(if plant_first { &plant } else { &controller });
+            let first = start(if plant_first { &plant[..] } else { &controller[..] });
             std::thread::sleep(Duration::from_millis(200));
-            let second = start(if plant_first { &controller } else { &plant });
+            let second = start(if plant_first { &controller[..] } else { &plant[..] });
             // Somebody else's diagnosis session, as fast as is polite.
             let mut stranger = listen(bus);
             for i in 0..200u32 {

@@ -1,4 +1,4 @@
-//! All parameters of the controller, from the vehicle's description and the tuning of each part.
+//! All parameters of the controller, computed from the description of the vehicle and the tuning of each part.
 //!
 //! [`Builder`] takes physical units and checks each value against the range in which the controller was designed. What
 //! comes out is immutable and holds filter coefficients instead of frequencies, so that a tick has nothing left to compute
@@ -14,11 +14,11 @@ use crate::vehicle::VehicleDescription;
 /// What a person may choose about the parts of the controller. See [`strategy::Tuning`] for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tuning {
-    /// Of the estimated motion.
+    /// Tuning of the estimate.
     pub estimate: estimate::Tuning,
     /// Of each strategy, whether it is chosen or not.
     pub strategy: strategy::Tuning,
-    /// Of the spring valves.
+    /// Tuning of the spring valves.
     pub spring: spring::Tuning,
 }
 
@@ -40,11 +40,11 @@ pub struct Tuning {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Builder {
-    /// The vehicle.
+    /// Masses, dimensions and struts of the vehicle.
     pub vehicle: VehicleDescription,
-    /// How valves are decided.
+    /// Strategy that sets the valves.
     pub strategy: Strategy,
-    /// Thresholds and filters.
+    /// Thresholds and filters of each part.
     pub tuning: Tuning,
 }
 
@@ -73,11 +73,11 @@ impl Builder {
 pub struct Configuration {
     /// Of the checks on readings.
     pub plausibility: plausibility::Parameters,
-    /// Of the estimated motion.
+    /// Parameters of the estimate.
     pub estimate: estimate::Parameters,
-    /// Of the strategy.
+    /// Parameters of the strategy.
     pub strategy: strategy::Parameters,
-    /// Of the spring valves.
+    /// Parameters of the spring valves.
     pub spring: spring::Parameters,
 }
 

@@ -1,4 +1,4 @@
-//! How often a bypass valve may move.
+//! Limits how often a bypass valve may move.
 //!
 //! A valve that takes 40 to 90 ms gains nothing from signals that change faster, and it wears. After each change a bypass
 //! valve rests for 100 ms. A closing that safety requires does not come through here: the mode machine acts on the

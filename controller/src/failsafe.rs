@@ -1,4 +1,4 @@
-//! The mode machine: what the controller may do, given what is broken.
+//! The mode machine: it decides which valves the controller may open, given the faults.
 //!
 //! It is a pure function of the health of the inputs, counted in ticks. It decides last: everything that a strategy wants passes
 //! through [`permitted`]. The safe state is de-energised, with all valves closed, which is a stiff spring and high damping; a
@@ -72,7 +72,7 @@ pub enum Mode {
     /// The controller waits for its first complete and plausible set of readings. All valves are closed.
     #[default]
     StartUp = 0,
-    /// The strategy decides.
+    /// The vehicle is healthy, and the strategy sets all valves.
     Normal = 1,
     /// Readings of one axle are missing. All springs are stiff, and only the other axle's dampers follow the strategy.
     Degraded = 2,
@@ -105,7 +105,7 @@ impl Mode {
 #[strum(serialize_all = "kebab-case")]
 #[repr(u8)]
 pub enum FaultCode {
-    /// Nothing is wrong.
+    /// There is no fault.
     #[default]
     None = 0,
     /// A reading is flagged by its sensor, not finite, or outside its range.
@@ -199,7 +199,7 @@ struct Recurrence {
 }
 
 impl Recurrence {
-    /// It happens once more.
+    /// Counts one more occurrence.
     fn happens(&mut self) {
         self.count = self.count.saturating_add(1);
         self.calm = 0;

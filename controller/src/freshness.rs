@@ -1,4 +1,4 @@
-//! How old the readings on the bus are.
+//! Measures the age of the readings that arrive over the bus.
 //!
 //! A frame that is right may still be old: a gateway holds frames back, or somebody plays a recording. Counters do not show
 //! that, because old frames are in sequence too. So each command carries a number, the *challenge*, that looks drawn at random,
@@ -146,7 +146,7 @@ mod tests {
         }
     }
 
-    /// The last challenge.
+    /// The challenge that was sent last.
     fn last(freshness: &Freshness) -> u8 {
         freshness.challenges[0]
     }

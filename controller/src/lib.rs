@@ -1,27 +1,27 @@
-//! The suspension controller: four displacements and sixteen pressures in, twelve valve positions out, every 5 ms.
+//! The suspension controller: every 5 ms it reads four displacements and sixteen pressures and sets twelve valves.
 //!
 //! ```text
 //!  frames --> Node --> tick:  plausibility --> estimate --> strategy --> spring, dwell --> failsafe --> Node --> frames
-//!             (can)           which readings   motion       what is      how and how       what is             \-> Solenoids
-//!                             may be used                   wanted       often             permitted
+//!             (can)           which readings   motion       desired      how springs       which valves        \-> Solenoids
+//!                             may be used                   valves       may change        may open
 //! ```
 //!
-//! | to do what | use |
+//! | task | use |
 //! |---|---|
-//! | one period, without a bus | [`tick`], a pure function of [`Configuration`], [`State`] and [`Inputs`] |
-//! | one period with CAN frames | [`Node::receive`] any number of times, then [`Node::tick`] |
-//! | the same on a CAN peripheral | [`Port`], over `embedded_can::nb::Can` |
+//! | run one period without a bus | [`tick`], a pure function of [`Configuration`], [`State`] and [`Inputs`] |
+//! | run one period with CAN frames | [`Node::receive`] any number of times, then [`Node::tick`] |
+//! | run it on a CAN peripheral | [`Port`], over `embedded_can::nb::Can` |
 //! | switch the valves | [`Solenoids`], over `embedded_hal::digital::OutputPin` |
 //! | obey the command at the other end of a bus | [`OutputStage`] |
-//! | another vehicle or another tuning | [`Builder`] |
-//! | stand at the other end of the bus | [`PlantEnd`] |
+//! | configure another vehicle or another tuning | [`Builder`] |
+//! | simulate the other end of the bus | [`PlantEnd`] |
 //!
-//! The caller owns time: one call is one period, and nothing here reads a clock. The crate has no heap, needs no std and
+//! The caller determines the time: one call is one period, and the crate reads no clock. The crate has no heap, needs no std and
 //! never panics. It computes in `f32` with the same `libm` on every machine, so that the sequence of valve commands is the
 //! same, bit for bit, on a desk computer and in the vehicle.
 //!
-//! Everything public is listed on one page, with units, ranges and errors: `docs/api-controller.md`. The examples
-//! `readings` and `frames` of this crate show both ways of use.
+//! `docs/api-controller.md` lists all public items on one page, with units, ranges and errors. The examples `readings` and
+//! `frames` of this crate show how to use it without and with a bus.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! The receiving end of the command: what a stage that drives the solenoids may obey.
+//! The receiver of the command in the output stage: it decides which commands the solenoids may obey.
 //!
 //! It trusts the command no more than the controller trusts its sensors. A command opens valves only if it is the only one in its
 //! tick, right and in sequence, from a message that is trusted, an answer to readings that are at most 2 ticks old, and if the

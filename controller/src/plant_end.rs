@@ -1,4 +1,4 @@
-//! The other end of the bus: it sends the sensor messages and receives the valve command.
+//! The plant's end of the bus: it sends the sensor messages and receives the valve command.
 //!
 //! Simulations, benchmarks and tests need a node opposite the controller. They all use this one, so that what they send is what the
 //! database says.

@@ -149,12 +149,12 @@ impl<C: Can> Port<C> {
         self.counters
     }
 
-    /// The node.
+    /// The node that runs behind this port.
     pub fn node(&self) -> &Node {
         &self.node
     }
 
-    /// The peripheral.
+    /// The CAN peripheral, for its own settings and its error counters.
     pub fn can_mut(&mut self) -> &mut C {
         &mut self.can
     }

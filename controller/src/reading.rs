@@ -1,4 +1,4 @@
-//! What the controller is told: twenty sensor readings, each with its validity.
+//! The inputs of the controller: twenty sensor readings, each with its validity.
 //!
 //! A number whose sensor or frame is not trusted must not be used by accident. So a value can only be had together with the answer
 //! whether it is valid.

@@ -1,4 +1,4 @@
-//! Receive side of one message: what it said in this tick, how old that is, and whether it is trusted.
+//! The receiver of one message: its content in this tick, its age, and whether it may be used.
 //!
 //! A sender sends one frame a tick. More than one means that somebody else sends under its identifier, and no check value says
 //! which of them is right. So the frames of a tick are judged together: only a tick that brought what one sender sends brings

@@ -53,9 +53,9 @@ impl SensorMessage {
 pub struct MessageSet(u8);
 
 impl MessageSet {
-    /// No message.
+    /// A set that contains no message.
     pub const EMPTY: Self = Self(0);
-    /// All six messages.
+    /// A set that contains all six sensor messages.
     pub const ALL: Self = Self(0x3F);
 
     /// From the six bits of the status message; higher bits are ignored.

@@ -1,4 +1,4 @@
-//! Valve 3 at any displacement: when to close and open it, and what its closing traps.
+//! Switching of valve 3 at any displacement: when to close and open it, and how much oil its closing traps.
 //!
 //! The report's first model could change springs at the reference position only. The reason is the oil: closing valve 3 keeps
 //! in accumulator 2 whatever oil is in it then, and opening it joins two volumes of different pressure. Both effects follow

@@ -1,4 +1,4 @@
-//! How often a valve may switch, whatever the inputs are.
+//! Limits how often a valve may switch, whatever the inputs are.
 //!
 //! The last stage of a tick. What comes here is permitted, but a fault that comes and goes, or an attack, can permit and forbid
 //! it in turns. A closing always passes, because safety may require it. So only openings can be limited: a valve opens only if
@@ -42,7 +42,7 @@ impl History {
         self.times.get_mut(usize::from(self.oldest))
     }
 
-    /// Notes a switching.
+    /// Records a switching of the valve at tick `now`.
     fn add(&mut self, now: u32) {
         if let Some(time) = self.oldest() {
             *time = now;

@@ -53,7 +53,7 @@ impl State {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Outputs {
-    /// Valve positions to drive.
+    /// Positions to which the valves are to be driven.
     pub command: ValveCommand,
     /// Mode of the controller.
     pub mode: Mode,

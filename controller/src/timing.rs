@@ -1,4 +1,4 @@
-//! Times in ticks, and what must hold for the tick period.
+//! Times in ticks, and the requirements on the tick period.
 //!
 //! The controller never reads a clock: one call of [`crate::tick()`] is one period. Filters, time-outs and bus load are all
 //! derived from [`TICK_MS`]; what a wrong period would break is checked by the compiler, here and beside the fastest filter.

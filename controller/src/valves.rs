@@ -1,4 +1,4 @@
-//! The twelve valves, as one word.
+//! The positions of the twelve valves as one word.
 //!
 //! Everything that decides, sends, checks or drives valves speaks of the same twelve bits, so the word and its order
 //! are defined once, here. The word without a set bit is what a dead controller commands: it is the safe state.

@@ -1,4 +1,4 @@
-//! What the controller is told about its vehicle.
+//! The description of the vehicle that the controller needs.
 //!
 //! Masses are absent on purpose: the static load is measured by the struts themselves, laden or not.
 

@@ -16,7 +16,7 @@ use crate::recording::Recording;
 use crate::specimen::{Channel, Hypothesis, Series, Specimen, StateSeries};
 use crate::vocabulary::{Column, EffectId, Place, Site, SpecimenKind, State};
 
-/// Never asks to stop.
+/// A flag that never asks the fit to stop.
 pub static RUN: AtomicBool = AtomicBool::new(false);
 
 /// A force that grows with the cube of the displacement; one number.

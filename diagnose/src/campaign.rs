@@ -1,4 +1,4 @@
-//! A folder of recordings of one specimen, and what is believed about it.
+//! A campaign: a folder with the recordings of one specimen and the given model.
 
 use std::path::{Path, PathBuf};
 
@@ -10,11 +10,11 @@ use crate::specimen::{ModelFile, Specimen};
 
 /// A campaign, ready to be diagnosed.
 pub struct Campaign {
-    /// Folder.
+    /// Folder of the campaign.
     pub folder: PathBuf,
-    /// Name in its model file.
+    /// Name of the specimen in its model file.
     pub name: String,
-    /// Specimen with recordings.
+    /// The specimen: its given model and its recordings.
     pub specimen: Box<dyn Specimen>,
     /// Remarks about the recordings, one line each.
     pub notes: Vec<String>,
@@ -23,17 +23,17 @@ pub struct Campaign {
 /// Name of the model file of a campaign, and of the improved model among the results.
 pub const MODEL_FILE: &str = "model.toml";
 
-/// What of a campaign is kept from the fit, to be predicted.
+/// The part of a campaign that is held out of the fit and predicted.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct KeptBack {
-    /// Part of every recording's samples that may be fitted, from its start, 0 to 1; all where absent.
+    /// Fraction of every recording, from its start, that is fitted, 0 to 1; `None` means all of it.
     pub fit_until: Option<f64>,
     /// Names (file stems) of recordings that are not fitted at all.
     pub recordings: Vec<String>,
 }
 
 impl KeptBack {
-    /// True if everything is fitted.
+    /// Whether nothing is held out.
     #[must_use]
     pub fn is_nothing(&self) -> bool {
         self.fit_until.is_none() && self.recordings.is_empty()
@@ -54,7 +54,7 @@ impl Campaign {
     /// Reads `model.toml` and every CSV file of a folder, in the order of their names.
     ///
     /// # Errors
-    /// One line: which file, where in it, what to do.
+    /// One line that says which file is wrong, where, and what to do.
     pub fn open(folder: &Path) -> Result<Self, DiagnoseError> {
         let (model, recordings, notes) = read_folder(folder)?;
         Self::of(folder, model, recordings, notes)
@@ -64,7 +64,7 @@ impl Campaign {
     /// same samples, for judging predictions.
     ///
     /// # Errors
-    /// As [`Self::open`]; a name that no recording has; nothing or too little left to fit; nothing kept back.
+    /// The errors of [`Self::open`]; a name that no recording has; too few samples left to fit; no data held out.
     pub fn open_in_part(folder: &Path, kept_back: &KeptBack) -> Result<(Self, CompleteRecordings), DiagnoseError> {
         let (model, whole, notes) = read_folder(folder)?;
         let names = || whole.iter().map(|r| r.name.as_str()).collect::<Vec<_>>().join(", ");
@@ -84,7 +84,7 @@ impl Campaign {
             }
             if samples < MIN_SAMPLES {
                 let what = format!(
-                    "recording {} would be fitted on {samples} samples, at least {MIN_SAMPLES} are needed; \
+                    "recording {} would be fitted on {samples} samples, but at least {MIN_SAMPLES} are needed; \
                      fit a larger part or hold the recording out",
                     recording.name
                 );
@@ -125,7 +125,7 @@ pub struct CompleteRecordings {
 }
 
 impl CompleteRecordings {
-    /// The specimen with all recordings, believed to be as a model file says.
+    /// The specimen with all recordings and the model of a model file.
     ///
     /// # Errors
     /// As [`Campaign::open`].
@@ -143,8 +143,12 @@ fn read_folder(folder: &Path) -> Result<(ModelFile, Vec<Recording>, Vec<String>)
             "is not a folder; a campaign is a folder with model.toml and recordings",
         ));
     }
-    let text = std::fs::read_to_string(&model_path)
-        .map_err(|e| DiagnoseError::file(&model_path, format!("{e}; a campaign needs the model that is believed")))?;
+    let text = std::fs::read_to_string(&model_path).map_err(|e| {
+        DiagnoseError::file(
+            &model_path,
+            format!("{e}; a campaign needs a model.toml with the model of the specimen"),
+        )
+    })?;
     let file = ModelFile::read(&text, &model_path.display().to_string())?;
     let (columns, gaps) = (file.model.columns(), file.model.gap_policy());
     let mut files: Vec<PathBuf> = std::fs::read_dir(folder)
@@ -178,7 +182,7 @@ fn read_all(
                 recordings.push(recording);
             }
             Err(e @ DiagnoseError::TooShort { .. }) => {
-                notes.push(format!("left out: {e}"));
+                notes.push(format!("This recording was left out: {e}"));
                 last = Some(e);
             }
             Err(e) => return Err(e),

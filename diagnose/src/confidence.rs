@@ -15,10 +15,10 @@ pub struct Evidence {
     pub lead: Option<(f64, f64)>,
 }
 
-/// Names of [`Evidence::measures`].
+/// Names of the measures in [`Evidence::measures`].
 pub const EVIDENCE: [&str; 3] = ["constant", "lead over the rival, standard errors", "lead over gain"];
 
-/// Fitted by `oleo diagnose --self-test --seed 1 --campaigns 110`, table "Weights of evidence": 106 reports, 98 of them
+/// Fitted by `oleo diagnose --self-test --seed 1 --campaigns 110`, table "Weights of the evidence": 106 reports, 98 of them
 /// there. Logarithmic score, each report left out of its fit: -0.21 (-0.22 without these weights).
 const WEIGHTS: [f64; EVIDENCE.len()] = [1.01, 1.82, 1.97];
 /// Nothing is reported as surer than the self-test can show, or as less likely than this.

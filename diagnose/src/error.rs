@@ -1,4 +1,4 @@
-//! What can be wrong with what the user gave us, each as one line: what, where, what to do.
+//! Errors in the user's files, each as one line that says what is wrong, where, and what to do.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ pub enum DiagnoseError {
     /// A file or folder cannot be read or written.
     #[error("{}: {what}", path.display())]
     File {
-        /// The file or folder.
+        /// Path of the file or folder.
         path: PathBuf,
         /// What is wrong and what to do.
         what: String,
@@ -16,7 +16,7 @@ pub enum DiagnoseError {
     /// A recording is too short to conclude anything from; others of its campaign may do.
     #[error("{}: {what}", path.display())]
     TooShort {
-        /// The recording.
+        /// Path of the recording.
         path: PathBuf,
         /// How short and what to do.
         what: String,
@@ -24,7 +24,7 @@ pub enum DiagnoseError {
     /// A line of a file is wrong.
     #[error("{}, line {line}: {what}", path.display())]
     Line {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// Line number, the header is 1.
         line: u64,
@@ -42,11 +42,11 @@ pub enum DiagnoseError {
     Simulation {
         /// Name of the recording.
         recording: String,
-        /// Why.
+        /// Why it failed, and what to do.
         what: String,
     },
     /// The caller asked to stop.
-    #[error("stopped on request; nothing was written")]
+    #[error("the command was stopped; nothing was written")]
     Interrupted,
     /// The result could not be written.
     #[error("{0}")]

@@ -1,13 +1,13 @@
-//! What to record when two effects cannot be told apart, or when something is left that nothing explains: the excitation
-//! in which they differ most, with amplitude, speed and valve state.
+//! What to record next: the excitation in which two effects that cannot be distinguished differ most, or the excitation that
+//! isolates an unexplained misfit, with amplitude, speed and valve state.
 
 use crate::effect::{Candidate, of};
 use crate::locate::Location;
 use crate::specimen::Specimen;
 use crate::vocabulary::{SpecimenKind, State};
 
-/// What to record to tell two candidates apart: amplitude, speed, valve state, and what each of the two does then. Every
-/// effect says how it shows itself; where one experiment separates a pair better, one of the two says so.
+/// What to record to separate two candidates: amplitude, speed, valve state, and what each of the two causes then. Each
+/// effect has an experiment of its own; if one experiment separates a pair better, one of the two effects names it.
 #[must_use]
 pub fn separate(kind: SpecimenKind, a: &Candidate, b: &Candidate) -> String {
     let (one, other) = (of(a.id), of(b.id));
@@ -20,18 +20,18 @@ pub fn separate(kind: SpecimenKind, a: &Candidate, b: &Candidate) -> String {
     format!("To separate {} from {}, record {how}.", a.name(), b.name())
 }
 
-/// The experiments of two effects one after the other, and what each does in its own.
+/// The experiments of two effects one after the other, and what each effect causes in its own.
 fn in_turn(kind: SpecimenKind, a: &Candidate, b: &Candidate) -> String {
     let own = |c: &Candidate| of(c.id).experiment_in(kind);
     let name = |c: &Candidate| of(c.id).named(kind, &c.label);
     match (own(a), own(b)) {
         (Some(first), _) if a.id == b.id && a.place == b.place => format!(
-            "{}: each of the two laws follows its own quantity ({}; {})",
+            "{}. Each of the two laws depends on its own quantity ({}; {})",
             first.record, a.label, b.label
         ),
         (Some(first), _) if a.id == b.id => format!(
-            "{}: {} {}; if it acts at {there}, the channels next to {there} show it, and if it acts at {elsewhere}, those next \
-             to {elsewhere} do",
+            "{}. In this recording {} {}. If it acts at {there}, the channels next to {there} show it; if it acts at \
+             {elsewhere}, the channels next to {elsewhere} show it",
             first.record,
             name(a),
             first.shows,
@@ -39,7 +39,7 @@ fn in_turn(kind: SpecimenKind, a: &Candidate, b: &Candidate) -> String {
             elsewhere = b.place
         ),
         (Some(first), Some(second)) if first.record == second.record => format!(
-            "{}: {} {}; {} {}",
+            "{}. In this recording {} {}, whereas {} {}",
             first.record,
             name(a),
             first.shows,
@@ -47,7 +47,7 @@ fn in_turn(kind: SpecimenKind, a: &Candidate, b: &Candidate) -> String {
             second.shows
         ),
         (Some(first), Some(second)) => format!(
-            "{}: there {} {}. Record also {}: there {} {}",
+            "{}. In this recording {} {}. Record also {}. In that recording {} {}",
             first.record,
             name(a),
             first.shows,
@@ -59,12 +59,12 @@ fn in_turn(kind: SpecimenKind, a: &Candidate, b: &Candidate) -> String {
     }
 }
 
-/// What to record about a misfit that nothing explains: its own condition, one thing changed at a time.
+/// What to record about an unexplained misfit: the condition in which it occurs, with one quantity changed at a time.
 #[must_use]
 pub fn isolate(specimen: &dyn Specimen, left: &Location) -> String {
     let r = left.recording;
     let place = format!(
-        "What is left unexplained is largest in {} of {}, {:.2} to {:.2} s ({}).",
+        "The unexplained misfit is largest in {} of {} from {:.2} to {:.2} s (condition: {}).",
         specimen.channels()[left.channel].column,
         specimen.recording_name(r),
         left.t_s[0],
@@ -73,7 +73,7 @@ pub fn isolate(specimen: &dyn Specimen, left: &Location) -> String {
     );
     if left.condition.decays {
         return format!(
-            "{place} Record the step before it alone, held ten times as long ({:.0} s), in both directions, at 1x and 0.5x \
+            "{place} Record the step before it on its own, held ten times as long ({:.0} s), in both directions, at 1x and 0.5x \
              amplitude and at 1x and 0.1x speed{}.",
             10.0 * (left.t_s[1] - left.t_s[0]),
             valves(specimen, r, left.t_s).map_or(String::new(), |v| format!(", {v}"))
@@ -97,19 +97,21 @@ pub fn isolate(specimen: &dyn Specimen, left: &Location) -> String {
         let speeds = [0.3, 1.0, 3.0].map(|f| oleo_report::significant(f * fastest, 2));
         how.push(format!("at {} m/s in turn", speeds.join(", ")));
     }
-    how.push(valves(specimen, r, left.t_s).unwrap_or_else(|| "everything else as it was".into()));
-    format!(
-        "{place} Record that stretch alone: strokes {}, each twice.",
-        how.join(", ")
-    )
+    how.push(valves(specimen, r, left.t_s).unwrap_or_else(|| "with all other conditions unchanged".into()));
+    format!("{place} Record strokes {}, each twice.", how.join(", "))
 }
 
-/// Valves as they are in the middle of a stretch, and the other way round.
+/// The valve states in the middle of a stretch, and then the opposite states.
 fn valves(specimen: &dyn Specimen, recording: usize, t_s: [f64; 2]) -> Option<String> {
     let time = specimen.time_s(recording);
     let middle = time
         .partition_point(|t| *t < 0.5 * (t_s[0] + t_s[1]))
         .min(time.len() - 1);
     let valves = specimen.settings(recording, middle);
-    (!valves.is_empty()).then(|| format!("with {}, then each valve the other way round", valves.join(", ")))
+    (!valves.is_empty()).then(|| {
+        format!(
+            "with {}, and then with each valve in its other state",
+            valves.join(", ")
+        )
+    })
 }

@@ -12,7 +12,17 @@ pub enum Scale {
     Log(f64),
 }
 
-/// One fitted number.
+/// A parameter that is fitted, with its start value and range.
+///
+/// ```
+/// use oleo_diagnose::parameter::Parameter;
+/// // A gas volume that may be 2 % off: one coordinate is half of that.
+/// let volume = Parameter::calibration("static_gas_volume", 0.02);
+/// assert_eq!(volume.value(-1.0), -0.01);
+/// // A positive number that is known to an order of magnitude.
+/// let modulus = Parameter::log("bulk_modulus_Pa", 1.4e9, (1e8, 1e10));
+/// assert!((modulus.z(modulus.value(0.7)) - 0.7).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone)]
 pub struct Parameter {
     /// Name with unit, as in the report.
@@ -21,9 +31,9 @@ pub struct Parameter {
     pub start: f64,
     /// Map between `z` and value.
     pub scale: Scale,
-    /// Smallest value.
+    /// Smallest value that the parameter may have.
     pub lower: f64,
-    /// Largest value.
+    /// Largest value that the parameter may have.
     pub upper: f64,
     /// Calibration: `z` is normal with standard deviation 1 before the recordings are seen.
     pub prior: bool,
@@ -100,7 +110,7 @@ impl Parameter {
         }
     }
 
-    /// Value at `z`.
+    /// Value of the parameter at the fitted coordinate `z`.
     #[must_use]
     pub fn value(&self, z: f64) -> f64 {
         match self.scale {
@@ -110,7 +120,7 @@ impl Parameter {
         .clamp(self.lower, self.upper)
     }
 
-    /// `z` of a value.
+    /// Fitted coordinate `z` of a value.
     #[must_use]
     pub fn z(&self, value: f64) -> f64 {
         match self.scale {
@@ -119,7 +129,7 @@ impl Parameter {
         }
     }
 
-    /// Range of `z`.
+    /// Smallest and largest value of the fitted coordinate `z`.
     #[must_use]
     pub fn z_range(&self) -> (f64, f64) {
         let (a, b) = (self.z(self.lower), self.z(self.upper));

@@ -12,23 +12,23 @@ use crate::estimation::{LeastSquares, Point, fit};
 use crate::search::Screen;
 use crate::vocabulary::Column;
 
-/// Figures of one model.
+/// Noise ratios of one model.
 #[derive(Debug, Clone)]
 pub struct ModelPrediction {
-    /// Which model, in words.
+    /// Name of the model, such as "improved".
     pub model: String,
-    /// Noise ratio of every channel on what was fitted.
+    /// Noise ratio of each channel on the fitted part.
     pub fitted: Vec<f64>,
-    /// The same on what was kept back.
+    /// Noise ratio of each channel on the held-out part.
     pub kept_back: Vec<f64>,
 }
 
-/// All figures.
+/// Noise ratios of all models on the fitted and on the held-out part.
 #[derive(Debug, Clone)]
 pub struct Predictions {
     /// Columns of the channels.
     pub channels: Vec<Column>,
-    /// Models: as given, recalibrated, improved, then rivals, the best predictor first.
+    /// The models: as given, recalibrated, improved, then the rivals with the best predictor first.
     pub models: Vec<ModelPrediction>,
 }
 
@@ -42,7 +42,7 @@ impl Predictions {
     /// Fits the rivals, predicts with every model.
     ///
     /// # Errors
-    /// The wish to stop; a given model that cannot be simulated on what was kept back.
+    /// [`DiagnoseError::Interrupted`] if the caller asked to stop; a given model that cannot be simulated on the held-out part.
     pub fn of(
         problem: &LeastSquares<'_>,
         diagnosis: &Diagnosis,

@@ -1,34 +1,54 @@
-//! What is left in the residuals of the improved model: are they white, and do they know anything of the inputs?
+//! Tests whether the residuals of the improved model are noise: whether they are white and independent of the inputs.
 //!
-//! A complete model leaves the sensors' noise: no sample tells of the next (Ljung & Box, Biometrika 65(2), 1978) and none
-//! of what the specimen was made to do (cross-correlation test, Billings & Voon, Int. J. Control 44(3), 1986). With a
-//! hundred thousand samples either test sees correlations far too small to matter, so the part of the residual's variance
-//! that goes with the inputs stands beside them: that is what another term could gain at most.
+//! A complete model leaves only sensor noise. Then no sample helps to predict the next (Ljung & Box, Biometrika 65(2),
+//! 1978), and no sample correlates with the inputs (cross-correlation test, Billings & Voon, Int. J. Control 44(3), 1986).
+//! With a hundred thousand samples both tests detect correlations that are far too small to matter. The report therefore also
+//! gives the fraction of the residual's variance that the inputs explain, which is the most that another term could gain.
 
 use crate::specimen::{Series, Specimen};
 use crate::vocabulary::State;
 
-/// Lags tested.
+/// Number of lags that are tested, in samples.
 pub const LAGS: usize = 20;
 /// Upper 1 % point of chi-square with [`LAGS`] degrees of freedom.
 pub const CHI_SQUARE_99: f64 = 37.57;
 /// Two-sided 1 % point of a normal variable when [`LAGS`] + 1 of them are looked at (Bonferroni).
 const NORMAL_99: f64 = 3.49;
 
-/// One channel's residuals.
+/// The tests of one channel's residuals.
 #[derive(Debug, Clone)]
 pub struct Whiteness {
     /// Autocorrelation at lags 1 to [`LAGS`].
     pub autocorrelation: Vec<f64>,
     /// Ljung-Box statistic over them; white residuals stay below [`CHI_SQUARE_99`] 99 times of 100.
     pub ljung_box: f64,
-    /// The input most correlated with the residual at any lag, and that correlation.
+    /// The input with the largest correlation at any lag, and this correlation, -1 to 1; `None` if there is no input.
     pub input: Option<(State, f64)>,
-    /// Size that an independent input's correlation stays below 99 times of 100.
+    /// Bound below which the correlation with an independent input stays in 99 of 100 cases.
     pub bound: f64,
 }
 
-/// Every channel; recordings are not joined across their ends.
+impl Whiteness {
+    /// Whether the residuals are white at the 99 % level.
+    #[must_use]
+    pub fn is_white(&self) -> bool {
+        self.ljung_box < CHI_SQUARE_99
+    }
+
+    /// Whether the residuals are independent of the inputs at the 99 % level.
+    #[must_use]
+    pub fn is_independent(&self) -> bool {
+        self.input.is_none_or(|(_, r)| r.abs() < self.bound)
+    }
+
+    /// Fraction of the residual's variance that the strongest input explains, 0 to 1.
+    #[must_use]
+    pub fn explained(&self) -> f64 {
+        self.input.map_or(0.0, |(_, r)| r * r)
+    }
+}
+
+/// Tests every channel. Recordings are not joined at their ends.
 #[must_use]
 pub fn whiteness(specimen: &dyn Specimen, residuals: &[Series]) -> Vec<Whiteness> {
     let inputs: Vec<Vec<Input>> = (0..residuals.len()).map(|r| inputs(specimen, r)).collect();

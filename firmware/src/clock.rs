@@ -1,10 +1,10 @@
-//! The clock tree: CAN needs the accuracy of the crystal, and the tick needs a fast processor.
+//! Sets up the clock tree: CAN needs the accuracy of the crystal, and the tick needs a fast processor.
 //!
 //! 8 MHz crystal -> PLL -> 168 MHz core, 42 MHz APB1 (CAN), 84 MHz APB2 (RM0090, section 7; flash wait states table 10).
 
 use stm32f4::stm32f405::{FLASH, PWR, RCC};
 
-/// Core clock, Hz.
+/// Frequency of the core clock, Hz.
 pub const CORE_HZ: u32 = CRYSTAL_HZ / PLL_M * PLL_N / 2;
 /// Clock of the CAN peripheral (APB1), Hz.
 pub const APB1_HZ: u32 = CORE_HZ / 4;

@@ -1,4 +1,4 @@
-//! What the core does when something goes wrong that no code provides for: it turns the solenoids off and restarts.
+//! Reaction to processor faults: the code turns the solenoids off and restarts.
 //!
 //! After the reset the controller is in its start-up mode with closed valves, until all sensors have been healthy again.
 
@@ -13,7 +13,7 @@ unsafe fn HardFault(_frame: &ExceptionFrame) -> ! {
     off_and_reset()
 }
 
-/// Any exception or interrupt that nobody has enabled.
+/// Any exception or interrupt that is not enabled.
 #[allow(unsafe_code)]
 #[exception]
 unsafe fn DefaultHandler(_number: i16) {

@@ -1,4 +1,4 @@
-//! The suspension controller on an STM32F405: from reset to a safe state, and then a tick every 5 ms for ever.
+//! The suspension controller on an STM32F405: it starts in a safe state and then runs a tick every 5 ms.
 //!
 //! ```text
 //!   reset -> solenoids off -> watchdog -> clock -> CAN -> +-> take what the bus brings -+

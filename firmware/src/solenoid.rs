@@ -1,4 +1,4 @@
-//! Twelve solenoids on one port: PE4..PE15, high = energised, each with a pull-down resistor on the board.
+//! Drives twelve solenoids on one port: PE4 to PE15, high = energised, each with a pull-down resistor on the board.
 //!
 //! They share a port, so that one write turns all of them off wherever something goes wrong. At reset the pins are inputs,
 //! and the resistors keep the valves closed, which is a stiff spring and high damping.

@@ -1,4 +1,4 @@
-//! The independent watchdog: resets the board unless a tick completes in time, whatever the core is doing.
+//! The independent watchdog. It resets the board if a tick is not completed in time.
 //!
 //! It runs from its own 32 kHz oscillator (17 to 47 kHz over the part's range, datasheet table 38), so the nominal
 //! 20 ms, four ticks, are 14 to 38 ms on a given board. Once started it cannot be stopped, only fed.
@@ -8,7 +8,7 @@ use stm32f4::stm32f405::{IWDG, iwdg::kr::KEY};
 /// Counts of the watchdog's 8 kHz clock: 20 ms.
 const RELOAD: u16 = 160 - 1;
 
-/// A running watchdog.
+/// The independent watchdog, once it is running.
 pub struct Watchdog {
     registers: IWDG,
 }

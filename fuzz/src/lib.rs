@@ -64,7 +64,7 @@ pub fn candump(bytes: &[u8]) {
     }
 }
 
-/// A scenario file.
+/// Reads the bytes as a scenario file.
 pub fn scenario(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     if let Err(error) = oleo_hil::scenario::file::parse(text, "any.toml", Path::new(".")) {

@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mut best = f64::INFINITY;
         let mut hash = String::new();
         for _ in 0..5 {
-            let outcome = run::both(&scenario, run::Plant::build(&scenario)?, threads, &mut |_| true)?;
+            let outcome = run::both(&scenario, run::vehicle(&scenario)?, threads, &mut |_| true)?;
             best = best.min(outcome.wall_s);
             hash = command_hash(outcome.plant.recording.words());
         }

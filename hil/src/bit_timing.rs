@@ -1,4 +1,4 @@
-//! What a traced run would have looked like on a wire: bits, arbitration, latency, utilisation.
+//! Computes how a traced run would look on a CAN wire: bits, arbitration, latency and utilisation.
 //!
 //! The buses of this crate deliver at once. A CAN wire sends one frame at a time, lowest identifier first, with a stuff bit after
 //! every five equal bits. This computes from the trace when each frame would have ended at a given bit rate.
@@ -81,11 +81,11 @@ impl BitStream {
 /// Latency of one message at one bit rate, from ready to sent, microseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MessageTiming {
-    /// The message.
+    /// The message whose latency this is.
     pub contract: Contract,
     /// Number of frames that were sent.
     pub frames: u64,
-    /// Mean latency, microseconds.
+    /// Mean latency from ready to sent, microseconds.
     pub mean_us: f64,
     /// Longest latency that occurred, microseconds.
     pub max_us: f64,
@@ -96,7 +96,7 @@ pub struct MessageTiming {
 /// A traced run on a wire of a given bit rate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WireModel {
-    /// Bit rate, bit/s.
+    /// Bit rate of the wire, bit/s.
     pub bit_rate: u32,
     /// Fraction of time for which the wire is busy, 0 to 1, with the stuff bits that occurred.
     pub utilisation: f64,

@@ -12,14 +12,14 @@ use std::io::{self, Write};
 use crate::Frame;
 use crate::frame::{extended, standard};
 
-/// A logged frame.
+/// One line of a candump log: a frame with its time and interface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogLine {
     /// Time since the start, microseconds.
     pub time_us: u64,
     /// Name of the interface.
     pub interface: String,
-    /// The frame.
+    /// The logged frame.
     pub frame: Frame,
 }
 

@@ -1,4 +1,4 @@
-//! Real time: absolute deadlines, and how they were met.
+//! Real time: absolute deadlines, and statistics of how well they were met.
 //!
 //! Deadline `n` is the start plus `n` periods, whatever happened before, so that lateness does not add up. The lateness of every
 //! wake-up is kept. A tick that begins after the next one was due is an overrun. The summary gives the median, the 99th
@@ -46,24 +46,24 @@ impl RealTime {
         self.late_us.push(u32::try_from(late.as_micros()).unwrap_or(u32::MAX));
     }
 
-    /// The lateness so far.
+    /// Statistics of the lateness so far.
     pub fn lateness(&self) -> Lateness {
         Lateness::of(&self.late_us, self.overruns)
     }
 }
 
-/// How late wake-ups were.
+/// Statistics of how late the node woke up.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Lateness {
-    /// Number of ticks.
+    /// Number of ticks that were measured.
     pub ticks: u64,
     /// Number of ticks that began after the next one was due.
     pub overruns: u64,
-    /// Median lateness, microseconds.
+    /// Median of the lateness, microseconds.
     pub p50_us: u32,
     /// 99th percentile of the lateness, microseconds.
     pub p99_us: u32,
-    /// Worst lateness, microseconds.
+    /// Largest lateness, microseconds.
     pub max_us: u32,
     /// Number of wake-ups by lateness: the upper limit of each class in microseconds (the last one has none), and its count.
     pub histogram: Vec<(u32, u64)>,

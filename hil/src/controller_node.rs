@@ -170,7 +170,7 @@ impl<B: Bus> ControllerNode<B> {
         self.bus.counters()
     }
 
-    /// The node's bus.
+    /// The bus through which the node sends and receives.
     pub fn bus(&mut self) -> &mut dyn Bus {
         &mut self.bus
     }

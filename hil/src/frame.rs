@@ -47,7 +47,7 @@ impl Frame {
         })
     }
 
-    /// The identifier.
+    /// The CAN identifier, 11 or 29 bits.
     pub fn id(&self) -> Id {
         self.id
     }

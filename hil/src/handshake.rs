@@ -1,4 +1,4 @@
-//! How two nodes on a bus find each other, whichever was started first, and agree on the run.
+//! The handshake by which two nodes find each other on a bus, in either order, and agree on the run.
 //!
 //! Each repeats its `Hello` until it has received the other's and knows that its own was received.
 
@@ -21,16 +21,16 @@ pub enum HandshakeError {
         waited_s: f64,
     },
     /// The two nodes want different runs.
-    #[error("the {} on {bus} runs another {what}: give both nodes the same scenario, --strategy and --clock", .partner.name())]
+    #[error("the {} on {bus} runs another {what}: give both nodes the same scenario, --strategy, --clock, --vehicle, --handling and --strut", .partner.name())]
     Terms {
         /// The node that answered.
         partner: Role,
         /// Address of the bus.
         bus: String,
-        /// What differs: `strategy` or `clock`.
+        /// What differs: `strategy`, `clock` or `vehicle`.
         what: &'static str,
     },
-    /// The bus failed.
+    /// The bus failed during the handshake.
     #[error(transparent)]
     Bus(#[from] BusError),
 }
@@ -83,6 +83,9 @@ pub fn handshake(
             if theirs.clock != terms.clock {
                 return Err(differs("clock"));
             }
+            if theirs.vehicle != terms.vehicle {
+                return Err(differs("vehicle"));
+            }
             is_heard |= theirs_heard;
             if !std::mem::replace(&mut heard, true) {
                 break; // say so at once
@@ -100,7 +103,11 @@ mod tests {
 
     #[test]
     fn nodes_find_each_other_in_either_order() {
-        let terms = Terms { strategy: 2, clock: 0 };
+        let terms = Terms {
+            strategy: 2,
+            clock: 0,
+            vehicle: 7,
+        };
         for late in [Role::Plant, Role::Controller] {
             let (mut a, mut b) = crate::bus::in_process_pair();
             std::thread::scope(|scope| {
@@ -115,7 +122,11 @@ mod tests {
 
     #[test]
     fn a_node_alone_or_with_other_terms_says_so() {
-        let terms = Terms { strategy: 2, clock: 0 };
+        let terms = Terms {
+            strategy: 2,
+            clock: 0,
+            vehicle: 7,
+        };
         let (mut a, mut b) = crate::bus::in_process_pair();
         let alone = handshake(&mut a, "socketcan:vcan0", Role::Plant, terms, Duration::from_millis(60));
         assert!(
@@ -124,15 +135,18 @@ mod tests {
                 .to_string()
                 .contains("oleo hil --node controller --bus socketcan:vcan0")
         );
-        b.send(
-            &Sync::Hello {
-                terms: Terms { strategy: 1, clock: 0 },
+        for (others, what) in [
+            (Terms { strategy: 1, ..terms }, "another strategy"),
+            (Terms { clock: 1, ..terms }, "another clock"),
+            (Terms { vehicle: 8, ..terms }, "another vehicle"),
+        ] {
+            let hello = Sync::Hello {
+                terms: others,
                 heard: false,
-            }
-            .encode(Role::Controller),
-        )
-        .unwrap();
-        let other = handshake(&mut a, "x", Role::Plant, terms, Duration::from_secs(9)).unwrap_err();
-        assert!(other.to_string().contains("another strategy"), "{other}");
+            };
+            b.send(&hello.encode(Role::Controller)).unwrap();
+            let other = handshake(&mut a, "x", Role::Plant, terms, Duration::from_secs(9)).unwrap_err();
+            assert!(other.to_string().contains(what), "{other}");
+        }
     }
 }

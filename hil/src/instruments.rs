@@ -1,4 +1,4 @@
-//! The plant's electronics with their faults: its sensors, and valves that do not follow.
+//! The electronics of the plant with their faults: sensors, and valves that do not follow.
 //!
 //! ```text
 //!   vehicle -> Instruments (sensor faults) -> frames
@@ -6,50 +6,113 @@
 //! ```
 
 use oleo_controller::{Inputs, ValveCommand};
+use oleo_interface::tick::TICK_S;
 use oleo_interface::{Corners, Gauge, StrutPressures};
 use oleo_plant_sim::strut::StrutOutput;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
 
 use crate::scenario::fault::{Fault, FaultKind, Sensor, SensorFault, SensorPlace, ValvePlace};
 
 /// The four displacement sensors and sixteen pressure sensors.
 #[derive(Clone, Debug)]
 pub struct Instruments {
-    faults: Vec<(Fault, SensorPlace, SensorFault, Option<f32>)>,
+    faults: Vec<Broken>,
+}
+
+/// A sensor fault and what it remembers.
+#[derive(Clone, Debug)]
+struct Broken {
+    fault: Fault,
+    /// The last value, of a sensor that is stuck.
+    held: Option<f32>,
+    /// Random numbers of this fault alone.
+    random: ChaCha8Rng,
+}
+
+/// Random streams of sensor faults begin here; those of disturbed frames are counted from 0.
+const FIRST_STREAM: u64 = 1 << 32;
+
+/// Readings of all sensors.
+struct Readings {
+    displacement_m: Corners<f32>,
+    pressure_pa: Corners<StrutPressures<f32>>,
+}
+
+impl Readings {
+    fn at(&mut self, place: SensorPlace) -> &mut f32 {
+        match place.sensor {
+            Sensor::Displacement => &mut self.displacement_m[place.corner],
+            Sensor::Pressure(point) => &mut self.pressure_pa[place.corner][point],
+        }
+    }
 }
 
 impl Instruments {
-    /// Sensors that have the sensor faults among `faults`.
-    pub fn new(faults: &[Fault]) -> Self {
-        let of_sensors = |fault: &Fault| match fault.kind {
-            FaultKind::Sensor { place, fault: kind } => Some((*fault, place, kind, None)),
-            _ => None,
+    /// Sensors that have the sensor faults among `faults`; `seed` fixes their noise.
+    pub fn new(faults: &[Fault], seed: u64) -> Self {
+        let broken = |(index, fault): (usize, &Fault)| {
+            let mut random = ChaCha8Rng::seed_from_u64(seed);
+            random.set_stream(FIRST_STREAM + index as u64);
+            Broken {
+                fault: *fault,
+                held: None,
+                random,
+            }
         };
+        let of_sensors =
+            |fault: &Fault| matches!(fault.kind, FaultKind::Sensor { .. } | FaultKind::SensorsSwapped { .. });
+        let numbered = faults.iter().filter(|fault| of_sensors(fault)).enumerate();
         Self {
-            faults: faults.iter().filter_map(of_sensors).collect(),
+            faults: numbered.map(broken).collect(),
         }
     }
 
     /// What the sensors say in a tick, from the true displacements (m, compression positive) and pressures.
     pub fn read(&mut self, tick: u32, displacement_m: Corners<f64>, struts: Corners<StrutOutput>) -> Inputs {
-        let mut displacement_m = displacement_m.map(|x| x as f32);
-        let mut pressure_pa = struts.map(|strut| StrutPressures::from_array(strut.pressure_pa.map(|p| p as f32)));
-        for (fault, place, kind, held) in &mut self.faults {
-            let value = match place.sensor {
-                Sensor::Displacement => &mut displacement_m[place.corner],
-                Sensor::Pressure(point) => &mut pressure_pa[place.corner][point],
-            };
-            if !fault.is_active(tick) {
-                *held = None;
-                continue;
-            }
-            *value = match *kind {
-                SensorFault::Stuck => *held.get_or_insert(*value),
-                SensorFault::NotANumber => f32::NAN,
-                SensorFault::Value(says) => says,
-                SensorFault::Offset(more) => *value + more,
-            };
+        let mut readings = Readings {
+            displacement_m: displacement_m.map(|x| x as f32),
+            pressure_pa: struts.map(|strut| StrutPressures::from_array(strut.pressure_pa.map(|p| p as f32))),
+        };
+        for broken in &mut self.faults {
+            broken.spoil(tick, &mut readings);
         }
-        Inputs::from_values(displacement_m, pressure_pa.map(|strut| strut.map(Gauge)))
+        let pressure = readings.pressure_pa.map(|strut| strut.map(Gauge));
+        Inputs::from_values(readings.displacement_m, pressure)
+    }
+}
+
+impl Broken {
+    fn spoil(&mut self, tick: u32, readings: &mut Readings) {
+        if !self.fault.is_active(tick) {
+            self.held = None;
+            return;
+        }
+        match self.fault.kind {
+            FaultKind::Sensor { place, fault } => {
+                let value = readings.at(place);
+                *value = match fault {
+                    SensorFault::Stuck => *self.held.get_or_insert(*value),
+                    SensorFault::NotANumber => f32::NAN,
+                    SensorFault::Value(says) => says,
+                    SensorFault::Offset(more) => *value + more,
+                    SensorFault::Noise(deviation) => {
+                        let standard: f32 = StandardNormal.sample(&mut self.random);
+                        *value + deviation * standard
+                    }
+                    SensorFault::Drift(a_second) => {
+                        let since_s = f64::from(tick - self.fault.from_tick) * TICK_S;
+                        *value + a_second * since_s as f32
+                    }
+                };
+            }
+            FaultKind::SensorsSwapped { one, other } => {
+                let said = (*readings.at(one), *readings.at(other));
+                (*readings.at(other), *readings.at(one)) = said;
+            }
+            _ => {}
+        }
     }
 }
 
@@ -96,10 +159,8 @@ mod tests {
     const PLACE: Corner = Corner::FrontRight;
 
     fn sensor(kind: SensorFault, sensor: Sensor) -> Instruments {
-        Instruments::new(&[fault(FaultKind::Sensor {
-            place: SensorPlace { corner: PLACE, sensor },
-            fault: kind,
-        })])
+        let place = SensorPlace { corner: PLACE, sensor };
+        Instruments::new(&[fault(FaultKind::Sensor { place, fault: kind })], 1)
     }
 
     fn read(instruments: &mut Instruments, tick: u32) -> Inputs {
@@ -136,6 +197,66 @@ mod tests {
                 .value(),
             Some(9e9)
         );
+    }
+
+    #[test]
+    fn a_drift_grows_from_the_begin_of_its_fault() {
+        let mut drifting = sensor(SensorFault::Drift(1.0), Sensor::Displacement);
+        let seen: Vec<_> = (1..5)
+            .map(|tick| read(&mut drifting, tick).displacement[PLACE].value().unwrap())
+            .collect();
+        for (seen, expected) in seen.into_iter().zip([0.01, 0.02, 0.03 + 0.005, 0.04]) {
+            assert!((seen - expected).abs() < 1e-6, "{seen} {expected}");
+        }
+    }
+
+    /// Mean and standard deviation of many readings, and the same readings again from the same seed.
+    #[test]
+    fn noise_has_its_standard_deviation() {
+        let place = SensorPlace {
+            corner: PLACE,
+            sensor: Sensor::Displacement,
+        };
+        let noisy = Fault {
+            kind: FaultKind::Sensor {
+                place,
+                fault: SensorFault::Noise(0.002),
+            },
+            from_tick: 0,
+            until_tick: 20_000,
+        };
+        let readings = |seed| -> Vec<f64> {
+            let mut instruments = Instruments::new(&[noisy], seed);
+            let mut say = |tick| instruments.read(tick, Corners::splat(0.01), Corners::default());
+            (0..20_000)
+                .map(|tick| f64::from(say(tick).displacement[PLACE].value().unwrap()) - 0.01)
+                .collect()
+        };
+        let one = readings(1);
+        let mean = one.iter().sum::<f64>() / 20_000.0;
+        let deviation = (one.iter().map(|x| x * x).sum::<f64>() / 20_000.0).sqrt();
+        assert!(
+            mean.abs() < 6e-5 && (deviation / 0.002 - 1.0).abs() < 0.02,
+            "{mean} {deviation}"
+        );
+        assert!(one == readings(1) && one != readings(2));
+    }
+
+    #[test]
+    fn swapped_sensors_say_what_the_other_one_should() {
+        let at = |corner| SensorPlace {
+            corner,
+            sensor: Sensor::Displacement,
+        };
+        let (one, other) = (at(Corner::FrontLeft), at(Corner::RearRight));
+        let mut swapped = Instruments::new(&[fault(FaultKind::SensorsSwapped { one, other })], 1);
+        let true_m = Corners::from_array([0.01, 0.02, 0.03, 0.04]);
+        let mut say = |tick| {
+            let inputs = swapped.read(tick, true_m, Corners::default());
+            inputs.displacement.map(|reading| reading.value().unwrap()).into_array()
+        };
+        assert_eq!(say(1), [0.01, 0.02, 0.03, 0.04]);
+        assert_eq!(say(2), [0.04, 0.02, 0.03, 0.01]);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The loop: plant and controller, talking only through CAN frames.
+//! The loop: plant and controller communicate only through CAN frames.
 //!
 //! ```text
 //!   scenario (TOML)
@@ -12,9 +12,9 @@
 //!      record, trace --> metrics --> checks --> output (summary, logs, CSV, JUnit, page)
 //! ```
 //!
-//! * [`bus`] carries frames and holds the decorators around a bus; [`sync`] and [`handshake`] keep two nodes in step; [`clock`] is
-//!   real time.
-//! * [`scenario`] says what is driven, what goes wrong and what must hold; [`run`] turns a scenario into a recording.
+//! * [`bus`] contains the buses and the decorators around them; [`sync`] and [`handshake`] synchronise two nodes; [`clock`] paces a
+//!   run in real time.
+//! * [`scenario`] describes what is driven, which faults occur and which checks must be met; [`run`] turns a scenario into a recording.
 //! * [`metrics`] and [`output`] turn a recording into figures and files; [`bit_timing`] computes when a wire would have carried each
 //!   frame.
 #![forbid(unsafe_code)]
@@ -25,6 +25,7 @@ pub mod candump;
 pub mod clock;
 pub mod comparison;
 pub mod controller_node;
+pub mod description;
 pub mod frame;
 pub mod handshake;
 pub mod instruments;
@@ -36,6 +37,8 @@ pub mod record;
 pub mod run;
 pub mod scenario;
 pub mod sync;
+mod time_series;
+pub mod vehicle;
 
 pub use frame::Frame;
 pub use scenario::Scenario;

@@ -1,11 +1,10 @@
-//! A run's files: `summary.json`, `timeseries.csv`, `candump.log`, `junit.xml`, `report.html`.
+//! Writes the files of a run: `summary.json`, `timeseries.csv`, `candump.log`, `junit.xml`, `report.html`.
 //!
 //! They are written through [`OutputDirectory`], so that all of them appear or none. Between two runs of one scenario only wall-clock
 //! figures differ; everything else has the same bytes.
 
 use oleo_controller::ValveCommand;
 use oleo_interface::tick::TICK_S;
-use oleo_interface::{Corner, PressurePoint};
 use oleo_report::{OutputDirectory, OutputError};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde::Serialize;
@@ -18,6 +17,7 @@ use crate::record::command_hash;
 use crate::run::Outcome;
 use crate::scenario::Scenario;
 use crate::scenario::check::{Figure, Metric};
+use crate::time_series;
 
 /// Outcome of one check.
 #[derive(Clone, Debug, Serialize)]
@@ -30,7 +30,7 @@ pub struct CheckOutcome {
     pub figure: String,
 }
 
-/// Content of `summary.json`.
+/// The contents of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
     /// Version of this file's layout.
@@ -39,8 +39,12 @@ pub struct Summary {
     pub scenario: String,
     /// Name or path of the road.
     pub road: String,
-    /// Forward speed, km/h.
+    /// Forward speed of the vehicle, km/h.
     pub speed_km_h: f64,
+    /// Model of the vehicle: `ride` or `handling`.
+    pub model: &'static str,
+    /// What the vehicle carried.
+    pub load: &'static str,
     /// Name of the strategy that decided the valves.
     pub strategy: &'static str,
     /// Address of the bus.
@@ -51,7 +55,7 @@ pub struct Summary {
     pub seed: u64,
     /// Number of ticks that were run.
     pub ticks: u32,
-    /// Simulated time, s.
+    /// Simulated time of the run, s.
     pub simulated_s: f64,
     /// Wall-clock time of the loop alone, s.
     pub wall_s: f64,
@@ -89,17 +93,24 @@ pub struct Summary {
     pub msdv_rear_left_m_s1_5: f64,
     /// Largest roll of the body to either side, degrees.
     pub max_roll_deg: f64,
+    /// Time at the start that does not count for the ride measures above, s.
+    pub score_from_s: f64,
+    /// Number of times that the controller reported handling mode anew.
+    pub handling_entries: u64,
+    /// What a run with a manoeuvre has besides.
+    #[serde(flatten)]
+    pub course: Option<CourseSummary>,
     /// Number of changes of each of the twelve valve signals: corner by corner, valves 1 to 3.
     pub valve_switches: [u64; 12],
     /// Each change of the controller's mode.
     pub modes: Vec<ModeEntry>,
     /// See [`Metric::TicksToDetect`]; `null` is "never", here and in the next three.
     pub ticks_to_detect: Option<f64>,
-    /// See [`Metric::TicksToSafe`].
+    /// Ticks until the controller was safe, as [`Metric::TicksToSafe`].
     pub ticks_to_safe: Option<f64>,
-    /// See [`Metric::TicksToClosed`].
+    /// Ticks until all valves were closed, as [`Metric::TicksToClosed`].
     pub ticks_to_closed: Option<f64>,
-    /// See [`Metric::TicksToRecover`].
+    /// Ticks until the mode was normal again, as [`Metric::TicksToRecover`].
     pub ticks_to_recover: Option<f64>,
     /// Tick in which a silent controller was taken to be gone.
     pub controller_lost_at_tick: Option<u32>,
@@ -109,6 +120,56 @@ pub struct Summary {
     pub lateness: Vec<NodeLateness>,
     /// Outcome of each check of the scenario.
     pub checks: Vec<CheckOutcome>,
+}
+
+/// Figures of the manoeuvre; see [`CourseFigures`](crate::metrics::CourseFigures) for what `null` is in each.
+#[derive(Clone, Debug, Serialize)]
+pub struct CourseSummary {
+    /// Name of the manoeuvre.
+    pub manoeuvre: &'static str,
+    /// Who drove: `eased` or `hard`.
+    pub driver: &'static str,
+    /// Side slope of the road, %, positive where the left side is the higher one.
+    pub side_slope_percent: f64,
+    /// `completed`, `rolled over`, `spun` or `lost the track`; `null` for a run that was stopped.
+    pub ending: Option<&'static str>,
+    /// Largest lateral acceleration of the body's centre of mass, m/s2.
+    pub max_lateral_m_s2: f64,
+    /// Largest distance of the body's centre of mass from the driver's line, m.
+    pub max_path_deviation_m: Option<f64>,
+    /// Least room to the cones, m, negative where one was hit.
+    pub cone_margin_m: Option<f64>,
+    /// From the first lateral acceleration above 0.5 m/s2 in the manoeuvre to the decision for handling, s.
+    pub decision_s: Option<f64>,
+    /// Weighted RMS acceleration at the driver's seat before the manoeuvre (BS 6841), m/s2.
+    pub weighted_rms_driver_before_m_s2: Option<f64>,
+    /// The same at the left rear passenger's seat.
+    pub weighted_rms_rear_left_before_m_s2: Option<f64>,
+    /// Weighted RMS acceleration at the driver's seat behind the last cones (BS 6841), m/s2.
+    pub weighted_rms_driver_after_m_s2: Option<f64>,
+    /// The same at the left rear passenger's seat.
+    pub weighted_rms_rear_left_after_m_s2: Option<f64>,
+}
+
+impl CourseSummary {
+    fn of(scenario: &Scenario, metrics: &Metrics) -> Option<Self> {
+        let (settings, figures) = (scenario.course.as_ref()?, metrics.course.as_ref()?);
+        let (before, after) = (figures.ride_before_m_s2, figures.ride_after_m_s2);
+        Some(Self {
+            manoeuvre: settings.kind.key(),
+            driver: settings.driver().key(),
+            side_slope_percent: settings.side_slope_percent(),
+            ending: figures.ending.map(|ending| ending.word()),
+            max_lateral_m_s2: figures.max_lateral_m_s2,
+            max_path_deviation_m: figures.max_path_deviation_m,
+            cone_margin_m: figures.cone_margin_m,
+            decision_s: figures.decision_s,
+            weighted_rms_driver_before_m_s2: before.map(|[driver, _]| driver),
+            weighted_rms_rear_left_before_m_s2: before.map(|[_, rear_left]| rear_left),
+            weighted_rms_driver_after_m_s2: after.map(|[driver, _]| driver),
+            weighted_rms_rear_left_after_m_s2: after.map(|[_, rear_left]| rear_left),
+        })
+    }
 }
 
 /// A mode and when it was entered.
@@ -133,7 +194,7 @@ pub struct NodeLateness {
 }
 
 impl Summary {
-    /// Summarises a run.
+    /// Collects the figures of a run.
     pub fn of(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics) -> Self {
         let number = |metric| match metrics.figure(metric) {
             Figure::Number(number) => Some(number),
@@ -148,6 +209,8 @@ impl Summary {
             road: scenario.road.clone(),
             // Rounded, because the conversion to m/s and back changes the last digit.
             speed_km_h: (scenario.speed_m_s * 3.6 * 1e6).round() * 1e-6,
+            model: if scenario.course.is_some() { "handling" } else { "ride" },
+            load: scenario.load.key(),
             strategy: scenario.strategy.name(),
             bus: scenario.bus.to_string(),
             clock: scenario.clock.name(),
@@ -172,6 +235,9 @@ impl Summary {
             msdv_driver_m_s1_5: driver.msdv_m_s1_5,
             msdv_rear_left_m_s1_5: rear_left.msdv_m_s1_5,
             max_roll_deg: number(Metric::MaxRoll).unwrap_or(0.0),
+            score_from_s: scenario.score_from_s,
+            handling_entries: metrics.handling_entries,
+            course: CourseSummary::of(scenario, metrics),
             valve_switches: valve_switches(metrics),
             modes: mode_entries(metrics),
             ticks_to_detect: number(Metric::TicksToDetect),
@@ -254,7 +320,7 @@ pub fn write(
     out.json("summary.json", summary)?;
     out.write("junit.xml", junit(summary))?;
     out.write("candump.log", candump(scenario, outcome, metrics))?;
-    let columns = columns(outcome, metrics);
+    let columns = time_series::columns(outcome, metrics);
     let borrowed: Vec<(&str, &[f64])> = columns
         .iter()
         .map(|(name, values)| (name.as_str(), values.as_slice()))
@@ -309,58 +375,4 @@ fn candump(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics) -> Vec<u8>
         let _ = write_line(&mut log, time_us, interface, &trace[index].frame);
     }
     log
-}
-
-/// Name and values of each column of `timeseries.csv`, a value for each tick.
-fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<f64>)> {
-    let samples = &outcome.plant.recording.samples;
-    let steps = outcome.plant.recording.seat_acceleration_m_s2.len() / samples.len().max(1);
-    let mut columns: Vec<(String, Vec<f64>)> = Vec::with_capacity(64);
-    let mut column = |name: &str, value: &dyn Fn(usize) -> f64| {
-        columns.push((name.to_owned(), (0..samples.len()).map(value).collect()));
-    };
-    column("time_s", &|i| i as f64 * TICK_S);
-    column("station_m", &|i| samples[i].station_m);
-    for corner in Corner::ALL {
-        let name = corner.key();
-        column(&format!("road_{name}_m"), &|i| samples[i].wheel[corner].road_height_m);
-    }
-    column("heave_m", &|i| samples[i].body.heave_m);
-    column("roll_rad", &|i| samples[i].body.roll_rad);
-    column("pitch_rad", &|i| samples[i].body.pitch_rad);
-    column("heave_acceleration_m_s2", &|i| samples[i].body.heave_acceleration_m_s2);
-    column("roll_acceleration_rad_s2", &|i| {
-        samples[i].body.roll_acceleration_rad_s2
-    });
-    column("pitch_acceleration_rad_s2", &|i| {
-        samples[i].body.pitch_acceleration_rad_s2
-    });
-    let felt = |i: usize, seat: usize| {
-        // At the beginning of a tick the acceleration is that of the last step before it.
-        let index = (i * steps).checked_sub(1);
-        index.map_or(0.0, |at| outcome.plant.recording.seat_acceleration_m_s2[at][seat])
-    };
-    column("driver_acceleration_m_s2", &|i| felt(i, 0));
-    column("rear_left_acceleration_m_s2", &|i| felt(i, 1));
-    for corner in Corner::ALL {
-        let name = corner.key();
-        column(&format!("displacement_{name}_m"), &|i| {
-            samples[i].displacement_m[corner]
-        });
-        column(&format!("force_{name}_N"), &|i| samples[i].strut[corner].force_n);
-        for point in PressurePoint::ALL {
-            let title = format!("{}_{name}_Pa", point.key());
-            column(&title, &|i| samples[i].strut[corner].pressure_pa[point.index()]);
-        }
-        column(&format!("wheel_load_{name}_N"), &|i| samples[i].wheel[corner].force_n);
-    }
-    column("valve_word", &|i| f64::from(samples[i].command.word()));
-    column("energised_word", &|i| f64::from(samples[i].energised.word()));
-    column("mode", &|i| {
-        metrics.account[i].map_or(f64::NAN, |(mode, _)| f64::from(mode.raw()))
-    });
-    column("fault", &|i| {
-        metrics.account[i].map_or(f64::NAN, |(_, fault)| f64::from(fault.raw()))
-    });
-    columns
 }

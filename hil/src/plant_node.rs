@@ -6,8 +6,7 @@
 use std::time::Duration;
 
 use oleo_controller::PlantEnd;
-use oleo_interface::tick::TICK_S;
-use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
+use oleo_plant_sim::course::{Ending, NotFinite, Track};
 
 use crate::Frame;
 use crate::bus::{Bus, BusError, FaultInjector, Trace};
@@ -15,6 +14,7 @@ use crate::instruments::{Instruments, StuckValves};
 use crate::record::{Recording, Sample};
 use crate::scenario::Scenario;
 use crate::sync::{Role, Sync};
+use crate::vehicle::Vehicle;
 
 /// How the wait for the controller ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,9 +29,7 @@ pub enum Answer {
 pub struct PlantNode<B> {
     bus: FaultInjector<Trace<B>>,
     end: PlantEnd,
-    vehicle: RideVehicle,
-    steps_per_tick: u32,
-    seats: [(f64, f64); 2],
+    vehicle: Vehicle,
     instruments: Instruments,
     stuck: StuckValves,
     ticks_without_command: u32,
@@ -46,17 +44,9 @@ const FRAMES_PER_TICK: usize = 8;
 
 impl<B: Bus> PlantNode<B> {
     /// A plant at the start of the road. With `wall_clock` the traced frames carry the time.
-    pub fn new(
-        bus: B,
-        scenario: &Scenario,
-        parameters: &VehicleParameters,
-        vehicle: RideVehicle,
-        wall_clock: bool,
-    ) -> Self {
+    pub fn new(bus: B, scenario: &Scenario, vehicle: Vehicle, wall_clock: bool) -> Self {
         let ticks = scenario.ticks as usize;
         let injections: Vec<_> = scenario.faults.iter().filter_map(|fault| fault.injection()).collect();
-        let steps_per_tick = (TICK_S / vehicle.step_s()).round() as u32;
-        let seats = [&parameters.driver_seat, &parameters.passenger_seat].map(|seat| parameters.seat_position_m(seat));
         Self {
             bus: FaultInjector::new(
                 Trace::new(bus, ticks * FRAMES_PER_TICK, wall_clock),
@@ -64,11 +54,9 @@ impl<B: Bus> PlantNode<B> {
                 scenario.seed,
             ),
             end: PlantEnd::new(),
-            recording: Recording::with_capacity(ticks, steps_per_tick as usize, vehicle.step_s()),
+            recording: Recording::with_capacity(ticks, vehicle.steps_per_tick() as usize, vehicle.step_s()),
             vehicle,
-            steps_per_tick,
-            seats,
-            instruments: Instruments::new(&scenario.faults),
+            instruments: Instruments::new(&scenario.faults, scenario.seed),
             stuck: StuckValves::new(&scenario.faults),
             ticks_without_command: 0,
             tick: 0,
@@ -129,7 +117,10 @@ impl<B: Bus> PlantNode<B> {
     }
 
     /// Ends the tick: drives for 5 ms under the command that came.
-    pub fn advance(&mut self) {
+    ///
+    /// # Errors
+    /// The vehicle's motion is not finite.
+    pub fn advance(&mut self) -> Result<(), NotFinite> {
         let command = self.end.end_of_tick();
         self.ticks_without_command = match self.end.output().ticks_without_command() {
             0 => 0,
@@ -137,23 +128,21 @@ impl<B: Bus> PlantNode<B> {
         };
         let energised = self.stuck.energised(self.tick, command);
         self.recording.samples.push(Sample {
-            station_m: self.vehicle.station_m(),
-            body: self.vehicle.body(),
+            motion: self.vehicle.motion(),
             displacement_m: self.vehicle.strut_displacement_m(),
             strut: self.vehicle.strut_output(),
-            wheel: self.vehicle.wheels(),
             command,
             energised,
         });
-        let signals = energised.corners();
-        for _ in 0..self.steps_per_tick {
-            self.vehicle.step(signals);
-            let felt = self
-                .seats
-                .map(|(x_m, y_m)| self.vehicle.vertical_acceleration_at(x_m, y_m));
-            self.recording.seat_acceleration_m_s2.push(felt);
-        }
+        let felt = &mut self.recording.seat_acceleration_m_s2;
+        self.vehicle.drive(energised.corners(), |seats| felt.push(seats))?;
         self.tick += 1;
+        Ok(())
+    }
+
+    /// Whether the vehicle's course is over: completed, or the vehicle has rolled over, spun or lost its track.
+    pub fn is_over(&self) -> bool {
+        self.vehicle.ending().is_some()
     }
 
     /// Says that the run is over. The controller answers with its tally, which is an [`Answer::Done`].
@@ -167,7 +156,7 @@ impl<B: Bus> PlantNode<B> {
         self.ticks_without_command
     }
 
-    /// The node's bus.
+    /// The bus through which the node sends and receives.
     pub fn bus(&mut self) -> &mut dyn Bus {
         &mut self.bus
     }
@@ -186,6 +175,8 @@ impl<B: Bus> PlantNode<B> {
             e2e_errors: u64::from(self.end.output().errors()) + u64::from(e2e_by_controller),
             injected: self.bus.counts(),
             counters: self.bus.counters(),
+            ending: self.vehicle.ending(),
+            track: self.vehicle.track().cloned(),
             recording: self.recording,
         }
     }
@@ -210,4 +201,8 @@ pub struct PlantResult {
     pub injected: crate::bus::InjectionCounts,
     /// Counters of the plant's end of the bus.
     pub counters: crate::bus::BusCounters,
+    /// How the course ended; `None` without a course, and for a run that was stopped.
+    pub ending: Option<Ending>,
+    /// The line that the driver followed, with its cones.
+    pub track: Option<Track>,
 }

@@ -1,4 +1,4 @@
-//! What a run keeps in memory: one sample for each tick, and what can be read from the traced frames.
+//! The record of a run in memory: one sample for each tick, and what is read from the traced frames.
 //!
 //! All memory is reserved before the run starts, so that in the loop a sample is only a copy. Measures, logs and pictures are
 //! computed afterwards.
@@ -7,24 +7,59 @@ use crc::{CRC_64_XZ, Crc};
 use oleo_controller::can::{COMMAND, CommandMessage, STATUS, StatusMessage};
 use oleo_controller::{FaultCode, Mode, ValveCommand};
 use oleo_interface::{Corners, StrutValves};
+use oleo_plant_sim::course::Phase;
+use oleo_plant_sim::handling::HandlingMotion;
 use oleo_plant_sim::strut::StrutOutput;
-use oleo_plant_sim::vehicle::{BodyMotion, WheelMotion};
+use oleo_plant_sim::vehicle::BodyMotion;
 
 use crate::bus::{Direction, TraceEntry};
+
+/// A wheel and the road under it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Wheel {
+    /// Force of the road on the wheel, N; 0 off the ground.
+    pub load_n: f64,
+    /// Height of the road under the wheel from the level at the start, m.
+    pub road_height_m: f64,
+}
+
+/// How the vehicle moves at an instant, with either model.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Motion {
+    /// Centre of mass of the body ahead of the start, where the front axle stood, m.
+    pub station_m: f64,
+    /// Motion of the sprung mass.
+    pub body: BodyMotion,
+    /// The four wheels.
+    pub wheel: Corners<Wheel>,
+    /// What only a vehicle on a course has; `None` for the ride model.
+    pub course: Option<CourseMotion>,
+}
+
+/// A steered vehicle and the line that its driver follows.
+#[derive(Clone, Copy, Debug)]
+pub struct CourseMotion {
+    /// Motion of the body in the world.
+    pub body: HandlingMotion,
+    /// Angle of the steering wheel over the steering ratio, rad, left positive.
+    pub steer_rad: f64,
+    /// How far the body's centre of mass is right of the line, m; `None` while the steering wheel is held.
+    pub path_deviation_m: Option<f64>,
+    /// Room to the nearest cones, m, negative where one is hit; `None` where there are none.
+    pub cone_margin_m: Option<f64>,
+    /// Where in the manoeuvre it is; `None` where the manoeuvre has no cornering.
+    pub phase: Option<Phase>,
+}
 
 /// State at the beginning of a tick, and the valve commands that held from there to the next tick.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// Distance that the front axle has travelled along the road, m.
-    pub station_m: f64,
-    /// Motion of the sprung mass.
-    pub body: BodyMotion,
+    /// Motion of the vehicle.
+    pub motion: Motion,
     /// Strut displacement, m, compression positive.
     pub displacement_m: Corners<f64>,
     /// Force and pressures of each strut.
     pub strut: Corners<StrutOutput>,
-    /// Motion and load of each wheel, and the road under it.
-    pub wheel: Corners<WheelMotion>,
     /// The command that the drivers obeyed, after check and watchdog.
     pub command: ValveCommand,
     /// Positions of the valves' signals, stuck valves included.
@@ -38,7 +73,7 @@ pub struct Recording {
     pub samples: Vec<Sample>,
     /// Vertical acceleration at the driver's and at the left rear passenger's seat for every integration step, m/s2.
     pub seat_acceleration_m_s2: Vec<[f64; 2]>,
-    /// Integration step, s.
+    /// Integration step of the vehicle, s.
     pub step_s: f64,
 }
 
@@ -109,6 +144,30 @@ pub fn status_messages(trace: &[TraceEntry]) -> Vec<(u32, StatusMessage)> {
         .filter(|entry| entry.frame.standard_id() == Some(STATUS.id))
         .filter_map(|entry| Some((entry.tick, StatusMessage::decode(entry.frame.data().try_into().ok()?)?)))
         .collect()
+}
+
+/// What the controller's last status said of its strategy.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct StrategyReport {
+    /// The strategy is in handling mode.
+    pub handling: bool,
+    /// The roll-over guard acts.
+    pub rollover_guard: bool,
+}
+
+/// What the last status until each tick said.
+pub fn strategy_reports(trace: &[TraceEntry], ticks: usize) -> Vec<StrategyReport> {
+    let mut reports = vec![StrategyReport::default(); ticks];
+    for (tick, status) in status_messages(trace) {
+        let report = StrategyReport {
+            handling: status.handling,
+            rollover_guard: status.rollover_guard,
+        };
+        if let Some(rest) = reports.get_mut(tick as usize..) {
+            rest.fill(report);
+        }
+    }
+    reports
 }
 
 #[cfg(test)]

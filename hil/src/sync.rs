@@ -1,4 +1,4 @@
-//! Frames that keep two nodes in step. They belong to the simulation and are no messages of the vehicle.
+//! Frames that synchronise the two nodes. They belong to the simulation and are not messages of the vehicle.
 //!
 //! A node in lockstep must know when the other has sent everything in a tick, even if a fault has dropped the last message. So each
 //! ends its tick with a `TickDone`, which no injected fault touches. It carries the number of frames sent so far, which shows
@@ -28,12 +28,12 @@ use crate::frame::extended;
 pub enum Role {
     /// The plant: sensors, vehicle and valves.
     Plant,
-    /// The suspension controller.
+    /// The node with the suspension controller.
     Controller,
 }
 
 impl Role {
-    /// The node opposite.
+    /// The other node of the loop.
     pub fn other(self) -> Self {
         match self {
             Self::Plant => Self::Controller,
@@ -51,7 +51,7 @@ const PLANT_ID: u32 = 0x1FFF_01E0;
 const CONTROLLER_ID: u32 = 0x1FFF_01E1;
 
 /// Version of this exchange. Nodes of different versions do not start.
-const VERSION: u8 = 1;
+const VERSION: u8 = 2;
 
 /// What the nodes must agree on before they start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,12 +60,14 @@ pub struct Terms {
     pub strategy: u8,
     /// Number of the clock: 0 lockstep, 1 real time.
     pub clock: u8,
+    /// Digest of what the controller knows of the vehicle.
+    pub vehicle: u16,
 }
 
 /// Content of a frame that keeps nodes in step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sync {
-    /// The sender is there.
+    /// The sender is ready for the handshake.
     Hello {
         /// What both must agree on.
         terms: Terms,
@@ -109,7 +111,10 @@ impl Sync {
         };
         let [t0, t1, t2, t3];
         let data = match self {
-            Self::Hello { terms, heard } => [1, VERSION, u8::from(heard), terms.strategy, terms.clock, 0, 0, 0],
+            Self::Hello { terms, heard } => {
+                let [v0, v1] = terms.vehicle.to_le_bytes();
+                [1, VERSION, u8::from(heard), terms.strategy, terms.clock, v0, v1, 0]
+            }
             Self::TickDone { tick, sent } => {
                 [t0, t1, t2, t3] = tick.to_le_bytes();
                 let [s0, s1] = sent.to_le_bytes();
@@ -142,6 +147,7 @@ impl Sync {
                 terms: Terms {
                     strategy: b3,
                     clock: b4,
+                    vehicle: u16::from_le_bytes([b5, b6]),
                 },
                 heard: b2 != 0,
             },
@@ -171,7 +177,7 @@ mod tests {
         #[test]
         fn what_is_sent_is_understood(tick: u32, sent: u16, strategy: u8, clock: u8, heard: bool) {
             let all = [
-                Sync::Hello { terms: Terms { strategy, clock }, heard },
+                Sync::Hello { terms: Terms { strategy, clock, vehicle: sent }, heard },
                 Sync::TickDone { tick, sent },
                 Sync::End { sent },
                 Sync::Tally { sent, lost: strategy.into(), e2e_errors: tick as u16 },

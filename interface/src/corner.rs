@@ -17,9 +17,9 @@ use strum::{EnumString, IntoStaticStr, VariantArray};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
 #[strum(serialize_all = "snake_case")]
 pub enum Axle {
-    /// Front axle.
+    /// The front axle.
     Front,
-    /// Rear axle.
+    /// The rear axle.
     Rear,
 }
 
@@ -44,13 +44,13 @@ pub enum Side {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
 #[strum(serialize_all = "snake_case")]
 pub enum Corner {
-    /// Front left.
+    /// The corner at the front on the left; index 0.
     FrontLeft,
-    /// Front right.
+    /// The corner at the front on the right; index 1.
     FrontRight,
-    /// Rear left.
+    /// The corner at the rear on the left; index 2.
     RearLeft,
-    /// Rear right.
+    /// The corner at the rear on the right; index 3.
     RearRight,
 }
 
@@ -237,7 +237,7 @@ impl<T> Corners<T> {
         Corner::ALL.into_iter().zip(&mut self.0)
     }
 
-    /// The values alone.
+    /// The values in the order of the corners, without the corners.
     pub fn values(&self) -> core::slice::Iter<'_, T> {
         self.0.iter()
     }

@@ -1,4 +1,4 @@
-//! What the controller and the plant must agree on before either can be written.
+//! Types on which the controller and the plant must agree: corners, axles, valves, pressures and the tick.
 //!
 //! | module | what it holds |
 //! |---|---|

@@ -1,4 +1,4 @@
-//! Gauge and absolute pressure as types of their own.
+//! Gauge and absolute pressure as separate types, so that they cannot be confused.
 //!
 //! Sensors, dampers and forces speak of gauge pressure; gas laws, bubbles and vacuum speak of absolute pressure. The two
 //! differ by 101,325 Pa, which is 2.5 % of a strut's static pressure: small enough to be overlooked in a plot, large
@@ -25,14 +25,14 @@ pub struct Gauge<T>(pub T);
 pub struct Absolute<T>(pub T);
 
 impl<T> Gauge<T> {
-    /// The number, Pa.
+    /// The pressure as a number, Pa.
     pub fn pa(self) -> T {
         self.0
     }
 }
 
 impl<T> Absolute<T> {
-    /// The number, Pa.
+    /// The pressure as a number, Pa.
     pub fn pa(self) -> T {
         self.0
     }

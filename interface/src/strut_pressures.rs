@@ -52,13 +52,13 @@ impl PressurePoint {
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct StrutPressures<T> {
-    /// Value at [`PressurePoint::P1`].
+    /// Value at [`PressurePoint::P1`], the main chamber.
     pub p1: T,
-    /// Value at [`PressurePoint::P2`].
+    /// Value at [`PressurePoint::P2`], accumulator 1.
     pub p2: T,
-    /// Value at [`PressurePoint::P3`].
+    /// Value at [`PressurePoint::P3`], between damper 2 and valve 3.
     pub p3: T,
-    /// Value at [`PressurePoint::P4`].
+    /// Value at [`PressurePoint::P4`], accumulator 2.
     pub p4: T,
 }
 

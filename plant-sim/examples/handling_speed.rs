@@ -21,6 +21,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         kind,
         speed_m_s,
         entry_m: 25.0,
+        duration_s: None,
     };
     let straight = Manoeuvre::Straight {
         speed_m_s,

@@ -1,4 +1,4 @@
-//! What a strut's step costs, term by term: `cargo run --release -p oleo-plant-sim --example strut_step`.
+//! Measures the cost of a strut's step, term by term: `cargo run --release -p oleo-plant-sim --example strut_step`.
 //!
 //! One strut of the preset driven as a vehicle on a rough road drives it, 1 ms steps, best of five runs. Ratios are
 //! what to read. With a number of steps as argument it runs once with the whole preset only: the difference of two such

@@ -85,7 +85,7 @@ pub struct SensorErrors {
 pub struct VariedVehicle {
     /// The vehicle, at the ride height that its gas gives it.
     pub vehicle: VehicleParameters,
-    /// Its handling.
+    /// Handling parameters of the vehicle.
     pub handling: HandlingParameters,
     /// Its struts, charged for their loads.
     pub struts: Corners<StrutModel>,

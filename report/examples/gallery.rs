@@ -111,12 +111,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ["p1", "p2", "force"],
         Axis::new("Noise ratio", ""),
     );
-    bars.series("without", &[14.2, 3.0, 9.0]).series_with_interval(
-        "with",
-        &[1.1, 1.0, 1.2],
-        &[1.0, 0.9, 1.1],
-        &[1.3, 1.1, 1.5],
-    );
+    bars.series("without", &[14.2, 3.0, 9.0])
+        .series("with", &[1.1, 1.0, 1.2]);
     page.section("Bars").figure(bars).details("All rows", outcome);
 
     let mut out = OutputDirectory::stage(destination)?;

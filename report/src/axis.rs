@@ -1,4 +1,4 @@
-//! An axis without quantity and unit is a drawing, not a measurement: both are asked for in the constructor.
+//! An axis of a figure. Its constructor requires a quantity and a unit.
 
 use serde_json::{Value, json};
 

@@ -1,6 +1,6 @@
-//! Figures of named things side by side, with intervals where they are estimates.
+//! Bar charts of named quantities.
 
-use plotly::common::{ErrorData, ErrorType, Marker};
+use plotly::common::Marker;
 use plotly::{Bar, Trace};
 use serde_json::json;
 
@@ -39,28 +39,11 @@ impl Bars {
 
     /// One value per category; NaN leaves a gap.
     pub fn series(&mut self, name: &str, values: &[f64]) -> &mut Self {
-        let bar = self.bar(name, values);
-        self.traces.push(bar);
-        self
-    }
-
-    /// One value per category with its interval; `low` and `high` are values, not distances.
-    pub fn series_with_interval(&mut self, name: &str, values: &[f64], low: &[f64], high: &[f64]) -> &mut Self {
-        let above = values.iter().zip(high).map(|(value, high)| high - value).collect();
-        let below = values.iter().zip(low).map(|(value, low)| value - low).collect();
-        let interval = ErrorData::new(ErrorType::Data)
-            .symmetric(false)
-            .array(above)
-            .array_minus(below);
-        let bar = self.bar(name, values).error_y(interval);
-        self.traces.push(bar);
-        self
-    }
-
-    fn bar(&self, name: &str, values: &[f64]) -> Box<Bar<String, f64>> {
-        Bar::new(self.categories.clone(), rounded(values))
+        let bar = Bar::new(self.categories.clone(), rounded(values))
             .name(escape_plotly(name))
-            .marker(Marker::new().color(colour(self.traces.len())))
+            .marker(Marker::new().color(colour(self.traces.len())));
+        self.traces.push(bar);
+        self
     }
 
     fn into_figure(self) -> Figure {
@@ -92,12 +75,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn intervals_are_distances_to_plotly() {
-        let mut bars = Bars::new("Confidence", ["friction", "leak"], Axis::new("Noise ratio", ""));
-        bars.series_with_interval("with", &[2.0, 4.0], &[1.5, 3.0], &[2.25, 6.0]);
+    fn each_series_is_a_group_of_bars_in_a_colour_of_its_own() {
+        let mut bars = Bars::new("Noise", ["friction", "leak"], Axis::new("Noise ratio", ""));
+        bars.series("without", &[9.0, 4.0]).series("with", &[2.0, f64::NAN]);
         let drawing = serde_json::to_value(bars.into_figure().drawing).expect("plain data");
-        assert_eq!(drawing["data"][0]["error_y"]["array"], json!([0.25, 2.0]));
-        assert_eq!(drawing["data"][0]["error_y"]["arrayminus"], json!([0.5, 1.0]));
-        assert_eq!(drawing["data"][0]["type"], "bar");
+        assert_eq!(drawing["layout"]["barmode"], "group");
+        let [without, with] = [&drawing["data"][0], &drawing["data"][1]];
+        assert_eq!((&without["type"], &without["y"]), (&json!("bar"), &json!([9.0, 4.0])));
+        assert_eq!(with["y"], json!([2.0, null]));
+        assert_ne!(without["marker"]["color"], with["marker"]["color"]);
     }
 }

@@ -8,6 +8,15 @@ use std::borrow::Cow;
 /// a gap in the line, stays one. Returned unchanged where that would not make it shorter.
 ///
 /// `x` and `y` pair up; surplus samples of the longer are ignored.
+///
+/// ```
+/// use oleo_report::extrema_by_bucket;
+/// let time: Vec<f64> = (0..10_000).map(f64::from).collect();
+/// let mut force = vec![0.0; 10_000];
+/// force[4321] = 900.0;
+/// let (shown, peak) = extrema_by_bucket(&time, &force, 100);
+/// assert!(shown.len() <= 600 && peak.contains(&900.0));
+/// ```
 pub fn extrema_by_bucket<'a>(x: &'a [f64], y: &'a [f64], buckets: usize) -> (Cow<'a, [f64]>, Cow<'a, [f64]>) {
     let count = x.len().min(y.len());
     let (x, y) = (&x[..count], &y[..count]);

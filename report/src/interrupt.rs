@@ -56,7 +56,7 @@ impl Graceful {
         Self(())
     }
 
-    /// Whether somebody asked to stop. Cheap enough for every tick.
+    /// Whether the user asked to stop. The call is cheap enough for every tick.
     pub fn requested(&self) -> bool {
         REQUESTED.load(Ordering::Relaxed)
     }

@@ -1,10 +1,10 @@
-//! What every command leaves behind, so that no command invents its own.
+//! The output of every command: folders of results, tables, and report pages.
 //!
 //! * [`OutputDirectory`]: files of a run are staged in a hidden folder and appear in `--out DIR` at once, or not at all.
 //! * [`Page`]: one self-contained `report.html` that opens offline: what was run, the outcome, figures that zoom.
 //! * [`Curves`], [`Field`], [`Bars`]: the kinds of figure; every [`Axis`] names its quantity and unit.
 //! * [`Table`]: the same rows on standard output and in the page.
-//! * [`Progress`]: a bar on a terminal for anything over a second, otherwise silence.
+//! * [`Progress`]: a progress bar on a terminal for runs of more than a second, and no output elsewhere.
 //!
 //! ```
 //! use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Table, Verdict};

@@ -20,45 +20,45 @@ pub enum OutputError {
     /// `--out` names something that is not a folder.
     #[error("{}: is not a folder; name another output folder", path.display())]
     NotAFolder {
-        /// As given.
+        /// The path as the user gave it.
         path: PathBuf,
     },
     /// The folder that would hold the destination is missing.
     #[error("{}: the folder {} does not exist; create it first", path.display(), parent.display())]
     NoParent {
-        /// Destination as given.
+        /// The output folder as the user gave it.
         path: PathBuf,
-        /// The missing folder.
+        /// The parent folder that does not exist.
         parent: PathBuf,
     },
-    /// The system refused.
+    /// The operating system refused an operation on a file.
     #[error("{}: cannot {action}: {source}; check permissions and free space", path.display())]
     Io {
-        /// What was attempted.
+        /// The operation that was attempted, such as "write".
         action: &'static str,
-        /// On which file.
+        /// The file of the operation.
         path: PathBuf,
-        /// The system's reason.
+        /// The error of the operating system.
         source: io::Error,
     },
     /// A result would replace what it was made from.
     #[error("{}: is an input of this command, and the result would replace it; name another output", path.display())]
     Input {
-        /// The input.
+        /// The input file that would be replaced.
         path: PathBuf,
     },
     /// A name that would leave the folder.
     #[error("{name}: not a name inside the output folder")]
     Name {
-        /// The name refused.
+        /// The file name that was refused.
         name: String,
     },
     /// A value that has no CSV or JSON form.
     #[error("{name}: {reason}")]
     Format {
-        /// The file.
+        /// The file that cannot be written.
         name: String,
-        /// Why.
+        /// Why it cannot be written.
         reason: String,
     },
 }
@@ -136,7 +136,7 @@ impl OutputDirectory {
         }
     }
 
-    /// Destination as given.
+    /// The output folder as the user gave it.
     pub fn destination(&self) -> &Path {
         &self.destination
     }
@@ -227,7 +227,7 @@ impl OutputDirectory {
         self.write(name, text)
     }
 
-    /// Writes `report.html`.
+    /// Writes the page as `report.html`.
     pub fn page(&mut self, page: &Page) -> Result<(), OutputError> {
         self.write("report.html", page.render())
     }

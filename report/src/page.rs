@@ -16,11 +16,11 @@ use crate::table::{Table, escape};
 /// How a run ended, in a word and a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Every check met.
+    /// All checks are met; shown in green.
     Pass,
-    /// Worth a look.
+    /// The result needs the reader's attention; shown in amber.
     Attention,
-    /// A check failed.
+    /// A check failed; shown in red.
     Fail,
 }
 
@@ -87,7 +87,7 @@ impl Page {
         self
     }
 
-    /// A paragraph.
+    /// Adds a paragraph of text.
     pub fn text(&mut self, text: &str) -> &mut Self {
         self.push(Item::Text(text.into()))
     }
@@ -292,7 +292,7 @@ mod tests {
         let html = example().render();
         assert_eq!(html.matches("id=\"library\"").count(), 1);
         assert!(html.len() < 2_500_000, "{} bytes", html.len());
-        // The library holds an address of icons for maps nobody draws here; the page itself has none.
+        // The library contains the address of icons for maps, which are not used here; the page itself contains no address.
         let own = html.replace(library(), "");
         assert!(!own.contains("http"), "nothing is fetched");
         // What a browser will unpack is plotly.js, whole, and nothing else.

@@ -1,4 +1,4 @@
-//! A run of over a second says how far it is; a run in a pipe or in CI says nothing.
+//! The progress of a run that takes more than a second. It is shown on a terminal only.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};

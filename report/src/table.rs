@@ -1,4 +1,4 @@
-//! The same rows for a person at a terminal and for the page, so the two cannot disagree.
+//! Tables for the terminal and for the page, made from the same rows.
 
 use std::fmt;
 
@@ -18,7 +18,7 @@ pub struct Column {
 }
 
 impl Column {
-    /// Words, aligned left.
+    /// A column of words, aligned left.
     pub fn text(title: &str) -> Self {
         Self {
             title: title.into(),
@@ -61,7 +61,7 @@ impl Cell {
         }
     }
 
-    /// Worth a look.
+    /// A cell that needs the reader's attention; shown in amber.
     pub fn warning(text: impl Into<String>) -> Self {
         Self {
             text: text.into(),
@@ -69,7 +69,7 @@ impl Cell {
         }
     }
 
-    /// A failed check.
+    /// A cell with a failed check; shown in red.
     pub fn bad(text: impl Into<String>) -> Self {
         Self {
             text: text.into(),
@@ -117,7 +117,7 @@ impl Table {
         self
     }
 
-    /// Number of rows.
+    /// Number of rows in the table.
     pub fn len(&self) -> usize {
         self.rows.len()
     }
@@ -175,6 +175,12 @@ impl fmt::Display for Table {
 }
 
 /// `value` with `digits` significant digits, plain between 1e-3 and 1e7 and with an exponent outside: "4.18", "1.50e9".
+///
+/// ```
+/// use oleo_report::significant;
+/// assert_eq!(significant(4.1789, 3), "4.18");
+/// assert_eq!(significant(1.5e9, 3), "1.50e9");
+/// ```
 pub fn significant(value: f64, digits: usize) -> String {
     let digits = digits.max(1);
     if !value.is_finite() {

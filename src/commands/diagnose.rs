@@ -1,4 +1,4 @@
-//! `oleo diagnose`: from recordings and a model to what the model left out.
+//! `oleo diagnose`: finds the physics that a model leaves out.
 
 mod self_test;
 
@@ -13,31 +13,32 @@ use oleo_report::{Cell, Column, OutputDirectory, Progress, Table};
 
 use crate::failure::Failure;
 
-/// Find the physics that a model left out: where, what, with which numbers, and how much better the model becomes.
+/// Find the physics that a model leaves out: its place, its law, its parameters, and how much the model improves with it.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Example:\n  oleo diagnose campaign --out found\n  oleo diagnose --self-test --campaigns 70 --out power\n\n\
-    A campaign is a folder with model.toml (what is believed) and recordings (*.csv). Written to DIR: report.json,\n\
-    report.html (opens offline) and model.toml, the improved model, which oleo predict, rig and hil run as it is.\n\
-    Exit status 0 whatever the verdict.\n\n\
-    To see whether the improved model predicts what it was not fitted to, keep something back:\n  \
+    after_help = "Examples:\n  oleo diagnose campaign --out found\n  oleo diagnose --self-test --campaigns 70 --out power\n\n\
+    A campaign is a folder with recordings (*.csv) and model.toml, the model of the specimen as you believe it to be. \
+    The command writes three files into DIR: report.json, report.html (opens offline) and model.toml, the improved model. \
+    oleo predict accepts the improved model unchanged; oleo rig and oleo hil accept it if the specimen is a strut. The exit \
+    status is 0 whatever the verdict.\n\n\
+    To test the improved model on data that it was not fitted to, hold part of the data out:\n  \
     oleo diagnose gas-spring --fit-until 0.5 --out found       fits the first half of every recording\n  \
-    oleo diagnose cylinder --hold-out 5bar --out found         fits all recordings but 5bar.csv\n\
-    The noise ratios of every model on both parts are printed and are in report.json under kept_back.\n\n\
-    The self-test keeps finished campaigns in DIR/trials.jsonl: an interrupted one goes on there. Another build of oleo\n\
-    wants another DIR."
+    oleo diagnose cylinder --hold-out 5bar --out found         fits all recordings except 5bar.csv\n\
+    The noise ratios of every model on both parts are printed, and are in report.json under kept_back.\n\n\
+    The self-test stores every finished campaign in DIR/trials.jsonl. Repeat an interrupted self-test with the same DIR, \
+    and it resumes there. After a new build of oleo, use a new DIR."
 )]
 pub struct Args {
-    /// Folder with model.toml and the recordings
+    /// Folder with model.toml and the recordings (*.csv)
     #[arg(value_name = "CAMPAIGN", required_unless_present = "self_test")]
     campaign: Option<PathBuf>,
-    /// Folder to write
+    /// Folder to which report.json, report.html and model.toml are written
     #[arg(long, value_name = "DIR", required_unless_present = "self_test")]
     out: Option<PathBuf>,
-    /// Fit only this first part of every recording (0.05 to 0.95), predict the rest
-    #[arg(long, value_name = "PART", value_parser = part)]
+    /// Fit only this fraction at the beginning of every recording (0.05 to 0.95), and predict the rest
+    #[arg(long, value_name = "FRACTION", value_parser = part)]
     fit_until: Option<f64>,
-    /// Recording (file name without .csv) to predict instead of fitting; may be repeated
+    /// Recording (file name without .csv) that is not fitted but predicted; may be repeated
     #[arg(long, value_name = "NAME")]
     hold_out: Vec<String>,
     #[command(flatten)]
@@ -47,7 +48,7 @@ pub struct Args {
 fn part(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(part) if (0.05..=0.95).contains(&part) => Ok(part),
-        _ => Err("give a part of the recording from 0.05 to 0.95, such as 0.5".into()),
+        _ => Err("give a fraction of the recording from 0.05 to 0.95, such as 0.5".into()),
     }
 }
 
@@ -87,9 +88,10 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let mut page = page::page(&campaign, &diagnosis, &args.command(folder, destination), runtime_s);
     if let Some(predictions) = &predictions {
         report["kept_back"] = predictions.json(&kept_back);
-        page.section("Prediction of what was not fitted");
+        page.section("Prediction of held-out data");
         page.text(
-            "Every model was fitted on the same part and simulated freely over all of it; 1 is perfect, and lower is better.",
+            "Noise ratios. Every model was fitted to the same part of the recordings and then simulated freely over all of them. \
+             A ratio of 1 means that the error is no larger than the sensor's noise; lower is better.",
         )
         .table(prediction_table(predictions));
     }
@@ -98,7 +100,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     out.write(MODEL_FILE, &diagnosis.model_toml)?;
     out.commit()?;
     let mut text = format!(
-        "{}: {} (held-out noise ratio {:.2} before, {:.2} after)\n",
+        "{}: {}. The held-out noise ratio is {:.2} for the recalibrated and {:.2} for the improved model.\n",
         campaign.name,
         diagnosis.verdict(),
         diagnosis.selection.calibrated_ratio,
@@ -131,12 +133,12 @@ impl Args {
     }
 }
 
-/// Noise ratios of every model on what was fitted and on what was kept back.
+/// Noise ratios of every model on the fitted and on the held-out part.
 fn prediction_table(predictions: &Predictions) -> Table {
     let mut columns = vec![Column::text("Model")];
     for channel in &predictions.channels {
         columns.push(Column::number(&format!("{channel}, fitted")));
-        columns.push(Column::number(&format!("{channel}, kept back")));
+        columns.push(Column::number(&format!("{channel}, held out")));
     }
     let mut table = Table::new(columns);
     for model in &predictions.models {

@@ -1,4 +1,4 @@
-//! `oleo drive`: the vehicle through a manoeuvre, with the ride model, the handling model or both.
+//! `oleo drive`: drives a vehicle through a manoeuvre with the ride model, the handling model or both.
 
 mod arguments;
 mod measures;

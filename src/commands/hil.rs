@@ -1,4 +1,4 @@
-//! `oleo hil`: reads what is to be run, lets `oleo_hil` run it, and writes the results.
+//! `oleo hil`: reads the options and the scenario, runs them with `oleo_hil`, and writes the results.
 
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -11,75 +11,97 @@ use oleo_hil::bus::BusAddress;
 use oleo_hil::metrics::Metrics;
 use oleo_hil::output::{self, Summary};
 use oleo_hil::record::command_hash;
-use oleo_hil::run::{self, ControllerOutcome, Outcome, Plant};
+use oleo_hil::run::{self, ControllerOutcome, Outcome};
 use oleo_hil::scenario::{self, Clock, Scenario};
 use oleo_hil::{page, sync::Role};
 use oleo_interface::tick::TICK_S;
+use oleo_plant_sim::course::{CourseSettings, ManoeuvreKind};
 use oleo_report::{Column, OutputDirectory, Progress, Table, interrupt::Graceful, significant};
 use strum::VariantNames;
 
+use super::course_arguments::{CourseArgs, option_failure};
 use crate::failure::Failure;
 
-/// Drive the vehicle with controller and plant talking only through CAN frames.
+/// Drive the vehicle with controller and plant communicating only through CAN frames.
 ///
-/// Without arguments it drives over 20 s of Belgian block at 60 km/h with the ride/handling strategy, in this process and as fast
-/// as the machine can.
+/// Without arguments the vehicle drives for 20 s over Belgian block at 60 km/h with the ride/handling strategy. Both nodes run in
+/// this process, as fast as the machine allows.
 #[derive(clap::Args)]
 #[command(after_help = "\
 Examples:
-  oleo hil --out belgian                                    the default scenario, with report.html
-  oleo hil --scenario bus-silence                           a built-in fault scenario (--list shows all)
-  oleo hil --road ../shared/roads/belgian_block.crg         on a measured surface
-  oleo hil --bus socketcan:vcan0                            over a real CAN interface
-  oleo hil --clock realtime --duration 5                    against the wall clock
-  oleo hil --node controller --bus socketcan:vcan0          two processes, in either order:
-  oleo hil --node plant --bus socketcan:vcan0 --out run
+  oleo hil --out belgian                                    run the default scenario and write report.html
+  oleo hil --scenario bus-silence                           run a built-in fault scenario (--list shows all)
+  oleo hil --road ../shared/roads/belgian_block.crg         drive over a measured road
+  oleo hil --scenario lane-change-on-belgian --out lane     change lanes in the middle of a rough road
+  oleo hil --manoeuvre lane-change-2 --driver hard --load laden --road flat
+  oleo hil --bus socketcan:vcan0                            send the frames over SocketCAN
+  oleo hil --clock realtime --duration 5                    run in real time
+  oleo hil --node controller --bus socketcan:vcan0          run the two nodes as two processes,
+  oleo hil --node plant --bus socketcan:vcan0 --out run     which may be started in either order
 
-Exit status: 0 all checks met; 1 a check failed or the plant was lost; 2 bad input.")]
+Exit status: 0 if all checks are met, 1 if a check failed or the controller lost the plant, 2 if an input was bad.")]
 pub struct Args {
-    /// Built-in scenario, or a scenario file
+    /// Name of a built-in scenario, or path of a scenario file
     #[arg(long, value_name = "FILE|NAME", default_value = "belgian")]
     scenario: String,
-    /// List the built-in scenarios and end
+    /// List the built-in scenarios and exit
     #[arg(long)]
     list: bool,
-    /// Bus that carries the frames: inproc, socketcan:IFACE, slcan:DEVICE or slcan:tcp:HOST:PORT
+    /// Bus that carries the frames: inproc (in memory), socketcan:IFACE, slcan:DEVICE or slcan:tcp:HOST:PORT [default: the
+    /// scenario's, which is inproc in all built-in scenarios]
     #[arg(long, value_name = "BUS")]
     bus: Option<String>,
-    /// How time passes: both nodes in step and as fast as the machine can, or against the wall clock
+    /// Clock: in lockstep both nodes wait for each other in every tick and run as fast as the machine allows; in real time each
+    /// tick takes 5 ms of the wall clock [default: the scenario's]
     #[arg(long, value_parser = by_name::<Clock>())]
     clock: Option<Clock>,
-    /// Built-in road (belgian, apg-left, iso-c, flat, ...) or a .crg or .csv file
+    /// Road: belgian, apg-left, apg-right, apg-both, iso-a .. iso-f, flat, or a .crg or .csv file [default: the scenario's]
     #[arg(long, value_name = "FILE|NAME")]
     road: Option<String>,
-    /// Forward speed, km/h
-    #[arg(long, value_name = "KM_H", allow_negative_numbers = true)]
+    /// Manoeuvre that is driven with the handling model and its driver [default: the scenario's; a scenario without a manoeuvre
+    /// drives straight ahead with the ride model]. A manoeuvre other than the scenario's uses none of the scenario's settings of its
+    /// own manoeuvre
+    #[arg(long, value_name = "NAME", value_parser = by_name::<ManoeuvreKind>())]
+    manoeuvre: Option<ManoeuvreKind>,
+    #[command(flatten)]
+    course: CourseArgs,
+    /// Forward speed, km/h; in a circle the speed at the end [default: the scenario's]
+    #[arg(
+        long,
+        visible_alias = "speed-km-h",
+        value_name = "KM_H",
+        allow_negative_numbers = true
+    )]
     speed: Option<f64>,
-    /// Simulated time, s
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    /// Simulated time, s [default: the scenario's]
+    #[arg(long, visible_alias = "duration-s", value_name = "S", allow_negative_numbers = true)]
     duration: Option<f64>,
-    /// How the controller decides the valves
+    /// Strategy by which the controller sets the valves [default: the scenario's]
     #[arg(long, value_name = "NAME", value_parser = by_name::<Strategy>())]
     strategy: Option<Strategy>,
-    /// How dampers are switched in ride mode
+    /// Rule by which the ride/handling strategy switches the dampers in ride mode [default: the scenario's]
     #[arg(long, value_name = "NAME", value_parser = by_name::<DamperPolicy>())]
     damper_policy: Option<DamperPolicy>,
-    /// Strut model, as oleo diagnose writes it [default: the scenario's]
+    /// Strut model, such as the model.toml that oleo diagnose writes [default: the scenario's]
     #[arg(long, value_name = "MODEL.toml")]
     strut: Option<String>,
-    /// Vehicle parameters [default: the scenario's]
+    /// File of vehicle parameters [default: the scenario's]
     #[arg(long, value_name = "VEHICLE.toml")]
     vehicle: Option<String>,
-    /// Seed of random roads and injected faults
+    /// Handling parameters [default: the scenario's]
+    #[arg(long, value_name = "HANDLING.toml")]
+    handling: Option<String>,
+    /// Seed of random roads and of injected faults [default: the scenario's]
     #[arg(long)]
     seed: Option<u64>,
-    /// Run only this node; the other node is another process on the same bus
+    /// Run only this node; the other node must run as another process on the same bus
     #[arg(long, value_parser = by_name::<Role>())]
     node: Option<Role>,
-    /// Threads for the two nodes, 1 or 2 (real time always takes 2)
+    /// Number of threads for the two nodes, 1 or 2 (real time always uses 2)
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=2))]
     threads: u8,
-    /// Folder for summary.json, timeseries.csv, candump.log, junit.xml and report.html
+    /// Folder to which summary.json, timeseries.csv, candump.log, junit.xml and report.html are written; without it only the
+    /// tables are printed
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -96,9 +118,15 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     // A folder that cannot be written to is refused before the run.
     let mut staged = args.out.as_ref().map(OutputDirectory::stage).transpose()?;
     if let Some(out) = &mut staged {
-        out.keep([&args.scenario, &scenario.road, &scenario.strut, &scenario.vehicle]);
+        out.keep([
+            &args.scenario,
+            &scenario.road,
+            &scenario.strut,
+            &scenario.vehicle,
+            &scenario.handling,
+        ]);
     }
-    let plant = Plant::build(&scenario)?;
+    let vehicle = run::vehicle(&scenario)?;
     let progress = Progress::new(&scenario.name, scenario.ticks.into());
     // In real time Ctrl-C ends the run, and what has been driven is reported.
     let graceful = (scenario.clock == Clock::RealTime).then(Graceful::begin);
@@ -107,8 +135,8 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         !graceful.as_ref().is_some_and(Graceful::requested)
     };
     let outcome = match args.node {
-        Some(_) => run::plant_alone(&scenario, plant, &mut watch)?,
-        None => run::both(&scenario, plant, args.threads.into(), &mut watch)?,
+        Some(_) => run::plant_alone(&scenario, vehicle, &mut watch)?,
+        None => run::both(&scenario, vehicle, args.threads.into(), &mut watch)?,
     };
     drop(progress);
     report(&scenario, &outcome, staged)
@@ -134,6 +162,8 @@ fn chosen(args: &Args) -> Result<Scenario, Failure> {
     own(&args.road, &mut chosen.road);
     own(&args.strut, &mut chosen.strut);
     own(&args.vehicle, &mut chosen.vehicle);
+    own(&args.handling, &mut chosen.handling);
+    chosen.load = args.course.load.unwrap_or(chosen.load);
     if let Some(bus) = &args.bus {
         chosen.bus = bus
             .parse::<BusAddress>()
@@ -151,7 +181,31 @@ fn chosen(args: &Args) -> Result<Scenario, Failure> {
     if let Some(seed) = args.seed {
         chosen.seed = seed;
     }
+    chosen.course = course(args, chosen.course.take())?;
+    if let Some(settings) = &chosen.course {
+        let manoeuvre = settings.manoeuvre(chosen.speed_m_s, Some(chosen.duration_s()));
+        manoeuvre.map_err(|invalid| option_failure(&invalid))?;
+    }
     Ok(chosen)
+}
+
+/// The manoeuvre with its settings, from the scenario's and the options.
+fn course(args: &Args, of_scenario: Option<CourseSettings>) -> Result<Option<CourseSettings>, Failure> {
+    let before = match args.manoeuvre {
+        Some(kind) => Some(match of_scenario {
+            Some(settings) if settings.kind == kind => settings,
+            _ => CourseSettings::new(kind),
+        }),
+        None => of_scenario,
+    };
+    match (before, args.course.first_of_manoeuvre()) {
+        (Some(settings), _) => Ok(Some(args.course.changed(settings))),
+        (None, None) => Ok(None),
+        (None, Some(option)) => Err(Failure::new(format!(
+            "{option}: the scenario {} has no manoeuvre, and the ride model drives straight ahead: add --manoeuvre straight or another",
+            args.scenario
+        ))),
+    }
 }
 
 /// Reads an enum of a library by the names that the library gives its variants.
@@ -220,7 +274,7 @@ fn controller(scenario: &Scenario, out: Option<PathBuf>) -> Result<ExitCode, Fai
     }
     if let Some(late) = &ended.lateness {
         let figures = format!("{} / {} / {}", late.p50_us, late.p99_us, late.max_us);
-        table.row(["late, median / p99 / worst, us".to_owned(), figures]);
+        table.row(["lateness, median / 99 % / largest, us".to_owned(), figures]);
         table.row(["overruns".to_owned(), late.overruns.to_string()]);
     }
     say(&table.to_string());
@@ -232,8 +286,8 @@ fn controller(scenario: &Scenario, out: Option<PathBuf>) -> Result<ExitCode, Fai
         return Ok(ExitCode::SUCCESS);
     };
     let answer = match taken {
-        Some(ticks) => format!("mode safe and all valves closed {ticks} ticks later"),
-        None => "it had not left start-up, all valves were closed".into(),
+        Some(ticks) => format!("the controller was in mode safe with all valves closed {ticks} ticks later"),
+        None => "the controller was still in mode start-up with all valves closed".into(),
     };
     let _ = writeln!(std::io::stderr(), "the plant fell silent after tick {last}: {answer}");
     Ok(ExitCode::FAILURE)

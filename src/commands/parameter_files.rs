@@ -7,7 +7,7 @@ use oleo_plant_sim::vehicle::VehicleParameters;
 
 use crate::failure::Failure;
 
-/// Reads what is given; the built-in defender110 stands for what is not.
+/// Reads the given files, and uses the built-in defender110 if a file is not given.
 pub fn parameters(
     vehicle: Option<&PathBuf>,
     handling: Option<&PathBuf>,

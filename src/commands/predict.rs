@@ -1,8 +1,8 @@
-//! `oleo predict`: what a model says the instruments should have read, from a recording's inputs alone.
+//! `oleo predict`: the readings that a model predicts from the inputs of a recording alone.
 //!
-//! Displacement and switching signals are the inputs of a strut. A gas spring and a cylinder need one more thing that no
-//! model of theirs holds: the gas spring its first pressure (how much gas there is), the cylinder its pressures (it has no
-//! accumulator to make them).
+//! The inputs of a strut are its displacement and its switching signals. A gas spring also takes its first recorded
+//! pressure, which says how much gas there is. A cylinder also takes its recorded pressures, because its model has no
+//! accumulator from which they would follow.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -16,26 +16,26 @@ use oleo_report::{Column, OutputDirectory, Table};
 
 use crate::failure::Failure;
 
-/// Simulate a recording's inputs with a model and write the recording's columns as predicted.
+/// Simulate the inputs of a recording with a model, and write the predicted columns.
 #[derive(clap::Args)]
 #[command(
     after_help = "Example:\n  oleo predict --model found/model.toml campaign/slow_hold.csv --out slow_hold.sim.csv\n\n\
-                  Prints the noise ratio of each channel that was recorded: RMS of recording minus prediction over the\n\
-                  model's stated sensor noise; 1 is perfect."
+                  The command prints the noise ratio of each recorded channel: the RMS of recording minus prediction, divided \
+                  by the sensor noise that the model states. A ratio of 1 means that only noise is left."
 )]
 pub struct Args {
-    /// The model (model.toml): two-stage hydropneumatic strut, gas spring or cylinder
+    /// Model file of a two-stage hydropneumatic strut, a gas spring or a cylinder
     #[arg(long, value_name = "MODEL.toml")]
     model: PathBuf,
-    /// The recording whose inputs are simulated
+    /// Recording whose inputs are simulated
     #[arg(value_name = "RECORDING.csv")]
     recording: PathBuf,
-    /// File to write
+    /// CSV file that is written, with the columns of the recording
     #[arg(long, value_name = "SIM.csv")]
     out: PathBuf,
 }
 
-/// A channel: its name, what was recorded, what is predicted, its stated noise.
+/// A channel: its name, recorded and predicted values, and the standard deviation of its noise.
 struct Channel {
     name: String,
     recorded: Option<Vec<f64>>,
@@ -43,7 +43,7 @@ struct Channel {
     noise: Option<f64>,
 }
 
-/// Samples to either side that a cylinder's motion is smoothed over, as in its diagnosis.
+/// Half-width in samples of the window over which a cylinder's motion is smoothed, as in its diagnosis.
 const CYLINDER_WINDOW: f64 = 5.0;
 
 /// Runs the command.
@@ -65,7 +65,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         _ => strut(&text, &model_file, source, &file)?,
     };
 
-    // In the order of a recording: time and displacement, what is predicted, the other inputs.
+    // The columns are in the order of a recording: time and displacement, predicted channels, other inputs.
     let (before, after) = inputs.split_at(2.min(inputs.len()));
     let mut columns: Vec<(&str, &[f64])> = before.iter().map(borrowed).collect();
     columns.extend(
@@ -84,7 +84,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Inputs by name, in the order of a recording, and the channels predicted.
+/// Inputs by name, in the order of a recording, and predicted channels.
 type Predicted = (Vec<(String, Vec<f64>)>, Vec<Channel>);
 
 fn strut(text: &str, model_file: &str, source: File, file: &str) -> Result<Predicted, Failure> {

@@ -1,4 +1,4 @@
-//! `oleo rig`: the report's test rig, with the simulated strut in it. One file a measurement in `rig/`.
+//! `oleo rig`: the simulated strut on the report's test rig. Each measurement has its own file in `rig/`.
 
 mod bulk_modulus;
 mod damping;
@@ -12,7 +12,7 @@ use std::process::ExitCode;
 
 use crate::failure::Failure;
 
-/// Measure the simulated strut as the prototype was measured on its test rig.
+/// Repeat the report's test-rig measurements on the simulated strut.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  oleo rig spring --out spring\n  oleo rig damping --strut model.toml --out damping\n  \

@@ -1,5 +1,6 @@
-//! `oleo study`: which springs and dampers suit the ride, which the handling (seed report 3.2).
+//! `oleo study`: which springs and dampers suit the ride, which suit the handling (report 3.2), and what the controller gains.
 
+mod control;
 mod drive;
 mod optimise;
 mod sweep;
@@ -8,11 +9,12 @@ use std::process::ExitCode;
 
 use crate::failure::Failure;
 
-/// Sweep or optimise gas volume and damping for ride and handling.
+/// Compare or optimise gas volumes and damper characteristics for ride and handling, or compare the controller with fixed settings.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  oleo study sweep --check --out study\n  oleo study optimise --ride 1 --roll 0 --out study\n\n\
-                  Finished runs are kept in DIR/runs.csv: an interrupted command goes on there, and both commands share it."
+    after_help = "Examples:\n  oleo study sweep --check --out study\n  oleo study optimise --ride 1 --roll 0 --out study\n  oleo study control --out control\n\n\
+                  Every finished run is stored in DIR/runs.csv (sweep and optimise) or DIR/drives.csv (control), and runs that are \
+                  found there are used. An interrupted command resumes when it is repeated with the same DIR."
 )]
 pub struct Args {
     #[command(subcommand)]
@@ -23,6 +25,7 @@ pub struct Args {
 enum Study {
     Sweep(sweep::Args),
     Optimise(optimise::Args),
+    Control(control::Args),
 }
 
 /// Runs the command.
@@ -30,5 +33,6 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     match args.study {
         Study::Sweep(args) => sweep::run(&args),
         Study::Optimise(args) => optimise::run(&args),
+        Study::Control(args) => control::run(&args),
     }
 }

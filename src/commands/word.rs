@@ -1,4 +1,4 @@
-//! Options that take one word of several, which a crate below the command line names.
+//! Reads options that accept one of several words, which a library crate defines.
 
 /// Reads one of the words of `T`; the complaint lists them.
 pub fn word<T>(text: &str) -> Result<T, String>

@@ -1,4 +1,5 @@
-//! One line for every message: its identifier, its period, its protection, and when its silence is a fault.
+//! The contract of every message: its identifier, period and protection, and the time-out after which its silence is a
+//! fault.
 //!
 //! Sender and receiver must agree on all of this. Node, plant end, bus load and the test of the database read this one table.
 //! Identifiers are priorities on CAN. The command has the highest, because it is what closes valves in time; then come the sensors
@@ -25,7 +26,7 @@ pub struct Contract {
     pub id: u16,
     /// Number of data bytes.
     pub length: usize,
-    /// Sending period, ms.
+    /// Period at which the message is sent, ms.
     pub period_ms: u32,
     /// Data identifiers of AUTOSAR profile 2, by counter. They are never sent but are part of the CRC, so that a frame under
     /// the wrong identifier fails its check.

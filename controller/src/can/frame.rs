@@ -14,6 +14,6 @@ pub const FRAME_BYTES: usize = 8;
 pub struct Frame {
     /// Standard identifier, 0 to 0x7FF.
     pub id: u16,
-    /// Protected payload.
+    /// Payload, 8 bytes, with the counter and the CRC of the end-to-end protection.
     pub data: [u8; FRAME_BYTES],
 }

@@ -1,4 +1,4 @@
-//! Signals to bits and back.
+//! Encodes signals into the bits of a frame and decodes them.
 //!
 //! A frame has 64 bits, of which the protection takes 12. The signals of every message fill the other 52 bits as one little-endian
 //! number, so that packing them is shifting a `u64`. Raw values that are reserved for "no value" are decoded to

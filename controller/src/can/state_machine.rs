@@ -31,7 +31,7 @@
 pub enum Period {
     /// One right frame in sequence.
     Ok,
-    /// No frame.
+    /// No frame was received in this tick.
     NoNewData,
     /// A frame that was there before.
     Repeated,
@@ -85,7 +85,7 @@ pub struct StateMachine {
 }
 
 impl StateMachine {
-    /// Has seen no period.
+    /// A state machine that has seen no period yet.
     pub const fn new() -> Self {
         Self {
             trust: Trust::NoData,

@@ -1,4 +1,4 @@
-//! The range in which a reading can be, and how fast it can change.
+//! The range of plausible readings, and the fastest plausible change.
 
 /// Range of a reading, both ends included, and its largest change within a tick, in the reading's unit.
 #[derive(Clone, Copy, Debug)]

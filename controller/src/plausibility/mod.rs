@@ -1,4 +1,4 @@
-//! Which readings may be used, and what replaces those that may not.
+//! Plausibility checks: which readings may be used, and what replaces the others.
 //!
 //! A wrong number is worse than none, because it opens valves. Each reading passes the checks below in this order. One that fails
 //! is replaced, and its corner is reported as *affected*; the mode machine then decides what the controller may still do.

@@ -1,4 +1,4 @@
-//! Readings that do not change while they must.
+//! Detects readings that do not change although they must.
 //!
 //! A stuck sensor stays in range and never jumps; only its neighbours show that it is stuck. In windows of 0.5 s the span
 //! (largest less smallest value) of every reading is compared with the spans of those that must move with it. On a smooth road

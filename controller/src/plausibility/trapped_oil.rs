@@ -1,4 +1,4 @@
-//! Whether valve 3 is as closed as it was told: behind a closed valve nothing moves p4.
+//! Detects a valve 3 that does not close: behind a closed valve nothing changes p4.
 //!
 //! Oil that is trapped has nowhere to go, so p4 stays where it was but for the gas' temperature and the sensor's noise. A valve that
 //! is stuck open, or that has been opened by somebody else, lets p4 follow p3. In windows of 0.5 s, of which each begins when the

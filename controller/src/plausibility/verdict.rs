@@ -1,4 +1,4 @@
-//! What the checks found wrong with the readings of one strut.
+//! The faults that the checks found in the readings of one strut.
 
 use oleo_interface::StrutPressures;
 

@@ -1,4 +1,4 @@
-//! The pressures of one strut against each other.
+//! Compares the pressures of one strut with each other.
 //!
 //! At rest p1, p2 and p3 are equal, and p4 too behind an open valve 3, because dampers and orifices cause a pressure drop only
 //! while oil moves. In motion the *means* over a second still agree, except for the asymmetry of the damper packs (rebound takes

@@ -1,4 +1,4 @@
-//! How well each channel is met, by the model as given and by the improved one.
+//! Noise ratios of each channel for the given and the improved model.
 
 use rayon::prelude::*;
 
@@ -10,9 +10,9 @@ use crate::vocabulary::Column;
 /// Noise ratios of one channel.
 #[derive(Debug, Clone)]
 pub struct ChannelFigures {
-    /// Its column.
+    /// Column of the recordings that the channel is.
     pub column: Column,
-    /// The model as given.
+    /// Noise ratio of the model as given.
     pub before: f64,
     /// The improved model, all recordings in the fit.
     pub after: f64,
@@ -29,7 +29,7 @@ pub struct ChannelFigures {
 pub struct Residuals {
     /// The model recalibrated within tolerance, no effect added.
     pub calibrated: Vec<Series>,
-    /// The improved model.
+    /// Residuals of the improved model, for each recording.
     pub improved: Vec<Series>,
 }
 
@@ -54,7 +54,7 @@ impl ChannelFigures {
     }
 }
 
-/// Residuals of every block from a simulation whose parameters that block's fold had no say in.
+/// Residuals of every block from a simulation with parameters that were fitted without the fold of that block.
 pub(super) fn held_out_residuals(problem: &LeastSquares<'_>, fit: &Fit) -> Result<Vec<Series>, DiagnoseError> {
     let folds: Vec<Vec<Series>> = (held_out(fit, problem).points.par_iter())
         .map(|point| problem.evaluation.residuals_at(point))

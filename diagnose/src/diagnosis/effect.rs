@@ -1,4 +1,4 @@
-//! Effects as they are reported: one entry a place, each with its own numbers.
+//! Effects as they are reported: one entry for each place, with the parameters that belong to it.
 
 use super::estimate::Estimate;
 use crate::confidence::Evidence;
@@ -13,9 +13,9 @@ const REMAINDER_CONFIDENCE: f64 = 0.6;
 /// An effect as reported.
 #[derive(Debug, Clone)]
 pub struct Effect {
-    /// Id of the vocabulary.
+    /// Id of the effect in the vocabulary.
     pub id: EffectId,
-    /// Where it acts.
+    /// Place where the effect acts.
     pub place: Place,
     /// What tells laws without a name apart; empty for everything else.
     pub label: String,
@@ -23,7 +23,7 @@ pub struct Effect {
     pub selected: Option<SelectedEffect>,
     /// Chance that it is there, at its place, 0.05 to 0.99.
     pub confidence: f64,
-    /// Its numbers.
+    /// Parameters of the effect with their intervals.
     pub parameters: Vec<Estimate>,
     /// The law without a name, where one was fitted.
     pub law: Option<serde_json::Value>,
@@ -41,7 +41,7 @@ impl Effect {
     }
 }
 
-/// The effects of the improved model, and what is left of a model that is believed to be complete.
+/// The effects of the improved model, and the remaining misfit if the model is stated to be complete.
 pub(super) fn effects(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Estimate]) -> Vec<Effect> {
     let mut out = modelled(problem, selection, estimates);
     let has_law = out.iter().any(|e| e.id == EffectId::Unlisted);

@@ -1,4 +1,4 @@
-//! Fitted numbers with their intervals.
+//! Fitted parameters with their confidence intervals.
 
 use crate::error::DiagnoseError;
 use crate::estimation::covariance::covariance;
@@ -14,7 +14,7 @@ const STRONG_CORRELATION: f64 = 0.9;
 pub struct Estimate {
     /// Key with unit, such as `bulk_modulus_Pa`.
     pub key: String,
-    /// Value in that unit.
+    /// Estimated value, in the unit of the key.
     pub value: f64,
     /// 95 % interval from blocks; an end is not finite where the recordings do not determine it.
     pub ci95: [f64; 2],
@@ -23,7 +23,7 @@ pub struct Estimate {
 /// A value of the calibration.
 #[derive(Debug, Clone)]
 pub struct CalibratedValue {
-    /// Deviation from nominal.
+    /// Estimated deviation from the nominal value.
     pub estimate: Estimate,
     /// Fraction of its tolerance that was used; a little more than 1 is possible.
     pub tolerance_used: f64,
@@ -32,7 +32,7 @@ pub struct CalibratedValue {
 /// Two estimates of which only a combination is well determined.
 #[derive(Debug, Clone)]
 pub struct Correlation {
-    /// Keys of both.
+    /// Keys of the two estimates.
     pub keys: [String; 2],
     /// Correlation coefficient, -1 to 1.
     pub coefficient: f64,
@@ -73,7 +73,7 @@ pub(super) fn calibration(problem: &LeastSquares<'_>, fit: &Fit, estimates: &[Es
         .collect()
 }
 
-/// Strongly correlated pairs.
+/// Pairs of estimates whose correlation exceeds [`STRONG_CORRELATION`].
 pub(super) fn correlations(problem: &LeastSquares<'_>, fit: &Fit) -> Vec<Correlation> {
     let parameters = fit.point.parameters(problem.specimen());
     let Some(c) = covariance(fit) else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! One campaign diagnosed: the outcome of the search, put into figures that a person or a program can judge.
+//! The diagnosis of a campaign: the result of the search as figures for readers and programs.
 
 mod channel_figures;
 mod effect;
@@ -26,15 +26,15 @@ pub use estimate::{CalibratedValue, Correlation, Estimate};
 #[strum(serialize_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// The model meets the recordings within its tolerances.
+    /// The model matches the recordings within its tolerances.
     Consistent,
-    /// Effects were found that the model lacks.
+    /// The model leaves out effects that were found.
     MissingPhysics,
-    /// The model does not meet the recordings, and no effect that was tried explains it.
+    /// The model does not match the recordings, and none of the effects that were tried explains it.
     Unexplained,
 }
 
-/// Everything found out about a campaign.
+/// The result of the diagnosis of a campaign.
 pub struct Diagnosis {
     /// The outcome of the search.
     pub selection: Selection,
@@ -44,25 +44,25 @@ pub struct Diagnosis {
     pub ambiguous: Vec<[EffectId; 2]>,
     /// What to record to separate them, or to isolate what is left.
     pub next_experiment: Option<String>,
-    /// Where the misfit is.
+    /// Places of the misfit, with time and condition.
     pub locations: Vec<Location>,
     /// Relations between measured neighbours, tested without simulation.
     pub relations: Vec<MeasuredRelation>,
-    /// What changing one relation of the model alone explains.
+    /// The part of the misfit that changing only one relation of the model explains, for each relation.
     pub changed_relations: Vec<ChangedRelation>,
-    /// How well each channel is met.
+    /// Noise ratios of each channel.
     pub channels: Vec<ChannelFigures>,
-    /// Values of the calibration.
+    /// Values that calibration re-estimated.
     pub calibration: Vec<CalibratedValue>,
     /// Strongly correlated pairs of estimates.
     pub correlations: Vec<Correlation>,
     /// Residuals of the calibrated and the improved model.
     pub residuals: Residuals,
-    /// The same held out: each block simulated with parameters that its fold had no say in.
+    /// Held-out residuals of both models: each block is simulated with parameters that were fitted without its fold.
     pub held_out: Residuals,
     /// Whether the held-out residuals of the improved model are noise, one entry a channel.
     pub whiteness: Vec<Whiteness>,
-    /// Number of recordings simulated.
+    /// Number of recordings that were simulated during the search.
     pub simulated: usize,
     /// The model file as given, in the form of the improved one.
     pub given_toml: String,

@@ -1,4 +1,4 @@
-//! The seal of a floating piston holds back pressure.
+//! Friction of a floating piston: its seal resists a pressure difference.
 
 use oleo_plant_sim::strut::{AccumulatorPistonFriction as Term, Equation, StrutModel, TermId};
 
@@ -22,7 +22,7 @@ impl Effect for AccumulatorPistonFriction {
     }
 
     fn meaning(&self) -> &'static str {
-        "the piston's seal holds back the pressure p_f, and gives way over the volume V_s"
+        "the seal of the piston resists up to the pressure difference p_f and deforms elastically over the volume V_s before it slides"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {

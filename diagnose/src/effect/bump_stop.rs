@@ -1,4 +1,4 @@
-//! A stop is touched near an end of travel.
+//! Contact with a stop near an end of travel.
 
 use oleo_plant_sim::strut::{BumpStop as Term, Equation, StrutModel, TermId};
 
@@ -28,7 +28,7 @@ impl Effect for BumpStop {
     }
 
     fn meaning(&self) -> &'static str {
-        "d is the travel beyond the clearance"
+        "the stop acts beyond its clearance; d is the travel beyond it"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {

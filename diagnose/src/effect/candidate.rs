@@ -3,31 +3,31 @@
 use crate::parameter::Parameter;
 use crate::vocabulary::{EffectId, Place, Site};
 
-/// A law or an instrument fault that the model may lack: a kind of element at a place.
+/// A candidate of the search: an effect at a place that the model may lack.
 #[derive(Debug, Clone)]
 pub struct Candidate {
-    /// Id of the vocabulary, `unlisted` for laws without a name.
+    /// Id of the effect in the vocabulary, `unlisted` for laws without a name.
     pub id: EffectId,
-    /// Where it acts.
+    /// Place where the candidate acts.
     pub place: Place,
-    /// What tells laws without a name apart, such as `force over speed`; empty for everything else.
+    /// Label that distinguishes laws without a name, such as `force over speed`; empty for all other effects.
     pub label: String,
-    /// Numbers to fit; none for an effect that is simply there or not.
+    /// Parameters to fit; none for an effect that is either present or absent.
     pub parameters: Vec<Parameter>,
-    /// Starting points, in values, tried beside the parameters' own.
+    /// Further starting points of the fit, as values of the parameters.
     pub starts: Vec<Vec<f64>>,
     /// Candidates of the same group exclude each other.
     pub group: Option<ExclusionGroup>,
-    /// Why the recordings cannot show it, where they cannot.
+    /// Why the recordings cannot show the candidate; `None` if they can.
     pub untestable: Option<String>,
 }
 
-/// Candidates of which a model can hold one: they stand in the place of one effect in different forms.
+/// A group of candidates of which a model can contain only one, because they are different forms of one effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ExclusionGroup(pub EffectId);
 
 impl Candidate {
-    /// An effect at a site of a specimen with the numbers to fit.
+    /// A candidate: an effect at a site of a specimen with the parameters to fit.
     #[must_use]
     pub fn new(id: EffectId, site: Site, parameters: Vec<Parameter>) -> Self {
         Self {
@@ -41,7 +41,7 @@ impl Candidate {
         }
     }
 
-    /// The same with a label.
+    /// The candidate with a label.
     #[must_use]
     pub fn labelled(self, label: &str) -> Self {
         Self {
@@ -50,13 +50,13 @@ impl Candidate {
         }
     }
 
-    /// The same with starting points beside the parameters' own.
+    /// The candidate with further starting points.
     #[must_use]
     pub fn starting_at(self, starts: Vec<Vec<f64>>) -> Self {
         Self { starts, ..self }
     }
 
-    /// The same in the group of what stands in the place of an effect.
+    /// The candidate in the exclusion group of an effect.
     #[must_use]
     pub fn in_place_of(self, id: EffectId) -> Self {
         Self {
@@ -65,7 +65,7 @@ impl Candidate {
         }
     }
 
-    /// The same with the reason why the recordings cannot show it, where there is one. Of several the last is told.
+    /// The candidate with a reason why the recordings cannot show it, if there is one. A later reason replaces an earlier one.
     #[must_use]
     pub fn testable_unless(self, reason: Option<String>) -> Self {
         Self {
@@ -74,33 +74,33 @@ impl Candidate {
         }
     }
 
-    /// True for a law that the vocabulary does not name.
+    /// Whether the candidate is a law without a name.
     #[must_use]
     pub fn is_unlisted(&self) -> bool {
         self.id == EffectId::Unlisted
     }
 
-    /// True for the fault of an instrument, which is judged before physics.
+    /// Whether the candidate is a sensor fault, which is judged before physics.
     #[must_use]
     pub const fn is_instrument_fault(&self) -> bool {
         self.id.is_instrument_fault()
     }
 
-    /// True if the two cannot be in one model: members of one group, and two faults of one instrument, which can stand in for
-    /// each other (a short lag is nearly a skew).
+    /// Whether the two cannot be in one model. This holds for members of one group, and for two faults of one sensor, which can
+    /// replace each other (a short lag is nearly a skew).
     #[must_use]
     pub fn excludes(&self, other: &Self) -> bool {
         (self.group.is_some() && self.group == other.group)
             || (self.is_instrument_fault() && other.is_instrument_fault() && self.place == other.place)
     }
 
-    /// True if these values leave the model as it is: an amount that starts at zero is zero.
+    /// Whether these values leave the model unchanged, because an amount that starts at zero is zero.
     #[must_use]
     pub fn absent_at(&self, values: &[f64]) -> bool {
         (self.parameters.iter().zip(values)).any(|(p, v)| p.start == 0.0 && *v == 0.0)
     }
 
-    /// Id, place and label in one text that no other candidate has.
+    /// Id, place and label as one text, which is unique among the candidates.
     #[must_use]
     pub fn name(&self) -> String {
         if self.label.is_empty() {
@@ -110,7 +110,7 @@ impl Candidate {
         }
     }
 
-    /// The place, with the label where there is one.
+    /// The place, with the label if there is one.
     #[must_use]
     pub fn place_and_label(&self) -> String {
         if self.label.is_empty() {

@@ -1,4 +1,4 @@
-//! Oil passes beside a damper pack.
+//! Leakage of oil past a damper pack.
 
 use oleo_plant_sim::strut::{DamperLeakage as Term, Equation, StrutModel, TermId};
 
@@ -17,11 +17,11 @@ impl Effect for DamperLeakage {
     }
 
     fn name(&self) -> &'static str {
-        "oil passing beside the damper pack"
+        "leakage past the damper pack"
     }
 
     fn meaning(&self) -> &'static str {
-        "a leak of flow coefficient c in parallel with the pack"
+        "oil leaks past the damper pack with the flow coefficient c"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -66,7 +66,7 @@ impl ActsOn<Strut> for DamperLeakage {
     fn experiment(&self) -> Experiment {
         Experiment {
             record: "sines of 25 mm at 0.05, 0.2 and 0.8 m/s, valves 1 and 2 closed, valve 3 open",
-            shows: "takes most from the damper at the lowest speed",
+            shows: "reduces the damping most at the lowest speed",
         }
     }
 }

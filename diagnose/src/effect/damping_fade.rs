@@ -1,4 +1,4 @@
-//! The dampers weaken as their oil warms.
+//! Loss of damping as the oil of the dampers warms.
 
 use oleo_plant_sim::strut::{DampingFade as Term, Equation, StrutModel, TermId};
 
@@ -22,11 +22,11 @@ impl Effect for DampingFade {
     }
 
     fn name(&self) -> &'static str {
-        "damping that fades with heat"
+        "loss of damping with temperature"
     }
 
     fn meaning(&self) -> &'static str {
-        "dampers weaken as their oil warms, E the energy that it holds, f the weakening for each joule"
+        "the dampers weaken as their oil warms; E is the energy stored in the oil, and f is the relative loss of damping per joule"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -88,8 +88,8 @@ impl ActsOn<Strut> for DampingFade {
 
     fn experiment(&self) -> Experiment {
         Experiment {
-            record: "sines of 25 mm at 0.8 m/s for 60 s, valves 1 and 2 closed, valve 3 open, the same again after 10 minutes of rest",
-            shows: "lets the drop across the damper fall from cycle to cycle and come back after the rest",
+            record: "sines of 25 mm at 0.8 m/s for 60 s, valves 1 and 2 closed, valve 3 open, and the same again after 10 minutes of rest",
+            shows: "lets the pressure drop across the damper fall from cycle to cycle and recover after the rest",
         }
     }
 }

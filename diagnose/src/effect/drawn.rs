@@ -1,4 +1,4 @@
-//! What a self-test draws of an effect that it conceals.
+//! The random draws with which a self-test conceals an effect.
 
 use crate::vocabulary::{Branch, Site};
 
@@ -41,11 +41,11 @@ impl Drawn {
 /// A concealed number, as the report should give it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrueNumber {
-    /// Where it acts.
+    /// Place where the effect acts.
     pub site: Site,
     /// Key with unit, empty for an effect without numbers.
     pub key: String,
-    /// Value.
+    /// True value, in the unit of the key.
     pub value: f64,
 }
 

@@ -21,7 +21,7 @@ impl Effect for EntrainedAir {
     }
 
     fn meaning(&self) -> &'static str {
-        "the bulk modulus falls at low pressure, a the volume fraction of air at atmospheric pressure, n its polytropic exponent, p absolute"
+        "the bulk modulus falls at low pressure; a is the volume fraction of air at atmospheric pressure, n is its polytropic exponent, and p is the absolute pressure"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -57,7 +57,7 @@ impl ActsOn<Strut> for EntrainedAir {
     fn experiment(&self) -> Experiment {
         Experiment {
             record: "a sawtooth from -80 mm to 60 mm at 5 mm/s, valve 3 closed, valves 1 and 2 open",
-            shows: "lets the oil give way below 1 MPa only",
+            shows: "makes the oil softer below 1 MPa only",
         }
     }
 }

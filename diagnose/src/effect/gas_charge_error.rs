@@ -21,7 +21,7 @@ impl Effect for GasChargeError {
     }
 
     fn meaning(&self) -> &'static str {
-        "e is the relative error: more or less gas than the model believes, beyond tolerance"
+        "the accumulator holds more or less gas than the model states, by more than its tolerance; e is the relative error"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -65,8 +65,8 @@ impl ActsOn<Strut> for GasChargeError {
 
     fn experiment(&self) -> Experiment {
         Experiment {
-            record: "a sawtooth of 60 mm at 5 mm/s, valve 1 open, once with valve 3 open and once closed",
-            shows: "makes the spring softer or stiffer by one factor over the whole stroke, whatever the speed",
+            record: "a sawtooth of 60 mm at 5 mm/s, valve 1 open, once with valve 3 open and once with it closed",
+            shows: "makes the spring softer or stiffer by one factor over the whole stroke, at any speed",
         }
     }
 }

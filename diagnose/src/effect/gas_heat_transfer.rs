@@ -75,8 +75,8 @@ impl ActsOn<Strut> for GasHeatTransfer {
 
     fn experiment(&self) -> Experiment {
         Experiment {
-            record: "steps of 50 mm at 0.3 m/s held for 30 s, valves 1 and 2 open, once with valve 3 open and once closed",
-            shows: "relaxes over seconds while nothing moves, and stays above the pressure at rest until it is cool",
+            record: "steps of 50 mm at 0.3 m/s held for 30 s, valves 1 and 2 open, once with valve 3 open and once with it closed",
+            shows: "lets the pressure fall over several seconds while nothing moves, until the gas is at the temperature of its surroundings",
         }
     }
 }

@@ -21,7 +21,7 @@ impl Effect for LineInertance {
     }
 
     fn meaning(&self) -> &'static str {
-        "a drop of inertance I in series with the pack that follows the change of the flow"
+        "the mass of the oil column causes a pressure drop in series with the damper pack, which is proportional to the rate of change of the flow; I is the inertance"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -55,8 +55,8 @@ impl ActsOn<Strut> for LineInertance {
 
     fn experiment(&self) -> Experiment {
         Experiment {
-            record: "sines of 5 mm at 0.1, 0.3 and 0.6 m/s, valves 1 and 2 open, valve 3 open",
-            shows: "adds a drop that leads the flow by a quarter of a period and grows with the square of the frequency",
+            record: "sines of 5 mm at 0.1, 0.3 and 0.6 m/s, all valves open",
+            shows: "adds a pressure drop that leads the flow by a quarter of a period and grows with the square of the frequency",
         }
     }
 }

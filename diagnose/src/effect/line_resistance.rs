@@ -21,7 +21,7 @@ impl Effect for LineResistance {
     }
 
     fn meaning(&self) -> &'static str {
-        "a drop of resistance R in series with the pack"
+        "viscous flow causes a pressure drop in series with the damper pack; R is the hydraulic resistance"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -65,8 +65,8 @@ impl ActsOn<Strut> for LineResistance {
 
     fn experiment(&self) -> Experiment {
         Experiment {
-            record: "sines of 25 mm at 0.05, 0.2 and 0.8 m/s, valves 1 and 2 open, valve 3 open",
-            shows: "adds a drop that is proportional to the speed, with the valves open too",
+            record: "sines of 25 mm at 0.05, 0.2 and 0.8 m/s, all valves open",
+            shows: "adds a pressure drop that is proportional to the speed, even with the valves open",
         }
     }
 }

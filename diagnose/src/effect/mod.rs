@@ -3,7 +3,7 @@
 //! Everything that `oleo diagnose` knows of one effect is in its file: its id and words, the candidates that the search
 //! tries (places, starts, ranges), how a candidate is put into a model, how it is concealed in a self-test, in which
 //! channels it shows, which relation of the model it changes, how it is reported, and what to record to tell it from its
-//! rivals. Search, localisation, self-test, page and terminal know the traits of [`contract`] and no effect.
+//! rivals. Search, localisation, self-test, page and terminal know the traits of `contract` and no effect.
 //!
 //! The equation and its source are not here: they come from plant-sim, where they stand beside the code that computes them.
 //!

@@ -24,7 +24,7 @@ impl Effect for MountCompliance {
     }
 
     fn meaning(&self) -> &'static str {
-        "the strut moves less than the actuator"
+        "the mount yields, so the strut moves less than the actuator"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -62,7 +62,7 @@ impl ActsOn<Strut> for MountCompliance {
     fn experiment(&self) -> Experiment {
         Experiment {
             record: "sines of 5 mm at 0.5 m/s with all valves closed, about the static position and about 60 mm of jounce",
-            shows: "gives way by the same travel for the same force at both positions",
+            shows: "yields by the same travel for the same force at both positions",
         }
     }
 }

@@ -24,7 +24,7 @@ impl Effect for OilCompressibility {
     }
 
     fn meaning(&self) -> &'static str {
-        "the oil column is a spring of bulk modulus beta between piston and dampers"
+        "the oil column between piston and dampers acts as a spring; beta is the bulk modulus"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -35,10 +35,10 @@ impl Effect for OilCompressibility {
         match rival {
             EffectId::MountCompliance => Some(
                 "sines of 5 mm at 0.5 m/s with all valves closed, once about the static position and once about 60 mm of jounce: \
-                 the mount stays as stiff, the oil column shortens",
+                 the mount has the same stiffness at both positions, the oil column is stiffer at the second",
             ),
             EffectId::EntrainedAir => Some(
-                "a sawtooth from -80 mm to 60 mm at 5 mm/s, valve 3 closed, valves 1 and 2 open: air shows below 1 MPa only",
+                "a sawtooth from -80 mm to 60 mm at 5 mm/s, valve 3 closed, valves 1 and 2 open: air has an effect below 1 MPa only",
             ),
             _ => None,
         }

@@ -20,7 +20,7 @@ impl Effect for RealGas {
     }
 
     fn meaning(&self) -> &'static str {
-        "the pressure departs from the ideal gas law as density grows"
+        "the pressure deviates from the ideal gas law as the density rises"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -63,7 +63,7 @@ impl ActsOn<Strut> for RealGas {
     fn experiment(&self) -> Experiment {
         Experiment {
             record: "a sawtooth over the whole travel at 5 mm/s up to 12 MPa, valve 3 closed, valve 1 open",
-            shows: "departs the more the higher the pressure is, whatever the speed",
+            shows: "deviates more at higher pressure, at any speed",
         }
     }
 }

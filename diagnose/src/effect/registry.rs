@@ -1,4 +1,4 @@
-//! From an id to its effect.
+//! Finds the effect of an id.
 
 use strum::VariantArray;
 

@@ -22,7 +22,7 @@ impl Effect for SealFriction {
     }
 
     fn meaning(&self) -> &'static str {
-        "the seal shears with the presliding stiffness k until it slides at the level g"
+        "the seal deforms elastically with the presliding stiffness k until it slides with the friction force g"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -36,12 +36,12 @@ impl Effect for SealFriction {
     fn told_from(&self, rival: EffectId) -> Option<&'static str> {
         match rival {
             EffectId::SideLoadFriction => Some(
-                "the same triangle of 10 mm at 5 mm/s about -60, 0 and 60 mm, all valves open: side-load friction follows the \
-                 force, the seal's does not",
+                "the same triangle of 10 mm at 5 mm/s about -60, 0 and 60 mm, all valves open: side-load friction grows with \
+                 the force, seal friction does not",
             ),
             EffectId::AccumulatorPistonFriction => Some(
-                "a triangle of 10 mm at 5 mm/s, all valves open, force, p1 and p2 recorded: the seal's hysteresis is in the \
-                 force only, the piston's in p1 and p2 too",
+                "a triangle of 10 mm at 5 mm/s, all valves open, force, p1 and p2 recorded: the hysteresis of the seal \
+                 is in the force only, that of the piston is also in p1 and p2",
             ),
             _ => None,
         }
@@ -85,7 +85,7 @@ impl ActsOn<Strut> for SealFriction {
     fn experiment(&self) -> Experiment {
         Experiment {
             record: "the same triangle of 10 mm at 5 mm/s about -60, 0 and 60 mm, all valves open, force and p1 recorded",
-            shows: "gives a hysteresis in the force only, as wide at each position",
+            shows: "gives a hysteresis in the force only, which has the same width at each position",
         }
     }
 }

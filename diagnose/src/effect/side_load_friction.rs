@@ -19,11 +19,11 @@ impl Effect for SideLoadFriction {
     }
 
     fn name(&self) -> &'static str {
-        "friction that grows with load"
+        "load-dependent friction"
     }
 
     fn meaning(&self) -> &'static str {
-        "what presses the seal or bends the rod makes it rub, the less the longer the guides overlap"
+        "the load that presses on the seal or bends the rod causes friction, which decreases as the overlap of the guides grows"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -65,7 +65,7 @@ impl ActsOn<Strut> for SideLoadFriction {
     fn experiment(&self) -> Experiment {
         Experiment {
             record: "the same triangle of 10 mm at 5 mm/s about -60, 0 and 60 mm, all valves open, force and p1 recorded",
-            shows: "gives a hysteresis in the force only, the wider the larger the force is",
+            shows: "gives a hysteresis in the force only, which is wider where the force is larger",
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What must hold for every effect, whichever is added.
+//! Tests that hold for every effect.
 
 use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, SmoothedMotion};
 use oleo_plant_sim::strut::{Effects, Equation, StrutModel, TermId};

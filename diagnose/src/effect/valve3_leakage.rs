@@ -1,4 +1,4 @@
-//! The closed valve 3 passes oil.
+//! Leakage of oil through the closed valve 3.
 
 use oleo_interface::Valve;
 use oleo_plant_sim::strut::{Equation, StrutModel, TermId, Valve3Leakage as Term};
@@ -25,7 +25,7 @@ impl Effect for Valve3Leakage {
     }
 
     fn meaning(&self) -> &'static str {
-        "a leak of flow coefficient c while the valve is closed"
+        "oil leaks through the closed valve with the flow coefficient c"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {

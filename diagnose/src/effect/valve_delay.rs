@@ -17,11 +17,11 @@ impl Effect for ValveDelay {
     }
 
     fn name(&self) -> &'static str {
-        "valve response that depends on pressure"
+        "pressure-dependent valve response time"
     }
 
     fn meaning(&self) -> &'static str {
-        "the response time in s, dP the pressure difference across the valve at the edge in MPa"
+        "the equation gives the response time in s; dP is the pressure difference across the valve at the switching edge in MPa"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -65,7 +65,7 @@ impl ActsOn<Strut> for ValveDelay {
     fn experiment(&self) -> Experiment {
         Experiment {
             record: "steps of each valve at pressure differences of 0.2, 2 and 6 MPa (30 mm at 0.02, 0.1 and 0.3 m/s before the edge), sampled at 1 kHz or faster",
-            shows: "shifts the response by a time that differs between the pressure differences",
+            shows: "delays the response by a time that depends on the pressure difference",
         }
     }
 }

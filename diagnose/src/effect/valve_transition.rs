@@ -20,7 +20,7 @@ impl Effect for ValveTransition {
     }
 
     fn meaning(&self) -> &'static str {
-        "the opening u is the straight line through 5 % at the initial delay and 95 % at the total response time, not a step"
+        "the valve opens gradually instead of in one step; the opening u is the straight line through 5 % at the initial delay and 95 % at the total response time"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -57,7 +57,7 @@ impl ActsOn<Strut> for ValveTransition {
     fn experiment(&self) -> Experiment {
         Experiment {
             record: "steps of each valve at pressure differences of 0.2, 2 and 6 MPa (30 mm at 0.02, 0.1 and 0.3 m/s before the edge), sampled at 1 kHz or faster",
-            shows: "spreads every pressure step over the time from the first to the last movement of the valve",
+            shows: "spreads every pressure step over the time in which the valve moves",
         }
     }
 }

@@ -6,6 +6,10 @@ use nalgebra::{DMatrix, DVector};
 const LEAST_CURVATURE: f64 = 1e-3;
 /// A coordinate at its limit is let go if it would gain more than this by coming back.
 const LEAST_PULL: f64 = 1e-6;
+/// Passes for each coordinate, after which the step is taken as it is: one meets its limit in a pass, and is let go in another.
+const PASSES_PER_COORDINATE: usize = 4;
+/// Passes besides, for few coordinates.
+const PASSES_BESIDES: usize = 10;
 
 /// The step `d` that minimises `d (H + damping) d - 2 g d` while `z + d` stays in its ranges.
 ///
@@ -36,7 +40,7 @@ pub fn bounded_step(
         .collect();
     let mut step = DVector::zeros(p);
     let mut fixed = vec![false; p];
-    for _ in 0..4 * p + 10 {
+    for _ in 0..PASSES_PER_COORDINATE * p + PASSES_BESIDES {
         let free: Vec<usize> = (0..p).filter(|&k| !fixed[k]).collect();
         let part = a.select_rows(&free).select_columns(&free);
         let gradient = g - &a * &step;

@@ -5,6 +5,12 @@ use nalgebra::{DMatrix, DVector};
 use super::fit::Fit;
 use super::normal_equations::sum;
 
+/// Added to each diagonal element, as a fraction of it and besides, against rounding: a coordinate of order one that the
+/// recordings determine has a curvature far above either.
+const AGAINST_ROUNDING: (f64, f64) = (1e-9, 1e-12);
+/// Smallest variance that is divided by.
+const LEAST_VARIANCE: f64 = 1e-300;
+
 /// Standard deviation of every coordinate; infinite where the recordings do not determine them.
 #[must_use]
 pub fn deviations(fit: &Fit) -> DVector<f64> {
@@ -25,7 +31,7 @@ pub fn covariance(fit: &Fit) -> Option<DMatrix<f64>> {
     let p = fit.prior.len();
     let (h, _) = sum(&fit.normals, &fit.prior, &fit.point.z);
     let mut damped = h.clone();
-    (0..p).for_each(|k| damped[(k, k)] += 1e-9 * h[(k, k)] + 1e-12);
+    (0..p).for_each(|k| damped[(k, k)] += AGAINST_ROUNDING.0 * h[(k, k)] + AGAINST_ROUNDING.1);
     let inverse = damped.cholesky()?.inverse();
     let mut scatter = DMatrix::zeros(p, p);
     for n in &fit.normals {
@@ -36,7 +42,7 @@ pub fn covariance(fit: &Fit) -> Option<DMatrix<f64>> {
     }
     let blocks = fit.normals.len() as f64;
     let robust = &inverse * scatter * &inverse * (blocks / (blocks - 1.0).max(1.0));
-    let scale = |k: usize| (inverse[(k, k)] / robust[(k, k)].max(1e-300)).max(1.0).sqrt();
+    let scale = |k: usize| (inverse[(k, k)] / robust[(k, k)].max(LEAST_VARIANCE)).max(1.0).sqrt();
     Some(DMatrix::from_fn(p, p, |i, j| robust[(i, j)] * scale(i) * scale(j)))
 }
 

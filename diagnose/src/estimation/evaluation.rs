@@ -9,7 +9,8 @@ use super::point::Point;
 use crate::error::DiagnoseError;
 use crate::specimen::{Hypothesis, Series, Specimen};
 
-/// Step of the numerical derivative, in `z`.
+/// Step of the numerical derivative, in `z`: small beside one, the scale of every coordinate, so that the model is nearly
+/// linear over it, and large enough that its effect stands out of the error of the simulation.
 const DERIVATIVE_STEP: f64 = 0.02;
 
 /// Simulations of one specimen, until the caller asks to stop.

@@ -20,8 +20,10 @@ const STEPS_PER_JACOBIAN: usize = 4;
 const DAMPINGS_TRIED: (usize, usize) = (6, 2);
 /// Damping of the first step, and the smallest.
 const DAMPING: (f64, f64) = (1e-4, 1e-9);
-/// A step that fails raises the damping by this factor, one that succeeds lowers it by the same.
-const DAMPING_FACTOR: f64 = 10.0;
+/// A step that fails raises the damping by this factor ...
+const DAMPING_UP: f64 = 10.0;
+/// ... and one that succeeds changes it by this one (Marquardt's).
+const DAMPING_DOWN: f64 = 0.1;
 /// The fit has converged when all steps with one Jacobian together gain less than this many times the tolerance.
 const TOLERANCES_PER_JACOBIAN: f64 = 3.0;
 
@@ -68,7 +70,7 @@ pub fn fit(problem: &LeastSquares<'_>, start: Point, effort: Effort) -> Result<F
             let tries = if step == 0 { DAMPINGS_TRIED.0 } else { DAMPINGS_TRIED.1 };
             for _ in 0..tries {
                 let Some(step) = bounded_step(&h, &g, damping, &point.z, &ranges) else {
-                    damping *= DAMPING_FACTOR;
+                    damping *= DAMPING_UP;
                     continue;
                 };
                 let mut trial = point.clone();
@@ -81,7 +83,7 @@ pub fn fit(problem: &LeastSquares<'_>, start: Point, effort: Effort) -> Result<F
                 let residuals = match evaluation.residuals_at(&trial) {
                     Ok(residuals) => residuals,
                     Err(DiagnoseError::Simulation { .. }) => {
-                        damping *= DAMPING_FACTOR;
+                        damping *= DAMPING_UP;
                         continue;
                     }
                     Err(other) => return Err(other),
@@ -93,10 +95,10 @@ pub fn fit(problem: &LeastSquares<'_>, start: Point, effort: Effort) -> Result<F
                         s.residual = residual;
                     }
                     normals = with_residuals(blocks, &normals, &sensitivities);
-                    damping = (damping * 0.1_f64).max(DAMPING.1);
+                    damping = (damping * DAMPING_DOWN).max(DAMPING.1);
                     break;
                 }
-                damping *= DAMPING_FACTOR;
+                damping *= DAMPING_UP;
             }
             if before_step - cost < effort.tolerance * cost {
                 break;

@@ -14,13 +14,20 @@ const MOST_CORNERS: usize = 40;
 const LEAST_SHARPNESS: f64 = 0.15;
 /// Fewest samples in a stretch.
 const LEAST_SAMPLES: usize = 24;
+/// Fewest samples of a recording, in stretches of the fewest samples: less holds no corner with its surroundings.
+const LEAST_STRETCHES: usize = 4;
+/// Half window over which the motion is smoothed for its acceleration, as a fraction of half a stretch: a bend stays sharp
+/// beside the stretch.
+const SMOOTHING: f64 = 0.2;
+/// What the best delay leaves of the effect must be below this fraction of the bend, or the corner is of something else.
+const MOST_LEFT: f64 = 0.05;
 /// A bend must stand out of the noise of the effect this many times.
 const LEAST_BEND: f64 = 8.0;
 
-/// One corner.
+/// A corner of a motion: a sharp start or stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
-    /// When, s.
+    /// Time of the corner, s.
     pub time_s: f64,
     /// By how much the effect is late, s.
     pub delay_s: f64,
@@ -48,7 +55,7 @@ struct Pair<'a> {
 #[must_use]
 pub fn corners(time_s: &[f64], cause: &[f64], effect: &[f64], noise: f64) -> Vec<Corner> {
     let n = time_s.len();
-    if n < 4 * LEAST_SAMPLES {
+    if n < LEAST_STRETCHES * LEAST_SAMPLES {
         return Vec::new();
     }
     let interval = (time_s[n - 1] - time_s[0]) / (n - 1) as f64;
@@ -57,7 +64,7 @@ pub fn corners(time_s: &[f64], cause: &[f64], effect: &[f64], noise: f64) -> Vec
     if 2 * half < LEAST_SAMPLES || n < 2 * reach + 2 {
         return Vec::new();
     }
-    let motion = oleo_plant_sim::specimen::smooth_motion(time_s, cause, 0.2 * HALF_STRETCH_S);
+    let motion = oleo_plant_sim::specimen::smooth_motion(time_s, cause, SMOOTHING * HALF_STRETCH_S);
     let mut sharpness: Vec<f64> = motion.acceleration_m_s2.iter().map(|a| a.abs()).collect();
     sharpness[..reach].fill(0.0);
     sharpness[n - reach..].fill(0.0);
@@ -131,8 +138,7 @@ impl Pair<'_> {
             .map(|cause| left(&cause[stretch.clone()]).0)
             .fold(f64::INFINITY, f64::min);
         let (remains, shift, slope) = best;
-        // What the best delay leaves must be a small part of the bend, or the corner is of something else.
-        (remains < 0.05 * total && shift.abs() < steps).then_some(Corner {
+        (remains < MOST_LEFT * total && shift.abs() < steps).then_some(Corner {
             time_s: self.time_s[at],
             delay_s: shift as f64 * self.interval,
             slope,
@@ -156,7 +162,7 @@ fn without_line(time_s: &[f64], series: &[f64]) -> Vec<f64> {
 /// Delays of enough corners to speak for the whole recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Clock {
-    /// Number of corners.
+    /// Number of corners that were evaluated.
     pub corners: usize,
     /// Smallest, median and largest delay, s; of ten corners and more the outermost tenth at either end is left out.
     pub delay_s: [f64; 3],
@@ -168,6 +174,12 @@ pub struct Clock {
 
 /// Fewest corners that speak for a recording.
 const LEAST_CORNERS: usize = 4;
+/// One corner of this many at either end is left out of the smallest and largest delay and slope: a few are misread.
+const CORNERS_PER_OUTLIER: usize = 10;
+/// A delay must be above this many sampling intervals to be called one: the median of corners is good to about one.
+const LEAST_DELAY_INTERVALS: f64 = 3.0;
+/// The delays of one late clock scatter by less than this fraction of their median.
+const MOST_SCATTER: f64 = 0.5;
 
 impl Clock {
     /// What corners say together; `None` of too few.
@@ -183,7 +195,7 @@ impl Clock {
         };
         let (delays, slopes) = (sorted(|c| c.delay_s), sorted(|c| c.slope));
         let n = corners.len();
-        let edge = n / 10;
+        let edge = n / CORNERS_PER_OUTLIER;
         Some(Self {
             corners: n,
             delay_s: [delays[edge], delays[n / 2], delays[n - 1 - edge]],
@@ -196,7 +208,7 @@ impl Clock {
     #[must_use]
     pub fn is_late(&self, interval_s: f64) -> bool {
         let [low, middle, high] = self.delay_s;
-        middle.abs() > 3.0 * interval_s && high - low < 0.5 * middle.abs()
+        middle.abs() > LEAST_DELAY_INTERVALS * interval_s && high - low < MOST_SCATTER * middle.abs()
     }
 }
 

@@ -1,4 +1,4 @@
-//! How far and how long the recordings of a specimen go.
+//! Ranges and durations of the recordings of a specimen.
 
 use crate::recording::Recording;
 
@@ -32,7 +32,7 @@ impl Extent {
     }
 }
 
-/// Largest less smallest value.
+/// Largest minus smallest value.
 #[must_use]
 pub fn spread(values: &[f64]) -> f64 {
     let (low, high) = range(values);

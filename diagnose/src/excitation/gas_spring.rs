@@ -27,7 +27,7 @@ impl GasSpring {
             extent,
             clocks,
             still: still.then(|| {
-                "the pressure moves by less than eight times its noise; record strokes of a tenth of the volume"
+                "the pressure changes by less than eight times its noise; record strokes of a tenth of the volume"
                     .to_owned()
             }),
         }

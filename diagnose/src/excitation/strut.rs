@@ -6,10 +6,15 @@ use crate::vocabulary::Branch;
 /// Effects on a flow need a pressure drop of this size to be seen, Pa.
 const LEAST_DROP_PA: f64 = 1e5;
 
+/// A displacement or a pressure difference of this many times the noise is more than noise.
+const BEYOND_NOISE: f64 = 10.0;
+/// The displacement's noise is taken to be at least this, m: a recording of a perfect sensor may still be rounded.
+const LEAST_NOISE_M: f64 = 1e-6;
+
 /// Extremes and events over all recordings of a strut.
 #[derive(Debug, Clone, Default)]
 pub struct Strut {
-    /// Displacement range, m.
+    /// Smallest and largest displacement in all recordings, m.
     pub displacement_m: (f64, f64),
     /// Largest departure from the first value of each channel: force, N, and p1 to p4, Pa.
     pub departure: [f64; 5],
@@ -19,7 +24,7 @@ pub struct Strut {
     pub valve3_holding_s: f64,
     /// Largest pressure drops p1-p2, p1-p3, Pa.
     pub drop_pa: [f64; 2],
-    /// Longest recording, s.
+    /// Duration of the longest recording, s.
     pub duration_s: f64,
     /// Shortest sampling interval, s.
     pub interval_s: f64,
@@ -41,7 +46,7 @@ impl Strut {
             let first = r.columns[0][0];
             for &x in &r.columns[0] {
                 e.displacement_m = (e.displacement_m.0.min(x), e.displacement_m.1.max(x));
-                e.moves |= (x - first).abs() > 10.0 * displacement_noise.max(1e-6);
+                e.moves |= (x - first).abs() > BEYOND_NOISE * displacement_noise.max(LEAST_NOISE_M);
             }
             for c in 0..5 {
                 let rest = r.columns[1 + c][0];
@@ -53,7 +58,7 @@ impl Strut {
                 e.edges[v] += r.columns[6 + v].windows(2).filter(|w| w[0] != w[1]).count();
             }
             let interval = r.interval_s();
-            let apart = 10.0 * noise[3].max(noise[4]);
+            let apart = BEYOND_NOISE * noise[3].max(noise[4]);
             for k in 0..r.len() {
                 let p = |c: usize| r.columns[1 + c][k];
                 e.drop_pa[0] = e.drop_pa[0].max((p(1) - p(2)).abs());
@@ -71,7 +76,7 @@ impl Strut {
     /// Why nothing can be tested, where the strut does not move.
     #[must_use]
     pub fn still(&self) -> Option<String> {
-        (!self.moves).then(|| "the strut does not move; record moves of at least 10 mm".to_owned())
+        (!self.moves).then(|| "the strut does not move; record strokes of at least 10 mm".to_owned())
     }
 
     /// Why the timing of the valves cannot be tested, where none is switched.
@@ -87,7 +92,8 @@ impl Strut {
         let path = branch.number();
         (self.drop_pa[path - 1] < LEAST_DROP_PA).then(|| {
             format!(
-                "the drop across damper {path} never reaches 0.1 MPa; record sines above 0.2 m/s with valve {path} closed"
+                "the drop across damper {path} never reaches {} MPa; record sines above 0.2 m/s with valve {path} closed",
+                LEAST_DROP_PA / 1e6
             )
         })
     }

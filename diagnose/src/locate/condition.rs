@@ -1,4 +1,5 @@
-//! Under which condition a misfit appears: the stretch of a state in which it concentrates, and the state it follows.
+//! The condition in which a misfit appears: the range of a state in which it concentrates, and the state with which it
+//! varies.
 //!
 //! Two figures, both free of any model of the missing physics. *Region*: of all stretches of a state the one with the
 //! largest excess of misfit over samples that begins or ends at an end of the state's range: above a pressure, near zero
@@ -22,11 +23,11 @@ const LEAST_FOLLOWING: f64 = 0.5;
 /// The stretch of a state in which the misfit concentrates.
 #[derive(Debug, Clone)]
 pub struct Region {
-    /// The state.
+    /// State whose range it is.
     pub state: State,
-    /// From.
+    /// Lower end of the range, in the state's unit.
     pub from: f64,
-    /// To.
+    /// Upper end of the range, in the state's unit.
     pub to: f64,
     /// Part of the misfit in it.
     pub share_of_misfit: f64,
@@ -39,7 +40,7 @@ pub struct Region {
 /// Region, followed state and both in words.
 #[derive(Debug, Clone, Default)]
 pub struct Condition {
-    /// In words with figures.
+    /// The condition in words, with its figures.
     pub text: String,
     /// True if it decays while nothing moves.
     pub decays: bool,
@@ -103,7 +104,7 @@ impl Region {
             (State::Displacement, (true, false)) if self.from < 0.0 => {
                 format!("near the end of travel in rebound, below {to}")
             }
-            (State::TimeSinceSwitching, (true, _)) => format!("at a switching edge, up to {to} after it"),
+            (State::TimeSinceSwitching, (true, _)) => format!("up to {to} after a switching edge"),
             (State::SpeedMagnitude, (false, true)) => format!("at speeds above {from}"),
             (State::SpeedMagnitude, (true, _)) => format!("near zero speed, up to {to}"),
             (_, (true, true)) => format!("everywhere in {quantity}"),
@@ -121,7 +122,7 @@ impl Region {
 
 fn follow(state: State, part: f64) -> String {
     format!(
-        "follows {} (explains {:.0} % of it)",
+        "varies with {}, which explains {:.0} % of it",
         state.quantity_and_unit().0,
         100.0 * part
     )
@@ -262,7 +263,7 @@ mod tests {
         let residual: Vec<f64> = v.iter().map(|v| 20.0 * v.signum()).collect();
         let c = condition(&x, &v, &residual);
         assert!(c.region.is_none(), "{:?}", c.region);
-        assert!(c.text.contains("follows direction of travel"), "{}", c.text);
+        assert!(c.text.contains("varies with direction of travel"), "{}", c.text);
         assert!(c.follows.is_some_and(|f| f.1 > 0.99));
     }
 

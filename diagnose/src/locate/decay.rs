@@ -1,4 +1,4 @@
-//! A misfit that decays while nothing moves: the mark of heat, of a leak, of a slow instrument.
+//! A misfit that decays while nothing moves, which is typical of heat transfer, a leak or a slow sensor.
 
 /// Shortest hold looked at, in samples.
 const LEAST_SAMPLES: usize = 40;
@@ -14,7 +14,7 @@ const STILL: f64 = 0.01;
 pub struct Decay {
     /// First and last sample of the hold.
     pub samples: (usize, usize),
-    /// Time constant, s.
+    /// Time constant of the decay, s.
     pub time_constant_s: f64,
     /// Size at the beginning, in units of noise.
     pub size: f64,

@@ -1,4 +1,4 @@
-//! Where the misfit is: in which recording, when, under which condition; and which measured relation breaks.
+//! Locates the misfit: the recording, the time, the condition, and the relation that does not hold.
 
 pub mod condition;
 pub mod decay;
@@ -15,35 +15,35 @@ use crate::vocabulary::{Column, Place, Site, State};
 use condition::Condition;
 pub use relations::{ChangedRelation, relations_changed_alone};
 
-/// A place with the misfit that belongs to it.
+/// A place with the misfit that is caused there.
 #[derive(Debug, Clone)]
 pub struct Location {
-    /// The place.
+    /// Place where the effect acts.
     pub place: Place,
-    /// Part of the excess misfit of the calibrated model that disappears with the effect found there.
+    /// Fraction of the calibrated model's misfit beyond noise that disappears with the effect at this place.
     pub share_of_excess: f64,
-    /// Recording in which it shows most.
+    /// Index of the recording in which the misfit is largest.
     pub recording: usize,
-    /// When, s.
+    /// Start and end of the interval with the most misfit, s.
     pub t_s: [f64; 2],
-    /// Under which condition.
+    /// Condition in which the misfit occurs, over all recordings.
     pub condition: Condition,
-    /// Channel in which it shows most.
+    /// Index of the channel in which the misfit is largest.
     pub channel: usize,
-    /// Effect that belongs to it; `None` for a misfit that nothing explains.
+    /// Index of the candidate that explains the misfit; `None` for an unexplained misfit.
     pub candidate: Option<usize>,
     /// Residuals, in units of noise, of the best model without that effect: all recordings.
     pub without: Arc<Vec<Series>>,
 }
 
-/// A misfit below this many times the noise variance per sample is not worth a location.
+/// A misfit below this many times the noise variance per sample gets no location.
 const LEAST_EXCESS: f64 = 0.03;
 /// A decay of this part of the largest misfit is what the misfit is about.
 const LEAST_DECAY: f64 = 0.25;
 /// A region that holds this much more of the misfit than of the samples says more than a decay.
 const SHARP: f64 = 0.8;
 
-/// Locations of every effect found, and of what is left unexplained; the largest share first.
+/// Locations of every effect that was found and of the unexplained misfit, with the largest share first.
 ///
 /// # Errors
 /// As the fit without an effect.
@@ -206,7 +206,7 @@ fn strongest(
         condition.decays = true;
         let sharp = (condition.region.as_ref()).is_some_and(|region| region.concentration() > SHARP);
         if sharp {
-            condition.text += &format!("; decays with {constant} s while nothing moves");
+            condition.text += &format!("; decays with a time constant of {constant} s while nothing moves");
         } else {
             let time = specimen.time_s(r);
             recording = r;
@@ -215,7 +215,7 @@ fn strongest(
                 .region
                 .as_ref()
                 .map_or(String::new(), |r| format!("; {}", r.words()));
-            condition.text = format!("after a step, decays with {constant} s{region}");
+            condition.text = format!("after a step, decays with a time constant of {constant} s{region}");
         }
     }
     Location {

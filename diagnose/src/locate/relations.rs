@@ -7,11 +7,11 @@ use crate::specimen::Specimen;
 /// What changing one relation of the model, and nothing else, can explain.
 #[derive(Debug, Clone)]
 pub struct ChangedRelation {
-    /// The relation.
+    /// The relation of the model, in words.
     pub relation: String,
     /// Part of the held-out misfit beyond noise that disappears, at most 1.
     pub share_of_excess: f64,
-    /// Candidate that does it.
+    /// Index of the best candidate that changes the relation.
     pub candidate: usize,
 }
 

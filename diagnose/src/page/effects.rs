@@ -1,5 +1,6 @@
-//! "What": the effects with equation and source, the rivals tested in their place, everything that was rejected.
+//! The section "What": the effects with equation and source, the rivals tested in their place, and all rejected candidates.
 
+use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
 use oleo_report::{Axis, Cell, Column, Curves, Page, Style, Table, significant};
 
 use super::{name, words};
@@ -12,20 +13,21 @@ pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     page.section("What");
     let found = diagnosis.effects.iter().any(|e| e.selected.is_some());
     if !found {
-        page.text("No effect improves held-out stretches by more than chance and the smoothing of the inputs do.");
+        page.text("No effect improves the prediction of held-out stretches by more than chance and the smoothing of the inputs can explain.");
     }
     for e in &diagnosis.effects {
         effect(page, campaign, e);
     }
     if found {
         page.text(
-            "The strongest rival of each effect was fitted in its place, everything else fitted again with it, and judged on \
-             the same held-out stretches. Lead: by how much the effect fits better, in standard errors over the stretches.",
+            "For each effect, its strongest rival was fitted in its place, together with all other parameters, and judged on \
+             the same held-out stretches. The lead says how much better the effect fits than its rival, in standard errors \
+             over the stretches.",
         )
         .table(rivals(all, diagnosis));
     }
     let rejected = rejected(all, diagnosis);
-    let summary = format!("All {} rejected candidates, with figures", rejected.len());
+    let summary = format!("All {} rejected candidates with their noise ratios", rejected.len());
     page.details(&summary, rejected);
 }
 
@@ -34,8 +36,9 @@ fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
     let named = known.named(kind, &e.label);
     if e.selected.is_none() {
         page.text(&format!(
-            "{} {}: a misfit that can be predicted from the inputs is left, but no law that was tried improves unseen stretches enough to be named.",
-            named,
+            "{} {}: part of the misfit can be predicted from the inputs, but none of the laws that were tried improves the \
+             prediction of held-out stretches enough to be reported.",
+            words::sentence(named),
             words::at(&e.place)
         ));
         return;
@@ -47,10 +50,13 @@ fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
         name(e),
         known.equation_in(kind, &e.label).map_or_else(
             || ".".to_owned(),
-            |equation| format!(": {}; {}. Source: {}.", equation.text, known.meaning(), equation.source)
+            |equation| {
+                let meaning = words::sentence(known.meaning());
+                format!(". Equation: {}. {meaning}. Source: {}.", equation.text, equation.source)
+            }
         ),
     ));
-    if !e.parameters.is_empty() && e.law.as_ref().is_none_or(|l| l.get("argument").is_none()) {
+    if !e.parameters.is_empty() && has_readable_numbers(e) {
         let mut table = Table::new([
             Column::text("Parameter"),
             Column::number("Value"),
@@ -58,7 +64,7 @@ fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
             Column::text("Unit"),
         ]);
         for p in &e.parameters {
-            let (name, unit) = words::quantity(&p.key);
+            let (name, unit) = words::parameter(&p.key);
             let (value, interval) = words::value_and_interval(p.value, p.ci95);
             let name = match known.symbol(&p.key) {
                 None | Some("") => name,
@@ -68,55 +74,72 @@ fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
         }
         page.table(table);
     }
-    if let Some(figure) = e.law.as_ref().and_then(|law| tabulated(e, law)) {
-        page.figure(figure);
+    if let Some(law) = law(e) {
+        page.figure(tabulated(e, &law));
     }
 }
 
-/// A law given as a table, drawn.
-fn tabulated(effect: &Effect, law: &serde_json::Value) -> Option<Curves> {
-    let series = |key: &str| -> Option<Vec<f64>> {
-        law.get(key)?
-            .as_array()?
-            .iter()
-            .map(serde_json::Value::as_f64)
-            .collect()
-    };
-    let (argument, value) = (series("argument")?, series("value")?);
-    let depends_on = law.get("depends_on")?.as_str()?.replace('_', " ");
-    let unit = |quantity: &str| match quantity {
-        "displacement" => "m",
-        "speed" => "m/s",
-        "p1" | "pressure drop" | "drop" => "Pa",
-        "flow" => "m3/s",
-        "force" => "N",
-        "volume" => "m3",
-        _ => "",
-    };
-    // Labels read "force over displacement", "series drop over flow, path 1", "flow beside pack 1 over ...".
-    let given = ["force", "volume", "drop", "flow"].into_iter().find(|g| {
-        effect
-            .label
-            .split(" over ")
-            .next()
-            .is_some_and(|first| first.contains(g))
-    })?;
+/// The law of an effect that was fitted as a table.
+pub(super) fn law(effect: &Effect) -> Option<UnlistedLaw> {
+    serde_json::from_value(effect.law.clone()?).ok()
+}
+
+/// Whether the numbers of an effect mean something on their own. Those of a law of a fixed shape do (the width of a groove);
+/// the increments of a free table, one for each interval, are only drawn.
+pub(super) fn has_readable_numbers(effect: &Effect) -> bool {
+    law(effect).is_none_or(|law| effect.parameters.len() + 1 < law.argument.len())
+}
+
+/// A law that was fitted as a table, drawn.
+fn tabulated(effect: &Effect, law: &UnlistedLaw) -> Curves {
+    let (argument, argument_unit) = argument(law.depends_on);
+    let (value, value_unit) = value(law);
     let mut curves = Curves::new(
         &format!("The fitted law: {}", effect.label),
-        Axis::new(&depends_on, unit(&depends_on)),
+        Axis::new(argument, argument_unit),
     );
-    curves.caption("Linear between the points; zero at rest.");
+    curves.caption("The law is linear between the points.");
     curves
-        .panel(Axis::new(given, unit(given)))
-        .series(Style::LineAndPoints, "fitted", &argument, &value);
-    Some(curves)
+        .panel(Axis::new(value, value_unit))
+        .series(Style::LineAndPoints, "fitted", &law.argument, &law.value);
+    curves
+}
+
+/// What a law depends on, and its unit.
+fn argument(depends_on: LawArgument) -> (&'static str, &'static str) {
+    match depends_on {
+        LawArgument::Displacement => ("displacement", "m"),
+        LawArgument::Speed => ("speed", "m/s"),
+        LawArgument::P1 => ("p1", "Pa"),
+        LawArgument::Flow => ("flow", "m3/s"),
+        LawArgument::PressureDrop => ("pressure drop", "Pa"),
+        LawArgument::RelativeVolume => ("gas volume over static gas volume", ""),
+    }
+}
+
+/// What the value of a law is at its place, and its unit.
+fn value(law: &UnlistedLaw) -> (&'static str, &'static str) {
+    match law.place {
+        LawPlace::MainSeal => ("force", "N"),
+        LawPlace::MainSealFriction => ("friction force", "N"),
+        LawPlace::MainChamber => ("volume", "m3"),
+        LawPlace::MainChamberLoss => ("flow out of the chamber", "m3/s"),
+        LawPlace::Path1 | LawPlace::Path2 => ("pressure drop", "Pa"),
+        LawPlace::BesidePack1 | LawPlace::BesidePack2 if law.depends_on == LawArgument::Displacement => {
+            ("flow coefficient", "m3/s/sqrt(Pa)")
+        }
+        LawPlace::BesidePack1 | LawPlace::BesidePack2 => ("flow", "m3/s"),
+        LawPlace::Pack1 | LawPlace::Pack2 => ("factor on the pressure drop", ""),
+        LawPlace::Valve1 | LawPlace::Valve2 | LawPlace::Valve3 | LawPlace::Valves => ("factor on the flow", ""),
+        LawPlace::Accumulator1 | LawPlace::Accumulator2 => ("factor on the gas pressure", ""),
+    }
 }
 
 fn rivals(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
     let mut table = Table::new([
         Column::text("Effect"),
-        Column::number("Noise ratio without"),
-        Column::number("with it"),
+        Column::number("Noise ratio without it"),
+        Column::number("Noise ratio with it"),
         Column::text("Strongest rival in its place"),
         Column::number("Noise ratio with the rival"),
         Column::number("Lead, standard errors"),
@@ -139,14 +162,14 @@ fn rivals(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
                     format!("{ratio:.2}").into(),
                     significant(lead / error.max(1.0), 2).into(),
                     if rival.ambiguous {
-                        Cell::warning("cannot be told apart")
+                        Cell::warning("cannot be distinguished")
                     } else {
                         Cell::good("rival rejected")
                     },
                 ]);
             }
             None => row.extend([
-                "none could be fitted".into(),
+                "no rival could be fitted".into(),
                 "-".into(),
                 "-".into(),
                 Cell::good("no rival"),
@@ -165,19 +188,19 @@ fn rejected(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
         .collect();
     scores.sort_by(|a, b| a.alone.total_cmp(&b.alone));
     let mut table = Table::new([
-        Column::text("Rejected"),
+        Column::text("Rejected candidate"),
         Column::text("Place"),
-        Column::number("Held-out noise ratio alone"),
-        Column::number("added to the model found"),
-        Column::text("Because"),
+        Column::number("Held-out noise ratio with it alone"),
+        Column::number("Held-out noise ratio with it added to the improved model"),
+        Column::text("Reason"),
     ]);
     for t in scores {
         let c = &all[t.candidate];
         let because = match t.added {
-            None => "excludes, or is excluded by, an effect found".to_owned(),
-            Some(added) if added >= after => "does not improve what was held out".to_owned(),
+            None => "cannot be combined with an effect that was found".to_owned(),
+            Some(added) if added >= after => "does not improve the held-out prediction".to_owned(),
             Some(added) => format!(
-                "improves what was held out by {} % only",
+                "improves the held-out prediction by only {} %",
                 significant(100.0 * (1.0 - added / after), 2)
             ),
         };
@@ -187,11 +210,56 @@ fn rejected(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
             if t.alone.is_finite() {
                 format!("{:.3}", t.alone)
             } else {
-                "no fit".into()
+                "not fitted".into()
             },
             t.added.map_or("-".into(), |a| format!("{a:.3}")),
             because,
         ]);
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::Effect;
+    use crate::effect::unlisted;
+    use crate::vocabulary::{EffectId, Site};
+
+    fn numbers_of(effect: &Effect, parameters: &[crate::parameter::Parameter]) -> bool {
+        let estimate = |p: &crate::parameter::Parameter| crate::diagnosis::Estimate {
+            key: p.key.clone(),
+            value: p.start,
+            ci95: [p.start; 2],
+        };
+        let mut effect = effect.clone();
+        effect.parameters = parameters.iter().map(estimate).collect();
+        has_readable_numbers(&effect)
+    }
+
+    /// A page that says "drawn" draws it: every law that the search may fit to a strut has a figure.
+    #[test]
+    fn every_law_without_a_name_can_be_drawn() {
+        for candidate in unlisted::candidates_of_struts() {
+            let label = candidate.label;
+            let starts: Vec<f64> = candidate.parameters.iter().map(|p| p.start).collect();
+            let law = unlisted::table(&label, &starts).expect("a law of the list");
+            let effect = Effect {
+                id: EffectId::Unlisted,
+                place: Site::Unknown.into(),
+                label: label.clone(),
+                selected: None,
+                confidence: 0.5,
+                parameters: vec![],
+                law: serde_json::to_value(&law).ok(),
+                ratio_without: 2.0,
+                ratio_with: 1.0,
+            };
+            let read = super::law(&effect).unwrap_or_else(|| panic!("{label} is not drawn"));
+            assert_eq!(read, law, "{label}");
+            let shaped = candidate.parameters.len() < 4;
+            assert_eq!(shaped, numbers_of(&effect, &candidate.parameters), "{label}");
+            assert!(!value(&law).0.is_empty() && !argument(law.depends_on).0.is_empty());
+        }
+    }
 }

@@ -1,10 +1,10 @@
-//! "How much better": noise ratios on what was held out, and whether what is left is noise.
+//! The section "How much better": held-out noise ratios, and tests whether the residuals are noise.
 
 use oleo_report::{Axis, Bars, Cell, Column, Curves, Page, Style, Table, significant};
 
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
-use crate::whiteness::{CHI_SQUARE_99, LAGS};
+use crate::whiteness::{CHI_SQUARE_99, LAGS, Whiteness};
 
 pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     page.section("How much better");
@@ -18,19 +18,20 @@ fn channels(page: &mut Page, diagnosis: &Diagnosis) {
     let names: Vec<&str> = channels.iter().map(|c| c.column.as_str()).collect();
     let column = |f: fn(&crate::diagnosis::ChannelFigures) -> f64| channels.iter().map(f).collect::<Vec<_>>();
     let mut bars = Bars::new(
-        "Noise ratio a channel",
+        "Noise ratio of each channel",
         names,
         Axis::new("RMS residual", "sensor noise").logarithmic(),
     );
     bars.caption(
-        "As given: the model as believed. Held out: every stretch simulated with parameters that were fitted without it. 1 is perfect.",
+        "The first series is the model as it was given. In the held-out series every stretch of the recordings is predicted with \
+         parameters that were fitted without it. A ratio of 1 means that only sensor noise is left.",
     );
     bars.series("as given", &column(|c| c.before))
         .series("recalibrated only, held out", &column(|c| c.held_out_before))
         .series("improved, held out", &column(|c| c.held_out_after));
     page.figure(bars);
     let mut table = Table::new([
-        Column::text("Channel, noise ratio"),
+        Column::text("Noise ratio of channel"),
         Column::number("As given"),
         Column::number("Recalibrated, held out"),
         Column::number("Improved, fitted"),
@@ -54,8 +55,8 @@ fn recordings(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
         return;
     }
     let mut columns = vec![
-        Column::text("Recording, held-out noise ratio"),
-        Column::number("Recalibrated"),
+        Column::text("Held-out noise ratio of recording"),
+        Column::number("Recalibrated, all channels"),
     ];
     columns.extend(
         specimen
@@ -83,21 +84,49 @@ fn recordings(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     page.details("Recording by recording", table);
 }
 
+/// The table of the residual tests as a sentence, made from the same figures.
+pub(super) fn residuals_in_words(diagnosis: &Diagnosis) -> String {
+    let tested: Vec<(&str, &Whiteness)> = (diagnosis.channels.iter().zip(&diagnosis.whiteness))
+        .map(|(channel, w)| (channel.column.as_str(), w))
+        .collect();
+    in_words(&tested)
+}
+
+fn in_words(tested: &[(&str, &Whiteness)]) -> String {
+    let failing: Vec<&str> = (tested.iter())
+        .filter(|(_, w)| !(w.is_white() && w.is_independent()))
+        .map(|(channel, _)| *channel)
+        .collect();
+    if failing.is_empty() {
+        return "The held-out residuals of every channel are white and independent of the inputs.".into();
+    }
+    let most = (tested.iter().map(|(_, w)| w.explained())).fold(0.0, f64::max);
+    format!(
+        "The held-out residuals of {} fail at least one of the two tests of residuals; displacement and speed explain at most \
+         {} % of the variance of any channel.",
+        failing.join(", "),
+        significant(100.0 * most, 2)
+    )
+}
+
 fn left(page: &mut Page, diagnosis: &Diagnosis) {
     page.text(&format!(
-        "Is what is left noise? White: no sample tells of the next; the Ljung-Box statistic over {LAGS} lags stays below \
-         {CHI_SQUARE_99} 99 times of 100. Independent: no sample tells of displacement or speed up to {LAGS} samples before. With \
-         many samples either test sees what is too small to matter, so the part of the variance stands beside it.",
+        "Two tests check whether the held-out residuals of the improved model are noise. A residual is white if no sample helps \
+         to predict the following ones; the Ljung-Box statistic over {LAGS} lags then stays below {CHI_SQUARE_99} in 99 of 100 \
+         cases. A residual is independent if it correlates neither with displacement nor with speed up to {LAGS} samples \
+         earlier. With many samples both tests also detect effects that are too small to matter, so the last column says how \
+         much of the residual's variance the input explains. {}",
+        residuals_in_words(diagnosis)
     ));
     let mut table = Table::new([
         Column::text("Channel"),
-        Column::number("Ljung-Box"),
+        Column::number("Ljung-Box statistic"),
         Column::text("White"),
-        Column::text("Strongest input"),
+        Column::text("Input with the strongest correlation"),
         Column::number("Correlation"),
         Column::number("99 % bound"),
         Column::text("Independent"),
-        Column::number("Variance with it, %"),
+        Column::number("Variance that the input explains, %"),
     ]);
     for (channel, w) in diagnosis.channels.iter().zip(&diagnosis.whiteness) {
         let (input, r) = (w.input).map_or(("", 0.0), |(state, r)| (state.quantity_and_unit().0, r));
@@ -105,18 +134,20 @@ fn left(page: &mut Page, diagnosis: &Diagnosis) {
         table.row([
             channel.column.to_string().into(),
             significant(w.ljung_box, 3).into(),
-            check(w.ljung_box < CHI_SQUARE_99),
+            check(w.is_white()),
             input.into(),
             format!("{r:.4}").into(),
             format!("{:.4}", w.bound).into(),
-            check(r.abs() < w.bound),
-            significant(100.0 * r * r, 2).into(),
+            check(w.is_independent()),
+            significant(100.0 * w.explained(), 2).into(),
         ]);
     }
     page.table(table);
     let lags: Vec<f64> = (1..=LAGS as u32).map(f64::from).collect();
-    let mut curves = Curves::new("Autocorrelation of what is left", Axis::new("Lag", "samples"));
-    curves.caption("Held-out residuals of the improved model. White noise stays within the bound at 99 of 100 lags.");
+    let mut curves = Curves::new("Autocorrelation of the residuals", Axis::new("Lag", "samples"));
+    curves.caption(
+        "These are the held-out residuals of the improved model. White noise stays within the bound at 99 of 100 lags.",
+    );
     curves.panel(Axis::new("Correlation", ""));
     for (channel, w) in diagnosis.channels.iter().zip(&diagnosis.whiteness) {
         curves.series(Style::LineAndPoints, channel.column.as_str(), &lags, &w.autocorrelation);
@@ -127,4 +158,31 @@ fn left(page: &mut Page, diagnosis: &Diagnosis) {
         curves.horizontal(bound, "99 % bound").horizontal(-bound, "");
     }
     page.figure(curves);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vocabulary::State;
+
+    fn channel(ljung_box: f64, correlation: f64) -> Whiteness {
+        Whiteness {
+            autocorrelation: vec![0.0; LAGS],
+            ljung_box,
+            input: Some((State::Speed, correlation)),
+            bound: 0.01,
+        }
+    }
+
+    #[test]
+    fn the_sentence_names_every_channel_that_the_table_fails() {
+        let (noise, coloured, dependent) = (channel(20.0, 0.001), channel(2188.0, 0.001), channel(20.0, -0.06));
+        let good = in_words(&[("p1_Pa", &noise)]);
+        assert!(good.contains("every channel are white and independent"), "{good}");
+        let text = in_words(&[("p1_Pa", &noise), ("force_N", &coloured), ("p2_Pa", &dependent)]);
+        assert!(
+            text.contains("residuals of force_N, p2_Pa fail") && text.contains("0.36 %"),
+            "{text}"
+        );
+    }
 }

@@ -1,5 +1,5 @@
-//! "Where": the drawing, the locations, which relation breaks, and the residual over time and state with the found
-//! region marked.
+//! The section "Where": the drawing of the specimen, the table of locations, the relation that does not hold, and the
+//! residual over time and state with the region of the misfit marked.
 
 use oleo_report::{Axis, Bars, Column, Curves, Page, Style, Table, extrema_by_bucket, significant};
 
@@ -11,13 +11,13 @@ use crate::locate::{self, Location};
 use crate::specimen::Specimen;
 use crate::vocabulary::{Place, Site, SpecimenKind, State};
 
-/// Buckets of a line over time: finer is not seen on a page.
+/// Number of buckets into which a line over time is reduced; more cannot be seen on a page.
 const BUCKETS: usize = 260;
-/// Markers of a residual over a state.
+/// Largest number of markers in a figure of the residual over a state.
 const MARKERS: usize = 1200;
-/// Locations drawn.
+/// Largest number of locations that get figures.
 const DRAWN: usize = 6;
-/// Relations drawn.
+/// Largest number of relations in the bar chart.
 const RELATIONS: usize = 8;
 
 pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
@@ -29,18 +29,21 @@ pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
         page.drawing(
             &svg,
             if marked {
-                "The specimen; marked: where the model and the recordings part."
+                "The specimen. The marked places are those where the model and the recordings disagree."
             } else {
-                "The specimen; nothing is marked because no place was found."
+                "The specimen. No place is marked, because no place was found where the model and the recordings disagree."
             },
         );
     }
     if diagnosis.locations.is_empty() {
-        page.text("No place stands out: after recalibration within tolerance no misfit beyond the noise is left.");
+        page.text(
+            "No place is listed, because no misfit beyond the noise is left after recalibration within the tolerances.",
+        );
     } else {
         page.text(
-            "Share of the excess: part of the misfit beyond noise that comes back when this effect alone is taken out of \
-             the improved model and everything else is fitted again. Effects that hide each other can add to more than 100 %.",
+            "The share of the excess is the part of the misfit beyond noise that returns when this effect alone is removed from \
+             the improved model and all other parameters are fitted again. The shares can add up to more than 100 % if \
+             effects partly compensate each other.",
         )
         .table(locations(specimen, &diagnosis.locations));
     }
@@ -55,7 +58,7 @@ fn locations(specimen: &dyn Specimen, locations: &[Location]) -> Table {
     let mut table = Table::new([
         Column::text("Place"),
         Column::number("Share of the excess"),
-        Column::text("Shows most in"),
+        Column::text("Largest in"),
         Column::text("Time, s"),
         Column::text("Condition, over all recordings"),
     ]);
@@ -80,33 +83,34 @@ fn relations(page: &mut Page, diagnosis: &Diagnosis) {
     if !changed.is_empty() {
         let shown = &changed[..changed.len().min(RELATIONS)];
         let mut bars = Bars::new(
-            "Which relation breaks",
+            "Which relation of the model does not hold",
             shown.iter().map(|r| r.relation.as_str()),
             Axis::new("Excess misfit explained", "%").range(0.0, 100.0),
         );
         bars.caption(
-            "Share of the held-out misfit beyond noise that disappears when this one relation of the recalibrated model may \
-             change and all others stay (the best candidate each). Where several break, none explains all.",
+            "Each bar is the part of the held-out misfit beyond noise that disappears when only this relation of the \
+             recalibrated model may change, with the best candidate for it. If several relations are wrong, no single bar \
+             reaches 100 %.",
         );
         bars.series(
-            "changed alone",
+            "only this relation changed",
             &shown.iter().map(|r| 100.0 * r.share_of_excess).collect::<Vec<_>>(),
         );
         page.figure(bars);
     }
     if diagnosis.relations.iter().any(|r| r.noise_ratio.is_some()) {
         let mut table = Table::new([
-            Column::text("Relation between measured neighbours, no simulation"),
+            Column::text("Relation between neighbouring sensors, from the recordings alone"),
             Column::number("Noise ratio"),
             Column::number("Samples"),
-            Column::text("Reading"),
+            Column::text("Result"),
         ]);
         for r in &diagnosis.relations {
             let reading = match r.noise_ratio {
                 None => "the recordings do not excite it",
                 Some(v) if v < 1.2 => "holds",
-                Some(v) if v < 2.0 => "departs a little",
-                Some(_) => "breaks: something acts between these instruments, or one of them is wrong",
+                Some(v) if v < 2.0 => "holds approximately",
+                Some(_) => "does not hold: an effect acts between these sensors, or one of them is wrong",
             };
             table.row([
                 r.name.to_owned(),
@@ -128,11 +132,11 @@ fn title(kind: SpecimenKind, diagnosis: &Diagnosis, location: &Location) -> Stri
             words::sentence(of(e.id).named(kind, &e.label)),
             words::at(&location.place)
         ),
-        None => "What is left unexplained".into(),
+        None => "Unexplained misfit".into(),
     }
 }
 
-/// Six digits: all that a picture shows.
+/// Values rounded to five digits, which is all that a figure shows.
 fn brief(values: &[f64]) -> Vec<f64> {
     values
         .iter()
@@ -173,8 +177,9 @@ fn over_time(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, lo
         Axis::new("Time", "s"),
     );
     curves.caption(&format!(
-        "Above what was measured and what the models predict, below recording minus prediction over the sensor's noise ({} {}). \
-         Shaded: where the misfit is found, {:.2} to {:.2} s; {}.",
+        "The upper panel shows the recording and the predictions. The lower panel shows recording minus prediction, divided by \
+         the sensor noise ({} {}). The misfit is found in the shaded interval, {:.2} to {:.2} s. The condition over all \
+         recordings is: {}.",
         significant(channel.noise * scale, 2),
         unit,
         location.t_s[0],
@@ -270,17 +275,17 @@ fn over_state(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, l
     if let Some(region) = &condition.region {
         curves.region(scale * region.from, scale * region.to, "found here");
         curves.caption(&format!(
-            "Shaded: the stretch that holds the most misfit for its samples, {}.",
+            "The shaded range contains the most misfit relative to its number of samples: {}.",
             region.words()
         ));
     } else if let Some((_, part)) = &condition.follows {
         curves.caption(&format!(
-            "The mean over {quantity} explains {:.0} % of what {}.",
+            "The mean residual as a function of {quantity} explains {:.0} % of {}.",
             100.0 * part,
             if location.candidate.is_some() {
-                "the effect changes"
+                "what the effect changes"
             } else {
-                "is left"
+                "the residual"
             }
         ));
     }

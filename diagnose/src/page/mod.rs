@@ -1,4 +1,5 @@
-//! `report.html`: where, what, model, how much better, what to record next, for somebody who was not there.
+//! `report.html`: the verdict in one sentence, then where the misfit is, which effect explains it, the improved model, how much
+//! better it predicts, and what to record next.
 
 mod effects;
 mod improvement;
@@ -15,7 +16,7 @@ use crate::json;
 use crate::specimen::Specimen;
 use crate::vocabulary::SpecimenKind;
 
-/// The page.
+/// Builds `report.html`.
 #[must_use]
 pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s: f64) -> Page {
     let specimen = &*campaign.specimen;
@@ -28,28 +29,26 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
         &format!("{}: {} ({samples} samples)", names.len(), names.join(", ")),
     );
     page.fact(
-        "Work",
-        &format!(
-            "{} simulations of one recording in {runtime_s:.0} s",
-            diagnosis.simulated
-        ),
+        "Computation",
+        &format!("{} recordings simulated in {runtime_s:.0} s", diagnosis.simulated),
     );
     page.verdict(colour(diagnosis), &headline(specimen, diagnosis));
     if !diagnosis.effects.is_empty() {
         page.outcome(in_brief(specimen.kind(), diagnosis));
     }
     page.text(&format!(
-        "Noise ratio: RMS of recording minus simulation over the sensor's noise. 1 is perfect. Held out: judged on stretches \
-         that had no say in the fit. The model is simulated freely: it gets {}, and nothing else that was measured.",
+        "The noise ratio is the RMS of recording minus simulation, divided by the sensor noise; a ratio of 1 means that only \
+         noise is left. A held-out noise ratio is computed on stretches of the recordings that were not used in the fit. The \
+         simulation receives {} and no other measured value.",
         specimen.inputs_in_words()
     ));
     locations::section(&mut page, campaign, diagnosis);
     effects::section(&mut page, campaign, diagnosis);
-    model::section(&mut page, diagnosis);
+    model::section(&mut page, specimen.kind(), diagnosis);
     improvement::section(&mut page, campaign, diagnosis);
     next(&mut page, campaign, diagnosis);
     if !campaign.notes.is_empty() {
-        page.section("Remarks on the recordings");
+        page.section("Notes on the recordings");
         campaign.notes.iter().for_each(|n| {
             page.text(n);
         });
@@ -67,7 +66,7 @@ fn colour(diagnosis: &Diagnosis) -> Colour {
     }
 }
 
-/// The whole story in two sentences.
+/// The verdict in one or two sentences.
 #[must_use]
 pub fn headline(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> String {
     let (kind, all) = (specimen.kind(), specimen.candidates());
@@ -75,31 +74,29 @@ pub fn headline(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> String {
     let (before, after) = (significant(before, 3), significant(after, 3));
     let mut text = match diagnosis.verdict() {
         Verdict::Consistent => format!(
-            "Nothing is missing: recalibrated within its tolerances, the model predicts every recording to {after} times the \
-             sensors' noise."
+            "Nothing is missing: recalibrated within its tolerances, the model predicts the held-out recordings with an RMS \
+             error of {after} times the sensor noise."
         ),
         Verdict::MissingPhysics => format!(
-            "The model leaves out {}. With {}, what was held out of the fit is predicted to {after} times the sensors' \
-             noise instead of {before} times.",
+            "The model leaves out {}. With {}, the RMS error on held-out recordings is {after} times the sensor noise; without \
+             {}, it is {before} times.",
             list(&phrases(kind, diagnosis)),
-            if phrases(kind, diagnosis).len() == 1 {
-                "it"
-            } else {
-                "them"
-            },
+            these(diagnosis, "this effect", "these effects"),
+            these(diagnosis, "it", "them"),
         ),
         Verdict::Unexplained => format!(
-            "The model disagrees with the recordings ({after} times the sensors' noise), and no effect that was tried explains it."
+            "The model does not match the recordings: the held-out RMS error is {after} times the sensor noise. None of the \
+             effects that were tried explains it."
         ),
     };
     if diagnosis.selection.incomplete && diagnosis.verdict() == Verdict::MissingPhysics {
-        text += " That is not all: a misfit that no effect tried explains is left.";
+        text += " Part of the misfit remains, and none of the effects that were tried explains it.";
     }
     for effect in &diagnosis.selection.effects {
         if let Some(rival) = effect.ambiguous_rival() {
             let said = |c: &Candidate| format!("{} {}", of(c.id).called(kind, &c.label), words::at(&c.place));
             text += &format!(
-                " The recordings cannot tell {} from {}; what to record to separate them is said below.",
+                " The recordings cannot distinguish {} from {}. The last section says what to record to separate them.",
                 said(&all[effect.candidate]),
                 said(&all[rival])
             );
@@ -108,7 +105,13 @@ pub fn headline(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> String {
     text
 }
 
-/// Effects as phrases, one an id, with all its places.
+/// The word for the effects found: the first for one effect, the second for several.
+fn these(diagnosis: &Diagnosis, one: &'static str, several: &'static str) -> &'static str {
+    let found = diagnosis.effects.iter().filter(|e| e.selected.is_some());
+    if found.count() == 1 { one } else { several }
+}
+
+/// Effects as phrases, one for each id, with all its places.
 fn phrases(kind: SpecimenKind, diagnosis: &Diagnosis) -> Vec<String> {
     let mut out: Vec<(String, String)> = Vec::new();
     for e in diagnosis.effects.iter().filter(|e| e.selected.is_some()) {
@@ -132,22 +135,26 @@ fn list(items: &[String]) -> String {
     }
 }
 
-/// Where, what, how large, how sure, how much better: a row an effect.
+/// One row for each effect: its place, its size, the confidence in it and the improvement by it.
 fn in_brief(kind: SpecimenKind, diagnosis: &Diagnosis) -> Table {
     let mut table = Table::new([
-        Column::text("What is missing"),
-        Column::text("Where"),
-        Column::text("How large (95 % interval)"),
+        Column::text("Missing effect"),
+        Column::text("Place"),
+        Column::text("Size (95 % interval)"),
         Column::number("Confidence"),
         Column::number("Held-out noise ratio without it"),
-        Column::number("with it"),
+        Column::number("Held-out noise ratio with it"),
     ]);
     for e in &diagnosis.effects {
         let large: Vec<String> = (e.parameters.iter())
             .map(|p| {
-                let (name, unit) = words::quantity(&p.key);
+                let (name, unit) = words::parameter(&p.key);
                 let (value, interval) = words::value_and_interval(p.value, p.ci95);
-                format!("{name} {value} {unit} ({interval})")
+                if unit.is_empty() {
+                    format!("{name} {value} ({interval})")
+                } else {
+                    format!("{name} {value} {unit} ({interval})")
+                }
             })
             .collect();
         let place = words::at(&e.place);
@@ -155,9 +162,12 @@ fn in_brief(kind: SpecimenKind, diagnosis: &Diagnosis) -> Table {
             format!("{} ({})", of(e.id).named(kind, &e.label), name(e)),
             place.trim_start_matches("in ").trim_start_matches("at ").to_owned(),
             match points(e) {
-                Some(n) => format!("a law of {n} points, drawn under What"),
-                None if large.is_empty() => "it has no size: it is there or not".into(),
-                None => large.join("; "),
+                Some(n) if !effects::has_readable_numbers(e) => {
+                    format!("a law of {n} points, drawn in the section \"What\"")
+                }
+                _ if e.selected.is_none() => "unknown, because no law was fitted".into(),
+                _ if large.is_empty() => "none, because the effect is either present or absent".into(),
+                _ => large.join("; "),
             },
             format!("{:.2}", e.confidence),
             format!("{:.2}", e.ratio_without),
@@ -167,9 +177,9 @@ fn in_brief(kind: SpecimenKind, diagnosis: &Diagnosis) -> Table {
     table
 }
 
-/// Points of a law given as a table; its increments are no numbers to read.
+/// Number of points of a law that was fitted as a table.
 fn points(effect: &Effect) -> Option<usize> {
-    Some(effect.law.as_ref()?.get("argument")?.as_array()?.len())
+    effects::law(effect).map(|law| law.argument.len())
 }
 
 fn name(effect: &Effect) -> String {
@@ -182,25 +192,26 @@ fn name(effect: &Effect) -> String {
 
 fn next(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     page.section("What to record next");
-    page.text(
-        diagnosis.next_experiment.as_deref().unwrap_or(
-            "Nothing is needed: every effect found is told from its rivals, and nothing predictable is left.",
-        ),
-    );
+    page.text(&diagnosis.next_experiment.clone().unwrap_or_else(|| {
+        format!(
+            "No further recording is needed to separate effects from each other. {}",
+            improvement::residuals_in_words(diagnosis)
+        )
+    }));
     let missing = json::not_tested(&*campaign.specimen);
     if missing.is_empty() {
-        page.text("Every effect of the vocabulary was tested: these recordings would show it.");
+        page.text("Every effect of the vocabulary was tested. If one were present, these recordings would show it.");
         return;
     }
     let mut table = Table::new([
-        Column::text("Not tested"),
+        Column::text("Effect that was not tested"),
         Column::text("Place"),
-        Column::text("Because, and what to record"),
+        Column::text("Reason, and what to record"),
     ]);
     for m in &missing {
         table.row([text(&m["id"]), text(&m["place"]), text(&m["why"])]);
     }
-    page.text("These recordings cannot show the following effects. Not tested is not the same as absent:")
+    page.text("These recordings cannot show the following effects, so it is unknown whether they are present.")
         .table(table);
 }
 
@@ -216,8 +227,8 @@ pub fn effects_table(diagnosis: &Diagnosis) -> Table {
         Column::text("Place"),
         Column::number("Confidence"),
         Column::text("Parameters (95 % interval)"),
-        Column::number("Noise ratio without"),
-        Column::number("with"),
+        Column::number("Noise ratio without it"),
+        Column::number("Noise ratio with it"),
     ]);
     for e in &diagnosis.effects {
         let numbers: Vec<String> = (e.parameters.iter())
@@ -230,7 +241,10 @@ pub fn effects_table(diagnosis: &Diagnosis) -> Table {
             name(e),
             e.place.as_reported(),
             format!("{:.2}", e.confidence),
-            points(e).map_or_else(|| numbers.join("; "), |n| format!("a law of {n} points")),
+            match points(e) {
+                Some(n) if !effects::has_readable_numbers(e) => format!("a law of {n} points"),
+                _ => numbers.join("; "),
+            },
             format!("{:.2}", e.ratio_without),
             format!("{:.2}", e.ratio_with),
         ]);

@@ -1,18 +1,22 @@
-//! "Model": what was added to the file, what recalibration changed, and the file to copy.
+//! The section "The improved model": what was added to the model file, what recalibration changed, and the file itself.
 
 use oleo_report::{Cell, Column, Page, Table, significant};
 
 use super::words;
 use crate::diagnosis::{Correlation, Diagnosis};
+use crate::vocabulary::SpecimenKind;
 
-pub fn section(page: &mut Page, diagnosis: &Diagnosis) {
+pub fn section(page: &mut Page, kind: SpecimenKind, diagnosis: &Diagnosis) {
     page.section("The improved model");
     page.text(
-        "It is model.toml beside this page, in the form of the one given, and runs as it is: oleo predict --model model.toml \
-         RECORDING.csv --out SIM.csv simulates any other recording's inputs with it; oleo rig and oleo hil take it as their strut.",
+        "The improved model is the file model.toml beside this page. It has the format of the given model. To simulate the inputs \
+         of another recording with it, run oleo predict --model model.toml RECORDING.csv --out SIM.csv.",
     );
+    if kind == SpecimenKind::TwoStageStrut {
+        page.text("oleo rig and oleo hil accept the file with the option --strut model.toml.");
+    }
     let changes = changes(&diagnosis.given_toml, &diagnosis.model_toml);
-    // Offsets are calibration; they stand below.
+    // Sensor offsets are calibration and have a table of their own.
     let added: Vec<&Change> = (changes.iter())
         .filter(|c| c.before.is_none() && c.key.starts_with("effects.") && !c.key.contains("sensor_offset"))
         .collect();
@@ -39,16 +43,16 @@ fn calibration(page: &mut Page, diagnosis: &Diagnosis) {
         .map(|c| c.tolerance_used)
         .fold(0.0, f64::max);
     page.text(&format!(
-        "Recalibration is part of every fit and is not physics: the values below were re-estimated within the tolerances that \
-         the model states. The most that was used of any tolerance is {:.0} %.",
+        "Recalibration is part of every fit and adds no physics: the values below were estimated again within the tolerances that \
+         the model states. The largest change uses {:.0} % of its tolerance.",
         100.0 * most
     ));
     let mut table = Table::new([
-        Column::text("Recalibrated"),
+        Column::text("Recalibrated value"),
         Column::number("Change"),
         Column::text("95 % interval"),
         Column::text("Unit"),
-        Column::text("Of its tolerance"),
+        Column::text("Part of the tolerance used"),
     ]);
     for c in &diagnosis.calibration {
         let (e, used) = (&c.estimate, c.tolerance_used);
@@ -61,7 +65,7 @@ fn calibration(page: &mut Page, diagnosis: &Diagnosis) {
             interval.into(),
             unit.into(),
             if used > 1.0 {
-                Cell::warning(format!("{text}, at its limit"))
+                Cell::warning(format!("{text}, which is beyond the tolerance"))
             } else {
                 Cell::from(text)
             },
@@ -70,8 +74,8 @@ fn calibration(page: &mut Page, diagnosis: &Diagnosis) {
     page.details("Calibration, value by value", table);
     if !diagnosis.correlations.is_empty() {
         let mut table = Table::new([
-            Column::text("Estimate"),
-            Column::text("and"),
+            Column::text("First estimate"),
+            Column::text("Second estimate"),
             Column::number("Correlation"),
         ]);
         for Correlation {
@@ -82,7 +86,7 @@ fn calibration(page: &mut Page, diagnosis: &Diagnosis) {
             table.row([a.clone(), b.clone(), significant(*coefficient, 3)]);
         }
         let summary = format!(
-            "{} strongly correlated pairs of estimates: only their combination is well determined",
+            "{} pairs of estimates are strongly correlated, so only a combination of the two is well determined",
             table.len()
         );
         page.details(&summary, table);

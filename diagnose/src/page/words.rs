@@ -1,10 +1,10 @@
-//! Places, keys and values in words. What an effect is called the effect itself says ([`crate::effect::Words`]).
+//! Places, parameter keys and values in words. The name of an effect is in the effect's own file.
 
 use oleo_interface::Valve;
 
 use crate::vocabulary::{Place, Site};
 
-/// "in accumulator 1": a place after an effect's name.
+/// A place as it follows the name of an effect: "in accumulator 1".
 #[must_use]
 pub fn at(place: &Place) -> String {
     match &place.site {
@@ -18,14 +18,14 @@ pub fn at(place: &Place) -> String {
         Site::Accumulators => "in both accumulators".into(),
         Site::Chamber => "in the gas chamber".into(),
         Site::Paths => "in both paths".into(),
-        Site::Unknown => "at a place that the recordings do not tell".into(),
+        Site::Unknown => "at an unknown place".into(),
         Site::Accumulator(_) | Site::Path(_) | Site::Valve(_) => {
             format!("in {}", place.site.to_string().replace('-', " "))
         }
     }
 }
 
-/// With a capital at its beginning.
+/// The text with its first letter in upper case.
 #[must_use]
 pub fn sentence(text: &str) -> String {
     let mut chars = text.chars();
@@ -34,7 +34,7 @@ pub fn sentence(text: &str) -> String {
         .map_or(String::new(), |first| first.to_uppercase().chain(chars).collect())
 }
 
-/// Units that end a parameter's key, longest first, and as people write them.
+/// Units at the end of a parameter's key, longest first, with their usual spelling.
 const UNITS: [(&str, &str); 21] = [
     ("_Pa_s_m3", "Pa s/m3"),
     ("_s_MPa2", "s/MPa2"),
@@ -90,13 +90,25 @@ pub fn quantity(key: &str) -> (String, String) {
         unit
     };
     let name = name
+        .replace("breakaway_over_coulomb", "breakaway force over Coulomb force")
         .replace('_', " ")
         .replace("coulomb", "Coulomb")
         .replace("stribeck", "Stribeck");
     (format!("{name}{suffix}"), unit.to_owned())
 }
 
-/// A value with as many digits as its interval gives meaning to.
+/// As [`quantity`], for a parameter of an effect: its flow coefficient is a value, not the relative change of a calibration.
+#[must_use]
+pub fn parameter(key: &str) -> (String, String) {
+    let (name, unit) = quantity(key);
+    if key.starts_with("flow_coefficient") {
+        (name, "m3/s/sqrt(Pa)".into())
+    } else {
+        (name, unit)
+    }
+}
+
+/// A value and its interval, with as many digits as the width of the interval justifies.
 #[must_use]
 pub fn value_and_interval(value: f64, ci95: [f64; 2]) -> (String, String) {
     let half = 0.5 * (ci95[1] - ci95[0]).abs();
@@ -132,11 +144,18 @@ mod tests {
             ("stribeck_speed_m_s", "Stribeck speed", "m/s"),
             ("p1_Pa offset", "p1 offset", "Pa"),
             ("static_gas_volume_1", "static gas volume 1", "relative"),
-            ("breakaway_over_coulomb", "breakaway over Coulomb", ""),
+            ("breakaway_over_coulomb", "breakaway force over Coulomb force", ""),
             ("drift_Pa_s", "drift", "Pa/s"),
         ] {
             assert_eq!(quantity(key), (name.to_owned(), unit.to_owned()), "{key}");
         }
+    }
+
+    #[test]
+    fn the_flow_coefficient_of_a_leak_has_a_unit() {
+        assert_eq!(parameter("flow_coefficient_1").1, "m3/s/sqrt(Pa)");
+        assert_eq!(quantity("flow_coefficient_1").1, "relative");
+        assert_eq!(parameter("half_width_m"), ("half width".into(), "m".into()));
     }
 
     #[test]

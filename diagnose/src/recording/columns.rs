@@ -1,4 +1,4 @@
-//! What a specimen asks of the columns of its recordings.
+//! The columns that a specimen needs in its recordings.
 
 /// How a column must be treated when a recording is thinned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub enum ColumnKind {
 pub struct ColumnSpec {
     /// Name with unit, for example `p1_Pa`.
     pub name: String,
-    /// Its treatment.
+    /// How the column is treated.
     pub kind: ColumnKind,
 }
 

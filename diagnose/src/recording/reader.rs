@@ -1,4 +1,4 @@
-//! Reads a recording from CSV; whatever cannot be used is refused with one line: file, line, remedy.
+//! Reads a recording from CSV. Input that cannot be used is refused with one line that names file, line and remedy.
 
 use std::path::Path;
 
@@ -36,6 +36,18 @@ fn count_lines(mut file: std::fs::File) -> std::io::Result<usize> {
 }
 
 /// Reads one recording from anything. `rows` is about how many there are; `path` names the recording and is not opened.
+///
+/// ```
+/// use oleo_diagnose::recording::{ColumnKind, ColumnSpec, GapPolicy, parse};
+/// let columns = [ColumnSpec::new("p_Pa", ColumnKind::Output)];
+/// let read = |text: &str| parse(text.as_bytes(), 100, "strokes.csv".as_ref(), &columns, GapPolicy::Cut);
+/// let rows: String = (0..100).map(|k| format!("{},{}\n", 0.01 * f64::from(k), 1e6 + f64::from(k))).collect();
+/// let recording = read(&format!("time_s,p_Pa\n{rows}"))?;
+/// assert_eq!((recording.len(), recording.columns[0][99]), (100, 1_000_099.0));
+/// let complaint = read("time_s,p_bar\n0,10\n").unwrap_err().to_string();
+/// assert!(complaint.contains("p_Pa"), "{complaint}");
+/// # Ok::<(), oleo_diagnose::DiagnoseError>(())
+/// ```
 ///
 /// # Errors
 /// As [`read`].
@@ -112,7 +124,7 @@ pub fn parse(
         return Err(DiagnoseError::TooShort {
             path: path.to_path_buf(),
             what: format!(
-                "{} usable samples{why}, at least {MIN_SAMPLES} are needed; record longer or leave the file out",
+                "there are {} usable samples{why}, but at least {MIN_SAMPLES} are needed; record longer or leave the file out",
                 recording.len()
             ),
         });
@@ -126,15 +138,15 @@ fn csv_error(path: &Path, error: &csv::Error) -> DiagnoseError {
             path: path.to_path_buf(),
             line: p.line(),
             what: format!(
-                "{len} fields where the header names {expected_len}; the file may have been cut off while written"
+                "the row has {len} fields, but the header has {expected_len}; the file may have been cut off while it was written"
             ),
         },
         (Some(p), csv::ErrorKind::Utf8 { .. }) => DiagnoseError::Line {
             path: path.to_path_buf(),
             line: p.line(),
-            what: "not text; a recording is a CSV file in UTF-8".to_owned(),
+            what: "the file is not text; a recording is a CSV file in UTF-8".to_owned(),
         },
-        _ => DiagnoseError::file(path, format!("not readable as CSV: {error}")),
+        _ => DiagnoseError::file(path, format!("the file is not readable as CSV: {error}")),
     }
 }
 
@@ -173,7 +185,7 @@ fn cut_at_gap(recording: &mut Recording) {
         recording.time_s.truncate(gap + 1);
         recording.columns.iter_mut().for_each(|c| c.truncate(gap + 1));
         recording.notes.push(format!(
-            "hole from {from} s to {to} s: the {lost} samples after it were not used"
+            "there is a gap from {from} s to {to} s; the {lost} samples after it were not used"
         ));
     }
 }
@@ -208,7 +220,7 @@ mod tests {
             assert!((r.columns[0][k] - 0.1 * r.time_s[k]).abs() < 1e-9, "input at {k}");
             assert!((r.columns[1][k] - 2.0 * r.time_s[k]).abs() < 1e-9, "output at {k}");
         }
-        assert!(r.notes[0].contains("one of 3 samples"), "{:?}", r.notes);
+        assert!(r.notes[0].contains("one of every 3 samples"), "{:?}", r.notes);
     }
 
     #[test]

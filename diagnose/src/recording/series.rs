@@ -3,9 +3,9 @@
 /// Even or nearly even samples of one specimen.
 #[derive(Debug, Clone)]
 pub struct Recording {
-    /// File stem.
+    /// File name of the recording without `.csv`.
     pub name: String,
-    /// Seconds, strictly increasing.
+    /// Sample times, s, strictly increasing.
     pub time_s: Vec<f64>,
     /// One series a requested column, same order.
     pub columns: Vec<Vec<f64>>,
@@ -14,7 +14,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Number of samples.
+    /// Number of samples in the recording.
     #[must_use]
     pub fn len(&self) -> usize {
         self.time_s.len()

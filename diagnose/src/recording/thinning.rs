@@ -32,7 +32,7 @@ pub struct Thinner {
 /// Whether more rows are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Room {
-    /// More rows are wanted.
+    /// There is room for more rows.
     Left,
     /// No more rows are wanted.
     Full,
@@ -122,11 +122,11 @@ impl Thinner {
         }
         let mut notes = Vec::new();
         if self.stride > 1 {
-            notes.push(format!("one of {} samples was used", self.stride));
+            notes.push(format!("one of every {} samples was used", self.stride));
         }
         if let (true, Some(last)) = (self.full, self.time_s.last()) {
             notes.push(format!(
-                "only the first {MAX_SAMPLES} of these were used, to {last} s; record less or slower to use all"
+                "only the first {MAX_SAMPLES} of these, up to {last} s, were used; to use all, record for a shorter time or at a lower rate"
             ));
         }
         Recording {

@@ -5,13 +5,25 @@ use super::selector::{Screened, Selector};
 use crate::error::DiagnoseError;
 use crate::estimation::{Fit, LeastSquares, Point};
 
-/// Runs the whole search.
+/// Fractions of the work that are done when a phase begins, 0 to 1, for a model that lacks two or three effects.
+mod done {
+    pub const CALIBRATION: f64 = 0.02;
+    /// The first screening; each effect that was added is [`EFFECT`] more.
+    pub const SCREENING: f64 = 0.1;
+    pub const EFFECT: f64 = 0.12;
+    /// Screening all candidates takes about as long as fitting the finalists.
+    pub const FITTING_AFTER_SCREENING: f64 = 0.06;
+    pub const ELIMINATION: f64 = 0.8;
+    pub const RIVALS: f64 = 0.88;
+}
+
+/// Runs the whole search. The first page of this crate has an example, in which [`crate::Diagnosis::of`] runs it.
 ///
 /// # Errors
 /// A believed model that cannot be simulated; [`DiagnoseError::Interrupted`] once the caller asked to stop.
 pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Selection, DiagnoseError> {
     let mut selector = Selector::new(problem);
-    progress("calibrating within tolerance", 0.02);
+    progress("calibrating within tolerance", done::CALIBRATION);
     let calibrated = selector.fitted(Point::nominal(problem.specimen()))?;
     let Grown {
         mut best,
@@ -20,7 +32,7 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
         with_laws,
     } = grow(&mut selector, &calibrated, progress)?;
 
-    progress("dropping what the others explain", 0.8);
+    progress("dropping what the others explain", done::ELIMINATION);
     let grown = best.point.effects.len();
     let acceptance = &problem.criteria.acceptance;
     best = selector.eliminate(best, acceptance.least_fraction)?;
@@ -28,7 +40,7 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
         best = selector.eliminate(best, fraction_of_incomplete(problem))?;
     }
 
-    progress("testing rivals in the place of each effect", 0.88);
+    progress("testing rivals in the place of each effect", done::RIVALS);
     let mut comparison = selector.compare_with_rivals(&best, with_laws)?;
     let mut exchanged = false;
     for _ in 0..problem.criteria.rivalry.exchanges {
@@ -75,13 +87,16 @@ fn grow(selector: &mut Selector<'_, '_>, calibrated: &Fit, progress: Progress<'_
     let mut with_laws = false;
     let mut scores: Vec<CandidateScore> = Vec::new();
     loop {
-        let done = 0.1 + 0.12 * best.point.effects.len() as f64;
-        progress("screening every candidate", done);
+        let screening = done::SCREENING + done::EFFECT * best.point.effects.len() as f64;
+        progress("screening every candidate", screening);
         let screened = selector.screen(&best, selector.open(&best.point, with_laws))?;
         if best.point.effects.is_empty() {
             score_alone(selector, &screened, &mut scores);
         }
-        progress("fitting the strongest candidates", done + 0.06);
+        progress(
+            "fitting the strongest candidates",
+            screening + done::FITTING_AFTER_SCREENING,
+        );
         let full = best.point.effects.len() >= criteria.acceptance.most_effects;
         let next = if full {
             None

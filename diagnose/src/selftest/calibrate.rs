@@ -13,9 +13,9 @@ use crate::confidence::{EVIDENCE, Evidence};
 pub struct Calibration {
     /// Name of each kind of evidence.
     pub names: Vec<&'static str>,
-    /// Its weight.
+    /// Weight of each piece of evidence.
     pub weights: Vec<f64>,
-    /// Reports fitted on.
+    /// Number of reports that the weights were fitted to.
     pub reports: usize,
     /// Those of them that are there.
     pub there: usize,

@@ -1,4 +1,4 @@
-//! The self-test's tables as flat rows for CSV files.
+//! The tables of the self-test as rows of CSV files.
 
 use serde::Serialize;
 
@@ -6,7 +6,7 @@ use super::summary::Summary;
 use super::trial::Trial;
 use crate::vocabulary::EffectId;
 
-/// One trial.
+/// A row of `trials.csv`: one campaign.
 #[derive(Debug, Serialize)]
 pub struct TrialRow {
     name: String,
@@ -76,7 +76,7 @@ pub struct PowerRow {
     false_beside: usize,
 }
 
-/// The power table.
+/// Rows of `power.csv`, the detection rates.
 pub fn power(summary: &Summary) -> impl Iterator<Item = PowerRow> {
     summary.power.iter().map(|p| PowerRow {
         term: p.term,
@@ -97,7 +97,7 @@ pub struct ConfusionRow {
     campaigns: usize,
 }
 
-/// The confusion matrix.
+/// Rows of `confusion.csv`, the confusion matrix.
 pub fn confusion(summary: &Summary) -> impl Iterator<Item = ConfusionRow> {
     summary.confusion.iter().flat_map(|(hidden, row)| {
         row.iter().map(|(reported, campaigns)| ConfusionRow {
@@ -108,7 +108,7 @@ pub fn confusion(summary: &Summary) -> impl Iterator<Item = ConfusionRow> {
     })
 }
 
-/// Intervals of one parameter.
+/// A row of `coverage.csv`: the intervals of one parameter.
 #[derive(Debug, Serialize)]
 pub struct CoverageRow {
     term: EffectId,
@@ -118,7 +118,7 @@ pub struct CoverageRow {
     unbounded: usize,
 }
 
-/// Coverage.
+/// Rows of `coverage.csv`, the coverage of the confidence intervals.
 pub fn coverage(summary: &Summary) -> impl Iterator<Item = CoverageRow> {
     (summary.coverage.iter())
         .filter(|c| !c.key.is_empty())

@@ -18,12 +18,12 @@ impl Draw {
         Self(ChaCha8Rng::seed_from_u64(hasher.finish()))
     }
 
-    /// Uniform in 0..1.
+    /// Draws a number that is uniform in 0..1.
     pub fn uniform(&mut self) -> f64 {
         f64::from(self.0.next_u32()) / 4_294_967_296.0
     }
 
-    /// Uniform between two values.
+    /// Draws a number that is uniform between two values.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
     }

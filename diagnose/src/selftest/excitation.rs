@@ -15,9 +15,9 @@ type Function<T> = Arc<dyn Fn(f64) -> T + Send + Sync>;
 pub struct Move {
     /// Name of its recording.
     pub name: &'static str,
-    /// Sampling interval, s.
+    /// Sampling interval of the recording, s.
     pub interval_s: f64,
-    /// Duration, s.
+    /// Duration of the recording, s.
     pub duration_s: f64,
     position_m: Function<f64>,
     signals: Function<[bool; 3]>,

@@ -42,9 +42,9 @@ pub struct Generated {
     pub given: StrutModel,
     /// What the diagnosis is given.
     pub recordings: Vec<Recording>,
-    /// What it is not.
+    /// Recordings that the diagnosis does not get, on which it is judged.
     pub unseen: Vec<Recording>,
-    /// The numbers concealed.
+    /// True values of the concealed parameters.
     pub truth: Vec<Truth>,
     /// Size of each concealed effect: RMS over all channels and samples of what it changes, over the noise, after the best
     /// linear recalibration within tolerance.

@@ -11,13 +11,13 @@ use crate::vocabulary::{EffectId, Place};
 /// A number of the truth, as the report would give it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
-    /// Id of the vocabulary.
+    /// Id of the effect in the vocabulary.
     pub id: EffectId,
-    /// Where it acts.
+    /// Place where the concealed effect acts.
     pub place: Place,
     /// Key with unit, empty for an effect without numbers.
     pub key: String,
-    /// Value.
+    /// True value, in the unit of the key.
     pub value: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Trials as they end: one line of JSON each, so that a self-test that was interrupted goes on where it stopped.
+//! The ledger of finished campaigns, one line of JSON each, from which an interrupted self-test resumes.
 //!
 //! A line's key is the case's name, which fixes everything drawn in it. What the line does not know is the program that
 //! wrote it: another build wants another folder, and the file's first line says which build it is of.
@@ -51,7 +51,7 @@ impl Ledger {
             Some(_) => {
                 return Err(DiagnoseError::file(
                     path,
-                    "was written by another version of this self-test; give another --out folder",
+                    "was written by another version of the self-test; give another --out folder",
                 ));
             }
         }
@@ -68,7 +68,7 @@ impl Ledger {
         })
     }
 
-    /// A finished trial.
+    /// The finished campaign of this name, if the ledger contains it.
     #[must_use]
     pub fn get(&self, name: &str) -> Option<&Trial> {
         self.known.get(name)

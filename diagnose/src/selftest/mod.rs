@@ -7,7 +7,7 @@
 //! ```
 //!
 //! A campaign is fixed by its name alone; trials run one a thread and are put together in the order of the plan, so the
-//! tables are the same on any number of threads, and an interrupted test goes on where it stopped.
+//! tables are the same on any number of threads, and an interrupted test resumes where it stopped.
 
 mod calibrate;
 pub mod csv_rows;
@@ -38,7 +38,7 @@ use crate::error::DiagnoseError;
 /// Runs all cases that the ledger does not know, one a thread, and returns all trials in the order of the cases.
 ///
 /// # Errors
-/// The wish to stop, or a ledger that cannot be written.
+/// [`DiagnoseError::Interrupted`] if the caller asked to stop; a ledger that cannot be written.
 pub fn run(
     cases: &[Case],
     ledger: &Ledger,

@@ -1,4 +1,4 @@
-//! The self-test as tables for a terminal and as a page with pictures.
+//! The results of the self-test as tables and as a page with figures.
 
 use oleo_report::{Axis, Column, Curves, Field, FieldStyle, Page, Style, Table, Verdict, significant};
 
@@ -16,44 +16,41 @@ pub fn tables(s: &Summary) -> Vec<(&'static str, Table)> {
     let mut all = Vec::new();
     if !s.power.is_empty() {
         all.push((
-            "Power: found, placed, sized / campaigns, by size in units of noise",
+            "Detection rate: found, placed, sized / campaigns, by size in units of noise",
             power_table(s),
         ));
     }
     if !s.confusion.is_empty() {
-        all.push((
-            "Confusion: what is reported where one effect or none is concealed",
-            confusion_table(s),
-        ));
+        all.push(("Confusion: reported effects by concealed effect", confusion_table(s)));
     }
     if s.false_alarms.of + s.pairs_exact.of > 0 {
         all.push(("Rates", rates_table(s)));
     }
     if !s.coverage.is_empty() {
         all.push((
-            "Coverage of 95 % intervals, effects found at their place",
+            "Coverage of the 95 % intervals, for effects found at the right place",
             coverage_table(s),
         ));
     }
     if !s.reliability.is_empty() {
-        all.push(("Confidence against frequency", reliability_table(s)));
+        all.push(("Confidence against observed frequency", reliability_table(s)));
     }
     if let Some(c) = &s.calibration {
         let mut table = Table::new([Column::text("Evidence"), Column::number("Weight")]);
         for (name, weight) in c.names.iter().zip(&c.weights) {
             table.row([(*name).to_owned(), format!("{weight:.3}")]);
         }
-        all.push(("Weights of evidence that fit these trials", table));
+        all.push(("Weights of the evidence, fitted to these campaigns", table));
     }
     if !s.nameless.is_empty() {
-        all.push(("Terms left out of the search in turn", nameless_table(s)));
+        all.push(("Effects removed from the search", nameless_table(s)));
     }
     if !s.failed.is_empty() {
-        let mut table = Table::new([Column::text("Campaign"), Column::text("No diagnosis because")]);
+        let mut table = Table::new([Column::text("Campaign"), Column::text("Reason")]);
         for (name, why) in &s.failed {
             table.row([name.as_str(), why.as_str()]);
         }
-        all.push(("Without a diagnosis", table));
+        all.push(("Campaigns without a diagnosis", table));
     }
     all
 }
@@ -71,9 +68,9 @@ fn with_interval(rate: Rate) -> String {
 }
 
 fn power_table(s: &Summary) -> Table {
-    let mut columns = vec![Column::text("Concealed")];
+    let mut columns = vec![Column::text("Concealed effect")];
     columns.extend(SIZES.map(|size| Column::text(&format!("{size}"))));
-    columns.push(Column::number("False beside"));
+    columns.push(Column::number("False effect reported as well"));
     let mut table = Table::new(columns);
     for term in in_struts() {
         let rows: Vec<_> = s.power.iter().filter(|p| p.term == term).collect();
@@ -99,7 +96,10 @@ fn power_table(s: &Summary) -> Table {
 }
 
 fn confusion_table(s: &Summary) -> Table {
-    let mut table = Table::new([Column::text("Concealed"), Column::text("Reported (campaigns)")]);
+    let mut table = Table::new([
+        Column::text("Concealed effect"),
+        Column::text("Reported effects and number of campaigns"),
+    ]);
     for (hidden, row) in &s.confusion {
         let mut reported: Vec<(&String, &usize)> = row.iter().collect();
         reported.sort_by(|a, b| b.1.cmp(a.1).then(a.0.cmp(b.0)));
@@ -113,14 +113,20 @@ fn rates_table(s: &Summary) -> Table {
     let mut table = Table::new([
         Column::text("Rate"),
         Column::number("Campaigns"),
-        Column::number("Part [95 %]"),
+        Column::number("Fraction [95 % interval]"),
     ]);
     for (name, rate) in [
-        ("complete models with something reported (false alarms)", s.false_alarms),
-        ("two concealed: exactly those two reported", s.pairs_exact),
-        ("two concealed: each of them found", s.pairs_found),
-        ("something modelled: unseen recordings are met better", s.unseen_better),
-        ("size inside its 95 % interval", s.size_coverage),
+        (
+            "false alarms: an effect is reported although the model is complete",
+            s.false_alarms,
+        ),
+        ("two concealed effects: exactly these two are reported", s.pairs_exact),
+        ("two concealed effects: each of them is found", s.pairs_found),
+        (
+            "unseen recordings are predicted better with the found effects",
+            s.unseen_better,
+        ),
+        ("the true size is inside its 95 % interval", s.size_coverage),
     ] {
         table.row([name.to_owned(), fraction(rate), with_interval(rate)]);
     }
@@ -132,8 +138,8 @@ fn coverage_table(s: &Summary) -> Table {
         Column::text("Effect"),
         Column::text("Parameter"),
         Column::number("Covered"),
-        Column::number("Part [95 %]"),
-        Column::number("Unbounded"),
+        Column::number("Fraction [95 % interval]"),
+        Column::number("Intervals without an end"),
     ]);
     for c in s.coverage.iter().filter(|c| !c.key.is_empty()) {
         table.row([
@@ -150,9 +156,9 @@ fn coverage_table(s: &Summary) -> Table {
 fn reliability_table(s: &Summary) -> Table {
     let mut table = Table::new([
         Column::text("Confidence"),
-        Column::number("Mean"),
-        Column::number("There"),
-        Column::number("Part [95 %]"),
+        Column::number("Mean confidence"),
+        Column::number("Effects that are present"),
+        Column::number("Fraction [95 % interval]"),
     ]);
     for r in &s.reliability {
         table.row([
@@ -167,13 +173,13 @@ fn reliability_table(s: &Summary) -> Table {
 
 fn nameless_table(s: &Summary) -> Table {
     let mut table = Table::new([
-        Column::text("Left out"),
-        Column::number("Unlisted"),
+        Column::text("Removed effect"),
+        Column::number("Reported as unlisted"),
         Column::number("At its place"),
-        Column::number("Another name"),
-        Column::number("Unseen before"),
-        Column::number("after"),
-        Column::text("Reported"),
+        Column::number("Under another name"),
+        Column::number("Noise ratio on unseen recordings before"),
+        Column::number("Noise ratio on unseen recordings after"),
+        Column::text("Reported places"),
     ]);
     for n in &s.nameless {
         let places: Vec<String> = n.places.iter().map(|(p, count)| format!("{p} {count}")).collect();
@@ -190,7 +196,7 @@ fn nameless_table(s: &Summary) -> Table {
     table
 }
 
-/// The page.
+/// Builds the page of the self-test.
 #[must_use]
 pub fn page(s: &Summary, command: &str) -> Page {
     let mut page = Page::new("Self-test of the diagnosis", command);
@@ -205,7 +211,7 @@ pub fn page(s: &Summary, command: &str) -> Page {
             Verdict::Fail
         };
         let sentence = format!(
-            "False alarms on complete models: {} of {}, {} (at most {MOST_FALSE_ALARMS} is claimed).",
+            "An effect was reported for {} of {} complete models, a rate of {}. The claimed limit is {MOST_FALSE_ALARMS}.",
             rate.hits,
             rate.of,
             with_interval(rate)
@@ -216,9 +222,10 @@ pub fn page(s: &Summary, command: &str) -> Page {
     if let Some((title, table)) = tables.next() {
         page.outcome(table);
         page.section(title).text(
-            "Sizes are RMS over all channels and samples of what the effect changes, over the noise, after recalibration \
-             within tolerance; each campaign is counted at the nearest size. Found: the name is reported. Placed: at its place \
-             and no other. Sized: its first number within a fifth, or inside its 95 % interval.",
+            "The size of an effect is the RMS, over all channels and samples, of what the effect changes after recalibration \
+             within tolerance, divided by the noise. Each campaign is counted at the nearest size. An effect is found if its \
+             name is reported, placed if it is reported at its place and no other, and sized if its first parameter is within a \
+             fifth of the truth or the 95 % interval contains the truth.",
         );
         if !s.power.is_empty() {
             page.figure(power_picture(s));
@@ -233,9 +240,9 @@ pub fn page(s: &Summary, command: &str) -> Page {
             page.figure(reliability_picture(s));
         }
     }
-    page.section("What this does not show").text(
-        "Recordings here come from the same equations that the search uses, on a finer grid. Whether those equations are \
-         right is tested on recordings of an independent simulator and of real hardware, not here.",
+    page.section("Limits of the self-test").text(
+        "The recordings are simulated with the same equations that the search uses, on a finer grid. Whether these equations are \
+         right is tested with recordings of an independent simulator and of real hardware.",
     );
     page
 }
@@ -258,7 +265,7 @@ fn power_picture(s: &Summary) -> Field {
         Axis::new("Part", ""),
     ];
     let mut field = Field::new("Found at its place", FieldStyle::HeatMap, axes, &columns, &rows, &z);
-    field.caption("Gaps: no campaign had that size.");
+    field.caption("A gap means that no campaign had this size.");
     field
 }
 
@@ -295,7 +302,7 @@ fn confusion_picture(s: &Summary) -> Field {
     let axes = [
         Axis::new("Reported", "").ticks(x.iter().copied().zip(reported.iter().copied())),
         Axis::new("Concealed", "").ticks(y.iter().copied().zip(hidden.iter().copied())),
-        Axis::new("Part of campaigns", ""),
+        Axis::new("Fraction of campaigns", ""),
     ];
     Field::new("Confusion, all sizes", FieldStyle::HeatMap, axes, &x, &y, &z)
 }
@@ -304,7 +311,7 @@ fn reliability_picture(s: &Summary) -> Curves {
     let column = |of: &dyn Fn(&super::summary::Reliability) -> f64| s.reliability.iter().map(of).collect::<Vec<f64>>();
     let mut curves = Curves::new("Reliability", Axis::new("Confidence reported", "").range(0.45, 1.02));
     curves
-        .panel(Axis::new("Part that is there", "").range(0.0, 1.05))
+        .panel(Axis::new("Fraction that is present", "").range(0.0, 1.05))
         .series(Style::Dashed, "calibrated", &[0.5, 1.0], &[0.5, 1.0])
         .points_with_interval(
             "reports",

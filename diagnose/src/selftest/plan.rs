@@ -25,7 +25,7 @@ pub const PAIR: &str = "pair";
 pub struct Plan {
     /// Seed of all draws.
     pub seed: u64,
-    /// Campaigns.
+    /// Number of campaigns.
     pub campaigns: usize,
     /// What to conceal; everything where the list is empty.
     pub subjects: Vec<Subject>,
@@ -38,7 +38,7 @@ pub struct Plan {
 pub struct Case {
     /// Its name, which fixes everything drawn in it.
     pub name: String,
-    /// Effects and wanted sizes.
+    /// Concealed effects and the sizes that they should have, in units of noise.
     pub hidden: Vec<(EffectId, f64)>,
     /// Term that the search may not use.
     pub left_out: Option<EffectId>,
@@ -47,17 +47,17 @@ pub struct Case {
 /// What is concealed in a campaign.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Subject {
-    /// One effect.
+    /// One concealed effect.
     Effect(EffectId),
-    /// Nothing.
+    /// No concealed effect: the model is complete.
     Complete,
-    /// Two effects.
+    /// Two concealed effects.
     Pair,
 }
 
 /// A text that names no subject of a self-test.
 #[derive(Debug, thiserror::Error)]
-#[error("--terms {0}: not known; one or more of {known}, {COMPLETE}, {PAIR}, with commas between", known = in_struts().into_iter().map(EffectId::as_str).collect::<Vec<_>>().join(", "))]
+#[error("--terms {0}: there is no such term; give one or more of {known}, {COMPLETE}, {PAIR}, separated by commas", known = in_struts().into_iter().map(EffectId::as_str).collect::<Vec<_>>().join(", "))]
 pub struct UnknownTerm(String);
 
 impl FromStr for Subject {

@@ -1,4 +1,4 @@
-//! A simulated campaign as a folder like any other, to look into with `oleo diagnose` and `oleo predict`.
+//! Writes a simulated campaign as a folder that `oleo diagnose` and `oleo predict` can read.
 
 use std::path::Path;
 

@@ -1,4 +1,5 @@
-//! Trials put into tables: power, confusion, coverage, calibration of confidence, false alarms.
+//! Summarises the campaigns of a self-test: detection rate, confusion, coverage, calibration of the confidence, false
+//! alarms.
 
 use std::collections::BTreeMap;
 
@@ -13,7 +14,7 @@ use crate::vocabulary::{EffectId, Place};
 /// A part of a number of trials.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Rate {
-    /// Times it was so.
+    /// Number of campaigns in which it was so.
     pub hits: usize,
     /// Times it could have been.
     pub of: usize,
@@ -56,11 +57,11 @@ impl Rate {
 /// What became of one term at one size.
 #[derive(Debug, Clone, Serialize)]
 pub struct Power {
-    /// Id of the vocabulary.
+    /// Id of the effect in the vocabulary.
     pub term: EffectId,
     /// Size on the grid nearest to that reached, in units of noise.
     pub size: f64,
-    /// Reported at all.
+    /// Campaigns in which the effect was reported, at any place.
     pub found: Rate,
     /// Reported at its place and no other.
     pub placed: Rate,
@@ -73,24 +74,24 @@ pub struct Power {
 /// How often intervals hold the truth.
 #[derive(Debug, Clone, Serialize)]
 pub struct Coverage {
-    /// Id of the vocabulary.
+    /// Id of the effect in the vocabulary.
     pub term: EffectId,
     /// Parameter, its place left out.
     pub key: String,
     /// Bounded intervals that hold it.
     pub covered: Rate,
-    /// Intervals that end nowhere.
+    /// Intervals of which an end is not determined.
     pub unbounded: usize,
 }
 
 /// Reported effects of about one confidence.
 #[derive(Debug, Clone, Serialize)]
 pub struct Reliability {
-    /// Range of confidence.
+    /// Lower end of the range of confidence, 0 to 1.
     pub from: f64,
-    /// As [`Self::from`].
+    /// Upper end of the range of confidence, 0 to 1.
     pub to: f64,
-    /// Mean confidence reported.
+    /// Mean of the reported confidences in this range.
     pub mean: f64,
     /// How many are there, at their place.
     pub there: Rate,
@@ -99,9 +100,9 @@ pub struct Reliability {
 /// What was said of a term that the search was not allowed.
 #[derive(Debug, Clone, Serialize)]
 pub struct Nameless {
-    /// The term.
+    /// Effect that was removed from the search.
     pub term: EffectId,
-    /// `unlisted` reported.
+    /// Campaigns in which `unlisted` was reported instead.
     pub unlisted: Rate,
     /// With a law at the place of the effect.
     pub placed: Rate,
@@ -120,7 +121,7 @@ pub struct Nameless {
 pub struct Summary {
     /// Seed of all draws.
     pub seed: u64,
-    /// Trials.
+    /// Number of campaigns.
     pub trials: usize,
     /// Name and reason of trials without a diagnosis.
     pub failed: Vec<(String, String)>,
@@ -134,13 +135,13 @@ pub struct Summary {
     pub confusion: BTreeMap<String, BTreeMap<String, usize>>,
     /// Two concealed: exactly those two reported.
     pub pairs_exact: Rate,
-    /// Two concealed: effects found.
+    /// Effects that were found in campaigns with two concealed effects.
     pub pairs_found: Rate,
-    /// Intervals, by parameter.
+    /// Coverage of the confidence intervals, by parameter.
     pub coverage: Vec<Coverage>,
     /// Intervals of the sizes (the first number of each effect).
     pub size_coverage: Rate,
-    /// Calibration of confidence.
+    /// Reported confidence against the observed frequency.
     pub reliability: Vec<Reliability>,
     /// Weights of evidence that would make confidence right.
     pub calibration: Option<Calibration>,

@@ -20,13 +20,13 @@ use crate::vocabulary::{EffectId, Place};
 /// A fitted number of a reported effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Number {
-    /// Key with unit.
+    /// Key of the parameter with its unit.
     pub key: String,
-    /// Value.
+    /// Estimated value, in the unit of the key.
     pub value: f64,
     /// 95 % interval; `None` where the recordings do not bound it.
     pub low: Option<f64>,
-    /// As [`Self::low`].
+    /// Upper end of the 95 % interval; `None` if it is not determined.
     pub high: Option<f64>,
 }
 
@@ -37,34 +37,34 @@ pub struct Reported {
     pub id: EffectId,
     /// Where it is said to act.
     pub place: Place,
-    /// Confidence as reported.
+    /// Reported confidence, 0.05 to 0.99.
     pub confidence: f64,
     /// Held-out gain in cost and its standard error; `None` for what is seen but not modelled.
     pub gain: Option<(f64, f64)>,
     /// Lead in cost over the strongest rival, and its standard error.
     pub lead: Option<(f64, f64)>,
-    /// The strongest rival.
+    /// The strongest rival, if one could be fitted.
     pub rival: Option<String>,
     /// True if the report calls the two ambiguous.
     pub ambiguous: bool,
-    /// Its numbers.
+    /// Reported parameters of the effect.
     pub numbers: Vec<Number>,
 }
 
 /// The outcome of one campaign.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
-    /// Name of the case.
+    /// Name of the campaign.
     pub name: String,
     /// Ids concealed, with the size wanted and the size reached, in units of noise.
     pub hidden: Vec<(EffectId, f64, f64)>,
-    /// The numbers concealed.
+    /// True values of the concealed parameters.
     pub truth: Vec<Truth>,
     /// Term that the search was not allowed.
     pub left_out: Option<EffectId>,
-    /// What was reported.
+    /// Effects that the diagnosis reported.
     pub reported: Vec<Reported>,
-    /// Number of residuals.
+    /// Number of residuals of the campaign.
     pub residuals: usize,
     /// Held-out noise ratio of the calibrated and of the improved model.
     pub noise_ratio: (f64, f64),
@@ -79,7 +79,7 @@ pub struct Trial {
 /// Makes the campaign and diagnoses it.
 ///
 /// # Errors
-/// The wish to stop; anything else that goes wrong is part of the outcome.
+/// [`DiagnoseError::Interrupted`] if the caller asked to stop; every other error is part of the result.
 pub fn run(case: &Case, stop: &AtomicBool) -> Result<Trial, DiagnoseError> {
     let mut trial = Trial {
         name: case.name.clone(),
@@ -187,7 +187,7 @@ fn noise_ratio(model_toml: &str, recordings: &[Recording]) -> Result<f64, Diagno
 }
 
 impl Trial {
-    /// Ids concealed.
+    /// Ids of the concealed effects.
     pub fn hidden_ids(&self) -> Vec<EffectId> {
         self.hidden.iter().map(|(id, ..)| *id).collect()
     }

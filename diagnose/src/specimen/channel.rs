@@ -1,16 +1,30 @@
-//! What is compared, and over which quantities residuals are explained.
+//! The channels that are compared, and the states on which residuals may depend.
 
 use std::collections::BTreeMap;
+
+use oleo_plant_sim::model_file::InvalidValue;
+use oleo_plant_sim::model_file::instruments::noise_of_compared;
 
 use crate::vocabulary::{Column, State};
 
 /// A measured quantity that the model predicts.
 #[derive(Debug, Clone)]
 pub struct Channel {
-    /// Its column.
+    /// Column of the recordings that the channel is.
     pub column: Column,
     /// Standard deviation of its white noise, in the unit of the column.
     pub noise: f64,
+}
+
+impl Channel {
+    /// A compared column with the noise that the table `[noise]` of the model file states.
+    ///
+    /// # Errors
+    /// The table states no noise for it, or zero.
+    pub fn of(column: Column, noise: &BTreeMap<String, f64>) -> Result<Self, InvalidValue> {
+        let noise = noise_of_compared(noise, column.as_str())?;
+        Ok(Self { column, noise })
+    }
 }
 
 /// One series a channel, each as long as the recording.
@@ -19,9 +33,9 @@ pub type Series = Vec<Vec<f64>>;
 /// A state over the samples of one recording, or of several one after the other; NaN where it is not defined.
 #[derive(Debug, Clone)]
 pub struct StateSeries {
-    /// Which state.
+    /// The state whose values these are.
     pub state: State,
-    /// Its values.
+    /// Value of the state at each sample, in the state's unit.
     pub values: Vec<f64>,
 }
 
@@ -31,10 +45,4 @@ impl StateSeries {
     pub const fn new(state: State, values: Vec<f64>) -> Self {
         Self { state, values }
     }
-}
-
-/// The number above zero that a table of a model file (`[noise]`, `[tolerance]`) states for a key.
-#[must_use]
-pub fn stated(table: &BTreeMap<String, f64>, key: &str) -> Option<f64> {
-    table.get(key).copied().filter(|value| *value > 0.0)
 }

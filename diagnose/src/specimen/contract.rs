@@ -1,4 +1,6 @@
-//! What every specimen offers, and all that the search, the report and the page know of it.
+//! The trait of a specimen, which is all that the search, the report and the page know of it.
+
+use oleo_plant_sim::model_file::InvalidValue;
 
 use super::channel::{Channel, Series, StateSeries};
 use super::hypothesis::Hypothesis;
@@ -10,58 +12,64 @@ use crate::recording::{ColumnSpec, GapPolicy, Recording};
 use crate::vocabulary::SpecimenKind;
 use crate::vocabulary::{Column, Place};
 
-/// What is believed of a specimen: its model file, read and checked. With recordings it becomes a [`Specimen`].
+/// The given model of a specimen, read from its model file and checked. Together with recordings it becomes a [`Specimen`].
 pub trait BelievedModel {
     /// The columns that its recordings must have: first the displacement or other main input, then the compared channels,
     /// then all other inputs.
     fn columns(&self) -> Vec<ColumnSpec>;
 
-    /// What is done with a hole in the time column of a recording.
+    /// Refuse a model that does not state the noise of every channel, by which its residuals are judged.
+    ///
+    /// # Errors
+    /// The channels whose noise is missing; a compared channel whose noise is zero.
+    fn check_noise(&self) -> Result<(), InvalidValue>;
+
+    /// How a gap in the time column of a recording is treated.
     fn gap_policy(&self) -> GapPolicy;
 
     /// Model and recordings put together. The columns of each recording are those of [`Self::columns`].
     ///
     /// # Errors
-    /// Numbers with which the specimen cannot even stand still.
+    /// Values with which the specimen cannot be at rest.
     fn with_recordings(self: Box<Self>, recordings: Vec<Recording>) -> Result<Box<dyn Specimen>, DiagnoseError>;
 }
 
-/// A specimen: its recordings, what is believed of it, what that may lack, and what a model with all that predicts.
+/// A specimen: its recordings, its given model, the candidates, and the predictions of a model with some of them.
 pub trait Specimen: Sync {
-    /// Its kind.
+    /// The kind of specimen.
     fn kind(&self) -> SpecimenKind;
 
     /// The recordings, each with the columns of [`BelievedModel::columns`].
     fn recordings(&self) -> &[Recording];
 
-    /// What is compared, in the order of the recordings' columns.
+    /// The channels that are compared, in the order of the recordings' columns.
     fn channels(&self) -> &[Channel];
 
-    /// Values that may be off within their tolerance. They are part of every fit.
+    /// Calibration parameters: values that may differ from nominal within their tolerance. They are part of every fit.
     fn calibration(&self) -> &[Parameter];
 
-    /// What the model may lack.
+    /// The effects that the model may lack.
     fn candidates(&self) -> &[Candidate];
 
-    /// The true quantities under a hypothesis, before any instrument: one series a channel.
+    /// The true quantities under a hypothesis, without sensor faults: one series for each channel.
     ///
     /// # Errors
-    /// A message where the model does not exist at these values.
+    /// A message if the model cannot be simulated with these values.
     fn simulate(&self, hypothesis: &Hypothesis, recording: usize) -> Result<Series, String>;
 
-    /// What the instruments show of true quantities.
+    /// The readings of the sensors for the true quantities.
     fn observe(&self, hypothesis: &Hypothesis, recording: usize, truth: &Series) -> Series;
 
-    /// The model file with the hypothesis in it.
+    /// The model file of a hypothesis.
     ///
     /// # Errors
-    /// A law that the model file cannot hold.
+    /// A law that cannot be written into the model file.
     fn model_toml(&self, hypothesis: &Hypothesis) -> Result<String, String>;
 
-    /// Quantities over which residuals are shown and explained. Which of them there are may differ between recordings.
+    /// The states over which residuals are shown and explained. They may differ between recordings.
     fn states(&self, recording: usize) -> Vec<StateSeries>;
 
-    /// What the model gets of a recording, for a sentence: "displacement and switching signals".
+    /// The inputs of the simulation in words, such as "displacement and switching signals".
     fn inputs_in_words(&self) -> &'static str;
 
     /// Measured series of a channel.
@@ -69,18 +77,17 @@ pub trait Specimen: Sync {
         &self.recordings()[recording].columns[1 + channel]
     }
 
-    /// Noise ratio that a complete model reaches: above one where the noise of an input comes through.
+    /// Noise ratio that a complete model reaches, 1 or more; above 1 if the noise of an input affects the prediction.
     fn noise_floor(&self, _hypothesis: &Hypothesis) -> f64 {
         1.0
     }
 
-    /// True if simulating all recordings takes milliseconds, so that what is otherwise approximated is computed.
+    /// Whether simulating all recordings takes only milliseconds. Then quantities are computed that are otherwise approximated.
     fn simulates_in_milliseconds(&self) -> bool {
         false
     }
 
-    /// True if the model is said to be complete but for what is concealed or damaged, so that a misfit that stays is itself a
-    /// finding.
+    /// Whether the model is stated to be complete apart from missing effects, so that a remaining misfit is itself a result.
     fn is_believed_complete(&self) -> bool {
         false
     }
@@ -92,27 +99,27 @@ pub trait Specimen: Sync {
         Some(serde_json::json!({ "place": c.place.to_string(), "form": c.label, "keys": keys, "values": values }))
     }
 
-    /// What the recordings show without any model being fitted, one line each.
+    /// Results that the recordings show without fitting a model, one line each.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// Relations between measured neighbours that hold whatever happens elsewhere, tested without simulation.
+    /// Relations between neighbouring sensors that hold whatever happens elsewhere, tested without simulation.
     fn measured_relations(&self) -> Vec<MeasuredRelation> {
         Vec::new()
     }
 
-    /// The channels next to a place, the one downstream of it last; none where all are as near.
+    /// The channels next to a place, the one downstream of it last; none if all are equally near.
     fn nearest_channels(&self, place: &Place) -> Vec<Column> {
         place.sensor().cloned().into_iter().collect()
     }
 
-    /// What was set and held at a sample: "valve 1 open".
+    /// The settings at a sample, such as "valve 1 open".
     fn settings(&self, _recording: usize, _sample: usize) -> Vec<String> {
         Vec::new()
     }
 
-    /// The specimen as a drawing (SVG) with the places marked where something was found.
+    /// The specimen as a drawing (SVG) with the given places marked.
     fn drawing(&self, _found: &[&Place]) -> Option<String> {
         None
     }

@@ -1,4 +1,4 @@
-//! A specimen as a drawing (SVG), with the places found in colour.
+//! Draws a specimen as SVG with the places of the misfit in colour.
 
 use std::fmt::Write;
 

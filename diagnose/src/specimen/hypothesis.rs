@@ -1,4 +1,4 @@
-//! A model to simulate.
+//! A hypothesis: the given model with calibrated values and added effects.
 
 /// A model to simulate: values of the calibration, and the effects that are present with the values of their parameters.
 #[derive(Debug, Clone, Default)]

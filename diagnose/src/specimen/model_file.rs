@@ -1,4 +1,4 @@
-//! A model file of any kind: the one place that knows all kinds of specimen.
+//! Reads a model file of any kind. This is the only place that knows all kinds of specimen.
 
 use oleo_plant_sim::model_file::InvalidValue;
 use oleo_plant_sim::model_file::names::suggestion;
@@ -12,7 +12,7 @@ use crate::vocabulary::SpecimenKind;
 
 /// A model file that was read and checked.
 pub struct ModelFile {
-    /// Name of the individual.
+    /// Name of the specimen.
     pub name: String,
     /// What is believed of it.
     pub model: Box<dyn BelievedModel>,
@@ -31,6 +31,7 @@ impl ModelFile {
             SpecimenKind::GasSpring => Box::new(GasSpringModel::from_toml(text, source)?),
             SpecimenKind::Cylinder => Box::new(CylinderModel::from_toml(text, source)?),
         };
+        model.check_noise().map_err(|invalid| invalid.in_file(text, source))?;
         Ok(Self { name: head.name, model })
     }
 }

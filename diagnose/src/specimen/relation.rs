@@ -6,7 +6,7 @@ const LEAST_SAMPLES: usize = 20;
 /// A relation between measured neighbours that holds whatever happens elsewhere.
 #[derive(Debug, Clone)]
 pub struct MeasuredRelation {
-    /// What is tested.
+    /// The relation in words.
     pub name: &'static str,
     /// RMS of its misfit after removing a constant, in units of its noise; `None` where too few samples can test it.
     pub noise_ratio: Option<f64>,

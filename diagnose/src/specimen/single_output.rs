@@ -1,4 +1,4 @@
-//! What all specimens with one compared channel share.
+//! The common part of all specimens with only one compared channel.
 //!
 //! Their model is an equation for a whole recording: inputs and parameters in, the one output out. A kind says how the model
 //! is made from a hypothesis and what it answers; everything else a [`Specimen`] offers is here.
@@ -12,12 +12,12 @@ use crate::recording::Recording;
 use crate::vocabulary::Place;
 use crate::vocabulary::SpecimenKind;
 
-/// What a kind of specimen with one compared channel says of itself.
+/// The trait of a kind of specimen with one compared channel.
 pub trait SingleOutput: Sync {
-    /// The model file's form.
+    /// The model file of this kind.
     type Model;
 
-    /// Its kind.
+    /// The kind of specimen.
     fn kind(&self) -> SpecimenKind;
 
     /// What the model gets of a recording, for a sentence.
@@ -53,11 +53,11 @@ pub trait SingleOutput: Sync {
 
 /// A specimen with one compared channel.
 pub struct SingleOutputSpecimen<K> {
-    /// What its kind says.
+    /// The part that differs between the kinds of specimen.
     pub kind: K,
-    /// Its recordings.
+    /// Recordings of the specimen.
     pub recordings: Vec<Recording>,
-    /// The one channel.
+    /// The only channel that is predicted.
     pub channel: Channel,
     /// Values that may be off within tolerance.
     pub calibration: Vec<Parameter>,

@@ -1,4 +1,4 @@
-//! The words that recordings, model files and reports are written in, as types.
+//! The vocabulary of recordings, model files and reports, as types.
 //!
 //! Each of them is text in a file and a type everywhere else: a name that is not in the vocabulary cannot be written, and
 //! a `match` that forgets one does not compile. The texts are those of the recordings' README.

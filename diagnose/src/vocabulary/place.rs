@@ -33,7 +33,7 @@ pub struct Place {
 pub enum VehiclePart {
     /// All corners alike, with one value.
     All,
-    /// One corner.
+    /// One corner of the vehicle.
     Corner(Corner),
 }
 
@@ -41,9 +41,9 @@ pub enum VehiclePart {
 /// 0.4 l accumulator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Branch {
-    /// Branch 1.
+    /// Path 1 with damper 1, valve 1 and accumulator 1.
     First,
-    /// Branch 2.
+    /// Path 2 with damper 2, valves 2 and 3, and accumulator 2.
     Second,
 }
 
@@ -88,7 +88,7 @@ pub enum Site {
     Chamber,
     /// The instrument behind a column.
     Sensor(Column),
-    /// Nobody can tell.
+    /// The place is unknown.
     Unknown,
 }
 

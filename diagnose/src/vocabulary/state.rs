@@ -12,7 +12,7 @@ pub enum State {
     /// Displacement from the static position, jounce positive.
     #[strum(serialize = "displacement, m")]
     Displacement,
-    /// Speed, jounce positive.
+    /// Speed, m/s, positive in jounce.
     #[strum(serialize = "speed, m/s")]
     Speed,
     /// Size of the speed, whatever its direction.
@@ -21,7 +21,7 @@ pub enum State {
     /// Direction of travel: 1 in jounce, -1 in rebound, 0 at rest.
     #[strum(serialize = "direction of travel")]
     Direction,
-    /// Acceleration, jounce positive.
+    /// Acceleration, m/s2, positive in jounce.
     #[strum(serialize = "acceleration, m/s2")]
     Acceleration,
     /// Time since the last edge of a switching signal.

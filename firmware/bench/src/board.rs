@@ -35,7 +35,7 @@ impl Counter {
     }
 }
 
-/// Ends the emulation.
+/// Ends the emulation, with exit status 0 if `well`.
 pub fn leave(well: bool) -> ! {
     debug::exit(if well { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
     loop {

@@ -1,4 +1,4 @@
-//! A synthetic drive: what the sensors say in each tick, the same to the bit on every machine.
+//! A synthetic drive: sensor readings for each tick that are bit-identical on every machine.
 //!
 //! It is not a model of a vehicle, which would need f64 and std, but it gives each part of the controller work: four struts on a
 //! rough road, a slalom on a smooth one, sensor noise, and at the end readings that are missing or wrong. The gas follows the
@@ -97,7 +97,7 @@ impl Drive {
         .map(|p| Absolute(p).gauge())
     }
 
-    /// White, -1..1 (xorshift32, Marsaglia 2003).
+    /// White, -1..1 (xorshift32, Marsaglia 2003). A generator of a crate would change the golden hash of the valve words.
     fn noise(&mut self) -> f32 {
         self.random ^= self.random << 13;
         self.random ^= self.random >> 17;

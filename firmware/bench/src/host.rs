@@ -1,4 +1,5 @@
-//! The host in the board's place: no counter (callgrind counts from outside), standard output.
+//! The host version of the board: it has no instruction counter, because callgrind counts from outside, and prints to
+//! standard output.
 
 pub use std::println as say;
 
@@ -6,7 +7,7 @@ pub use std::println as say;
 pub struct Counter;
 
 impl Counter {
-    /// Always there.
+    /// Starts the program. On the host it always succeeds.
     pub fn start() -> Option<Self> {
         Some(Counter)
     }
@@ -18,7 +19,7 @@ impl Counter {
     }
 }
 
-/// Ends the process.
+/// Ends the process, with exit status 0 if `well`.
 pub fn leave(well: bool) -> ! {
     std::process::exit(i32::from(!well))
 }

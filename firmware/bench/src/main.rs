@@ -1,4 +1,5 @@
-//! The controller over a synthetic drive: the valve words it commands, and the instructions it takes.
+//! Runs the controller over a synthetic drive, and prints the hash of the valve words and the instructions that it
+//! takes.
 //!
 //! One program for two machines. On the emulated Cortex-M4F it counts instructions of each tick; on the host it is what
 //! callgrind looks at. Both print the hash of all valve words, which must be the same: the promise that what is

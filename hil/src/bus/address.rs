@@ -19,7 +19,9 @@ pub enum BusAddress {
 
 /// A text that is not the address of a bus.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0:?} is not a bus: give inproc, socketcan:IFACE (socketcan:vcan0), slcan:DEVICE or slcan:tcp:HOST:PORT")]
+#[error(
+    "{0:?} is not a bus: give inproc, socketcan:IFACE (such as socketcan:vcan0), slcan:DEVICE or slcan:tcp:HOST:PORT"
+)]
 pub struct AddressError(String);
 
 impl BusAddress {

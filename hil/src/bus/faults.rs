@@ -1,4 +1,4 @@
-//! A bus that disturbs frames on purpose, in the same way every time.
+//! A bus decorator that disturbs frames deliberately and reproducibly.
 //!
 //! Each [`Injection`] disturbs some messages during some ticks with some probability. Every injection has a random stream of its
 //! own (ChaCha8, seeded by the scenario), so that adding one does not change what the others do. Only messages of the vehicle's
@@ -11,6 +11,7 @@ use oleo_controller::can::MESSAGES;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
+use super::recorder::Recorder;
 use super::{Bus, BusCounters, BusError};
 use crate::Frame;
 
@@ -26,14 +27,22 @@ pub enum Disturbance {
     },
     /// The frame arrives later, after the other frames of that tick.
     Delay {
-        /// By how many ticks.
+        /// Number of ticks by which the frame is late.
         ticks: u16,
     },
     /// The frame arrives twice.
     Duplicate,
+    /// Instead of the frame arrives the one that was sent under its identifier so many ticks before, where one was.
+    Replay {
+        /// Age of what arrives, ticks.
+        ticks: u16,
+    },
+    /// A second sender follows each frame with one of its own: the content of the first frame that it heard, with a counter that is one
+    /// ahead and a right CRC.
+    Masquerade,
 }
 
-/// Which frames are disturbed.
+/// Frames that a fault disturbs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
     /// Every message of the database.
@@ -84,6 +93,10 @@ pub struct InjectionCounts {
     pub delayed: u64,
     /// Number of frames that were delivered twice.
     pub duplicated: u64,
+    /// Number of frames that were replaced by old ones.
+    pub replayed: u64,
+    /// Number of forged frames.
+    pub forged: u64,
 }
 
 /// A decorator that disturbs frames in both directions.
@@ -91,16 +104,16 @@ pub struct InjectionCounts {
 pub struct FaultInjector<B> {
     inner: B,
     tick: u32,
-    injections: Vec<(Injection, ChaCha8Rng)>,
+    injections: Vec<(Injection, ChaCha8Rng, Recorder)>,
     late_sent: VecDeque<(u32, Frame)>,
     late_received: VecDeque<(u32, Frame)>,
     ready: VecDeque<Frame>,
     counts: InjectionCounts,
 }
 
-/// What becomes of a frame: how often it goes on, or how many ticks later, and its content.
+/// What becomes of a frame: how often it goes on, or how many ticks later, its content, and a forged one that follows.
 enum Fate {
-    Copies(u8, Frame),
+    Copies(u8, Frame, Option<Frame>),
     Late(u16, Frame),
 }
 
@@ -110,7 +123,7 @@ impl<B: Bus> FaultInjector<B> {
         let stream = |(index, injection): (usize, &Injection)| {
             let mut rng = ChaCha8Rng::seed_from_u64(seed);
             rng.set_stream(index as u64);
-            (*injection, rng)
+            (*injection, rng, Recorder::default())
         };
         Self {
             inner,
@@ -128,7 +141,7 @@ impl<B: Bus> FaultInjector<B> {
         self.counts
     }
 
-    /// The wrapped bus.
+    /// The bus that this decorator wraps.
     pub fn inner(&self) -> &B {
         &self.inner
     }
@@ -139,22 +152,31 @@ impl<B: Bus> FaultInjector<B> {
     }
 
     fn fate(&mut self, frame: &Frame) -> Fate {
-        let (mut frame, mut copies) = (*frame, 1);
+        let (mut frame, mut copies, mut forged) = (*frame, 1, None);
         let ours = frame
             .standard_id()
             .filter(|id| MESSAGES.iter().any(|message| message.id == *id));
-        let Some(id) = ours else { return Fate::Copies(1, frame) };
+        let Some(id) = ours else {
+            return Fate::Copies(1, frame, None);
+        };
         let tick = self.tick;
-        for (injection, rng) in &mut self.injections {
-            let concerned =
-                injection.target.includes(id) && (injection.from_tick..injection.until_tick).contains(&tick);
+        for (injection, rng, recorder) in &mut self.injections {
+            if !injection.target.includes(id) {
+                continue;
+            }
+            // Listened to from the start, so that there is something to replay when the fault begins.
+            let old = match injection.disturbance {
+                Disturbance::Replay { ticks } => recorder.replay(tick, ticks, &frame),
+                _ => None,
+            };
+            let concerned = (injection.from_tick..injection.until_tick).contains(&tick);
             if !concerned || !happens(rng, injection.probability) {
                 continue;
             }
             match injection.disturbance {
                 Disturbance::Drop => {
                     self.counts.dropped += 1;
-                    return Fate::Copies(0, frame);
+                    return Fate::Copies(0, frame, forged);
                 }
                 Disturbance::Corrupt { bits } => {
                     self.counts.corrupted += 1;
@@ -171,9 +193,19 @@ impl<B: Bus> FaultInjector<B> {
                     self.counts.duplicated += 1;
                     copies = 2;
                 }
+                Disturbance::Replay { .. } => {
+                    if let Some(old) = old {
+                        self.counts.replayed += 1;
+                        frame = old;
+                    }
+                }
+                Disturbance::Masquerade => {
+                    forged = recorder.forge(tick, &frame);
+                    self.counts.forged += u64::from(forged.is_some());
+                }
             }
         }
-        Fate::Copies(copies, frame)
+        Fate::Copies(copies, frame, forged)
     }
 }
 
@@ -205,7 +237,10 @@ impl<B: Bus> Bus for FaultInjector<B> {
             }
         }
         match self.fate(frame) {
-            Fate::Copies(copies, frame) => (0..copies).try_for_each(|_| self.inner.send(&frame)),
+            Fate::Copies(copies, frame, forged) => {
+                let mut frames = (0..copies).map(|_| frame).chain(forged);
+                frames.try_for_each(|frame| self.inner.send(&frame))
+            }
             Fate::Late(ticks, frame) => {
                 self.late_sent
                     .push_back((self.tick.saturating_add(u32::from(ticks)), frame));
@@ -223,7 +258,9 @@ impl<B: Bus> Bus for FaultInjector<B> {
                 return Ok(None);
             };
             match self.fate(&frame) {
-                Fate::Copies(copies, frame) => self.ready.extend((0..copies).map(|_| frame)),
+                Fate::Copies(copies, frame, forged) => {
+                    self.ready.extend((0..copies).map(|_| frame).chain(forged));
+                }
                 Fate::Late(ticks, frame) => {
                     self.late_received
                         .push_back((self.tick.saturating_add(u32::from(ticks)), frame));
@@ -292,6 +329,39 @@ mod tests {
         let flipped: u32 = arrived[2][0].data().iter().map(|byte| (byte ^ 2).count_ones()).sum();
         assert_eq!((flipped, arrived[1][0]), (1, sensor(1)));
         assert_eq!(bus.counts().corrupted, 2);
+    }
+
+    #[test]
+    fn a_replay_is_as_old_as_it_says() {
+        let (mut bus, mut far) = with(Disturbance::Replay { ticks: 2 }, Target::Sensors, 1.0);
+        let arrived = run(&mut bus, &mut far);
+        let of: Vec<_> = arrived.iter().map(|frames| frames[0]).collect();
+        assert_eq!(of, [0, 1, 0, 1, 4, 5].map(sensor));
+        assert_eq!(bus.counts().replayed, 2);
+    }
+
+    /// The receiver's own check takes a forged frame for the next one, and refuses the real one that follows.
+    #[test]
+    fn a_masquerade_is_one_ahead_with_a_right_crc() {
+        use oleo_controller::can::{CheckStatus, Checker, PRESSURE, Protector};
+        let contract = PRESSURE[oleo_interface::Corner::FrontLeft];
+        let (mut bus, mut far) = with(Disturbance::Masquerade, Target::Id(contract.id), 1.0);
+        let (mut sender, mut receiver) = (Protector::new(&contract), Checker::new(&contract));
+        let mut seen = Vec::new();
+        for tick in 0..4u32 {
+            bus.begin_tick(tick);
+            let mut data = [tick as u8 * 0x10; 8];
+            sender.protect(&mut data);
+            bus.send(&Frame::whole(standard(contract.id), data)).unwrap();
+            while let Some(frame) = far.receive(Duration::ZERO).unwrap() {
+                let data = <[u8; 8]>::try_from(frame.data()).unwrap();
+                seen.push((data[7], receiver.check(&data)));
+            }
+        }
+        use CheckStatus::{Initial, Ok};
+        // Tick 2 is the first of the fault: the attacker listens. In tick 3 its frame follows the real one.
+        assert_eq!(seen, [(0x00, Initial), (0x10, Ok), (0x20, Ok), (0x30, Ok), (0x20, Ok)]);
+        assert_eq!(bus.counts().forged, 1);
     }
 
     #[test]

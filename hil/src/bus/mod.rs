@@ -1,4 +1,4 @@
-//! Something that carries CAN frames between two nodes.
+//! Buses that carry CAN frames between two nodes.
 //!
 //! Nodes know only the trait [`Bus`], so that the same plant and the same controller run over memory, a kernel socket or a serial
 //! line. Decorators wrap any bus and are buses themselves:
@@ -13,6 +13,7 @@
 mod address;
 mod faults;
 mod in_process;
+mod recorder;
 mod serial_line;
 mod slcan;
 mod socket_can;
@@ -46,9 +47,9 @@ pub enum BusError {
     Io {
         /// Address of the bus.
         bus: String,
-        /// What was attempted.
+        /// What was attempted, such as "sending".
         action: &'static str,
-        /// The system's reason.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// The other end is gone for good.

@@ -1,4 +1,4 @@
-//! A Linux CAN interface: `vcan0`, `can0`.
+//! A Linux CAN interface such as `vcan0` or `can0`, through SocketCAN.
 //!
 //! Three facts of SocketCAN determine this file. A slow reader loses frames *silently*, so the receive buffer is enlarged and the
 //! kernel's drop counter (`SO_RXQ_OVFL`) is read with every frame. A full transmit queue is `ENOBUFS`, a hard error in most

@@ -14,9 +14,9 @@ use crate::{Frame, sync};
 /// Direction of a frame, seen from the end that keeps the trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// Sent by this end.
+    /// The frame was sent by this node.
     Sent,
-    /// Received by this end.
+    /// The frame was received by this node.
     Received,
 }
 
@@ -29,7 +29,7 @@ pub struct TraceEntry {
     pub wall_us: u32,
     /// Direction of the frame.
     pub direction: Direction,
-    /// The frame.
+    /// The frame that was sent.
     pub frame: Frame,
 }
 

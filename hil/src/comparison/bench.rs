@@ -1,11 +1,13 @@
 //! The vehicle under comparison, and the controller's description of it.
 
-use oleo_controller::{Builder, VehicleDescription};
-use oleo_interface::{Axle, Axles, Corners};
+use oleo_controller::Builder;
+use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::handling::HandlingParameters;
 use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::variation::{SensorErrors, Variation};
 use oleo_plant_sim::vehicle::VehicleParameters;
+
+use crate::description;
 
 /// Noise of the displacement sensors, m, and of the pressure sensors, Pa: the strut preset's `[noise]`.
 const NOISE: (f64, f64) = (5.0e-6, 4.0e3);
@@ -64,30 +66,10 @@ impl Bench {
     /// The controller of this vehicle as designed: the dimensions and inertias of its data sheet. What it carries is not told:
     /// the struts measure it.
     pub fn controller(&self) -> Builder {
-        let strut = &self.struts[oleo_interface::Corner::FrontLeft];
+        let strut = &self.struts[Corner::FrontLeft];
         Builder {
-            vehicle: describe(&self.vehicle, &self.handling, strut),
+            vehicle: description::describe(&self.vehicle, &self.handling, strut),
             ..Builder::default()
         }
-    }
-}
-
-/// The controller's description of a vehicle.
-pub fn describe(vehicle: &VehicleParameters, handling: &HandlingParameters, strut: &StrutModel) -> VehicleDescription {
-    let ahead_m = vehicle.body_cg_behind_front_axle_m();
-    let wheelbase_m = vehicle.layout.wheelbase_m;
-    // The roll axis runs through both roll centres.
-    let centre = |axle: Axle| handling.axle(axle).roll_centre_height_m;
-    let axis_m = centre(Axle::Front) + (centre(Axle::Rear) - centre(Axle::Front)) * ahead_m / wheelbase_m;
-    let body = &vehicle.body;
-    VehicleDescription {
-        piston_area_m2: strut.piston_area_m2() as f32,
-        strut_spacing_m: Axles::from_fn(|axle| vehicle.axle(axle).strut_spacing_m as f32),
-        axle_distance_m: Axles::new(ahead_m as f32, (wheelbase_m - ahead_m) as f32),
-        roll_arm_m: (vehicle.body_cg_height_m() - axis_m) as f32,
-        anti_roll_stiffness_n_m_rad: Axles::from_fn(|axle| vehicle.axle(axle).anti_roll_stiffness_n_m_rad as f32),
-        roll_gyration_m: (body.roll_inertia_kg_m2 / body.sprung_mass_kg).sqrt() as f32,
-        pitch_gyration_m: (body.pitch_inertia_kg_m2 / body.sprung_mass_kg).sqrt() as f32,
-        ..VehicleDescription::default()
     }
 }

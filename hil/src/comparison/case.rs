@@ -33,6 +33,7 @@ impl DriveCase {
             kind,
             speed_m_s,
             entry_m: RUN_UP_S * speed_m_s,
+            duration_s: None,
         };
         Self::new(road, manoeuvre, driver, seed)
     }

@@ -18,7 +18,7 @@ mod scores;
 mod sensors;
 mod setting;
 
-pub use bench::{Bench, describe};
+pub use bench::Bench;
 pub use case::DriveCase;
 pub use compare::{CompareError, Results, compare, settings};
 pub use drive::{ComparisonError, beginning_s, drive};

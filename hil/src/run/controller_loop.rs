@@ -1,4 +1,4 @@
-//! The controller's half of a run: it answers ticks until the plant says that the run is over, or is gone.
+//! The controller's half of a run: it answers ticks until the plant ends the run or is lost.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! Why a run did not come about.
+//! Errors that prevent or end a run.
 
 use oleo_controller::ConfigurationError;
 use oleo_interface::tick::TICK_S;
@@ -19,13 +19,19 @@ pub enum RunError {
     /// Strut and vehicle do not fit together.
     #[error(transparent)]
     Ride(#[from] oleo_plant_sim::vehicle::RideError),
-    /// The road is wrong.
+    /// The road cannot be read or made.
     #[error(transparent)]
     Road(#[from] oleo_plant_sim::road::RoadError),
+    /// The manoeuvre has a setting that it cannot have.
+    #[error("{0}")]
+    Course(oleo_plant_sim::model_file::InvalidValue),
+    /// The vehicle's motion is not finite.
+    #[error(transparent)]
+    NotFinite(#[from] oleo_plant_sim::course::NotFinite),
     /// The controller cannot be configured.
     #[error(transparent)]
     Configuration(#[from] ConfigurationError),
-    /// The bus failed.
+    /// The bus failed before or during the run.
     #[error(transparent)]
     Bus(#[from] BusError),
     /// The two nodes did not find each other, or want different runs.
@@ -36,19 +42,23 @@ pub enum RunError {
     Unreadable {
         /// Path of the file.
         path: String,
-        /// The system's reason.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// The integration step does not divide the tick.
-    #[error("{vehicle}: solver.step_s is {step_s}: must divide the controller's tick of {TICK_S} s")]
+    #[error(
+        "{vehicle}: solver.step_s is {step_s}: must be {TICK_S} s, the controller's tick, divided by a whole number"
+    )]
     Step {
         /// Name of the vehicle or path of its parameter file.
         vehicle: String,
-        /// Its integration step, s.
+        /// Integration step of the vehicle file, s.
         step_s: f64,
     },
     /// The bus has only one end in this process.
-    #[error("{bus} connects two programs: add --node plant or --node controller, and start the other one too")]
+    #[error(
+        "{bus} connects two programs: add --node plant or --node controller, and start the other node as a second program"
+    )]
     OneEnd {
         /// Address of the bus.
         bus: String,

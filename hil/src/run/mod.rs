@@ -14,13 +14,15 @@
 mod controller_loop;
 mod error;
 mod outcome;
+mod parameters;
 mod plant;
 mod plant_loop;
 mod waiting;
 
 use std::time::Instant;
 
-use oleo_controller::{Builder, Configuration, ConfigurationError};
+use crc::{CRC_16_IBM_3740, Crc};
+use oleo_controller::{Builder, Configuration};
 
 use crate::bus::{Bus, BusAddress, in_process_pair};
 use crate::controller_node::{ControllerNode, Heard};
@@ -28,33 +30,36 @@ use crate::handshake::handshake;
 use crate::plant_node::PlantNode;
 use crate::scenario::{Clock, Scenario};
 use crate::sync::{Role, Terms};
+use crate::vehicle::Vehicle;
 pub use error::RunError;
 pub use outcome::{ControllerOutcome, Outcome};
-pub use plant::Plant;
+pub use parameters::Parameters;
+pub use plant::vehicle;
 pub use plant_loop::Watch;
 use waiting::{CONTROLLER_PHASE, PATIENCE, TICK, partner_timeout};
 
-/// The controller's configuration for a scenario.
+/// The controller's configuration for a scenario: the vehicle as its files describe it, without its load.
 ///
 /// # Errors
-/// A value outside the range for which the controller was designed.
-pub fn configuration(scenario: &Scenario) -> Result<Configuration, ConfigurationError> {
+/// A file is missing or wrong, or a value is outside the range for which the controller was designed.
+pub fn configuration(scenario: &Scenario) -> Result<Configuration, RunError> {
     let mut builder = Builder {
+        vehicle: Parameters::read(scenario)?.description(),
         strategy: scenario.strategy,
         ..Builder::default()
     };
     builder.tuning.strategy.ride_handling.dampers.policy = scenario.damper_policy;
-    builder.build()
+    Ok(builder.build()?)
 }
 
 /// Runs both nodes in this process, in `threads` (1 or 2; real time always takes 2).
 ///
 /// # Errors
 /// See [`RunError`].
-pub fn both(scenario: &Scenario, plant: Plant, threads: usize, watch: Watch) -> Result<Outcome, RunError> {
+pub fn both(scenario: &Scenario, vehicle: Vehicle, threads: usize, watch: Watch) -> Result<Outcome, RunError> {
     let (plant_end, controller_end) = both_ends(scenario)?;
     let real_time = scenario.clock == Clock::RealTime;
-    let mut plant = PlantNode::new(plant_end, scenario, &plant.parameters, plant.vehicle, real_time);
+    let mut plant = PlantNode::new(plant_end, scenario, vehicle, real_time);
     let mut controller = ControllerNode::new(controller_end, configuration(scenario)?, scenario.ticks as usize);
     let started = Instant::now();
     let mut lateness = Vec::new();
@@ -93,15 +98,15 @@ pub fn both(scenario: &Scenario, plant: Plant, threads: usize, watch: Watch) -> 
 ///
 /// # Errors
 /// See [`RunError`].
-pub fn plant_alone(scenario: &Scenario, plant: Plant, watch: Watch) -> Result<Outcome, RunError> {
+pub fn plant_alone(scenario: &Scenario, vehicle: Vehicle, watch: Watch) -> Result<Outcome, RunError> {
     let bus = scenario.bus.open()?.ok_or(RunError::NoOtherProcess)?;
     let real_time = scenario.clock == Clock::RealTime;
-    let mut plant = PlantNode::new(bus, scenario, &plant.parameters, plant.vehicle, real_time);
+    let mut plant = PlantNode::new(bus, scenario, vehicle, real_time);
     handshake(
         plant.bus(),
         &scenario.bus.to_string(),
         Role::Plant,
-        terms(scenario),
+        terms(scenario)?,
         PATIENCE,
     )?;
     let started = Instant::now();
@@ -124,7 +129,7 @@ pub fn controller_alone(scenario: &Scenario) -> Result<ControllerOutcome, RunErr
         controller.bus(),
         &scenario.bus.to_string(),
         Role::Controller,
-        terms(scenario),
+        terms(scenario)?,
         PATIENCE,
     )?;
     let started = Instant::now();
@@ -166,13 +171,18 @@ fn both_ends(scenario: &Scenario) -> Result<Ends, RunError> {
     }
 }
 
-fn terms(scenario: &Scenario) -> Terms {
-    Terms {
+fn terms(scenario: &Scenario) -> Result<Terms, RunError> {
+    // Every number of the description in its shortest exact form.
+    let description = format!("{:?}", Parameters::read(scenario)?.description());
+    Ok(Terms {
         strategy: scenario.strategy as u8,
         clock: scenario.clock as u8,
-    }
+        vehicle: Crc::<u16>::new(&CRC_16_IBM_3740).checksum(description.as_bytes()),
+    })
 }
 
+#[cfg(test)]
+mod course_tests;
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -187,11 +197,11 @@ mod tests {
         }
     }
 
-    fn run(scenario: &Scenario, threads: usize) -> Outcome {
-        both(scenario, Plant::build(scenario).unwrap(), threads, &mut |_| true).unwrap()
+    pub(super) fn run(scenario: &Scenario, threads: usize) -> Outcome {
+        both(scenario, vehicle(scenario).unwrap(), threads, &mut |_| true).unwrap()
     }
 
-    fn hash(outcome: &Outcome) -> String {
+    pub(super) fn hash(outcome: &Outcome) -> String {
         command_hash(outcome.plant.recording.words())
     }
 
@@ -210,7 +220,7 @@ mod tests {
     fn an_interrupted_run_ends_in_order() {
         let scenario = short("belgian", 1000);
         let mut calls = 0;
-        let outcome = both(&scenario, Plant::build(&scenario).unwrap(), 1, &mut |_| {
+        let outcome = both(&scenario, vehicle(&scenario).unwrap(), 1, &mut |_| {
             calls += 1;
             calls < 3
         });
@@ -248,8 +258,7 @@ mod tests {
             ..short("belgian", 200)
         };
         let (a, b) = in_process_pair();
-        let parts = Plant::build(&scenario).unwrap();
-        let mut plant = PlantNode::new(a, &scenario, &parts.parameters, parts.vehicle, false);
+        let mut plant = PlantNode::new(a, &scenario, vehicle(&scenario).unwrap(), false);
         let mut controller = ControllerNode::new(b, configuration(&scenario).unwrap(), 200);
         let mut turns = 0;
         let mut turn = || {
@@ -276,8 +285,7 @@ mod tests {
             ..short("belgian", 200)
         };
         let (a, b) = in_process_pair();
-        let parts = Plant::build(&scenario).unwrap();
-        let mut plant = PlantNode::new(a, &scenario, &parts.parameters, parts.vehicle, false);
+        let mut plant = PlantNode::new(a, &scenario, vehicle(&scenario).unwrap(), false);
         let mut controller = ControllerNode::new(b, configuration(&scenario).unwrap(), 200);
         for _ in 0..100 {
             plant.send_sensors().unwrap();
@@ -286,7 +294,7 @@ mod tests {
             controller.decide().unwrap();
             controller.send_done().unwrap();
             plant.listen(Duration::ZERO).unwrap();
-            plant.advance();
+            plant.advance().unwrap();
         }
         let lost = controller_loop::in_lockstep(&mut controller, &scenario).unwrap();
         let (last, taken) = lost.unwrap();

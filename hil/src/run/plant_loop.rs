@@ -54,7 +54,7 @@ pub(super) fn in_lockstep<B: Bus>(
 ) -> Result<PlantEnd, RunError> {
     let wait = partner_timeout(scenario);
     let (mut controller_lost_at, mut interrupted) = (None, false);
-    while plant.tick() < scenario.ticks {
+    while plant.tick() < scenario.ticks && !plant.is_over() {
         // If the other end of the bus was closed, the controller is gone too.
         let exchange = |plant: &mut PlantNode<B>, partner: &mut dyn FnMut() -> Result<(), BusError>| {
             plant.send_sensors()?;
@@ -74,7 +74,7 @@ pub(super) fn in_lockstep<B: Bus>(
                 Err(error) => return Err(error.into()),
             }
         }
-        plant.advance();
+        plant.advance()?;
         if plant.tick().is_multiple_of(WATCH_TICKS) && !watch(plant.tick()) {
             interrupted = true;
             break;
@@ -103,7 +103,7 @@ pub(super) fn in_real_time<B: Bus>(
     let mut clock = RealTime::new(begin, TICK, scenario.ticks as usize);
     let silence = (scenario.partner_timeout_s / TICK_S) as u32;
     let (mut controller_lost_at, mut interrupted) = (None, false);
-    while plant.tick() < scenario.ticks {
+    while plant.tick() < scenario.ticks && !plant.is_over() {
         clock.wait(plant.tick());
         // The command that answered the last tick holds from here on: one tick of latency, as on a real bus.
         match plant.listen(Duration::ZERO).and_then(|_| plant.send_sensors()) {
@@ -111,7 +111,7 @@ pub(super) fn in_real_time<B: Bus>(
             Err(BusError::Closed { .. }) => controller_lost_at = controller_lost_at.or(Some(plant.tick())),
             Err(error) => return Err(error.into()),
         }
-        plant.advance();
+        plant.advance()?;
         if plant.ticks_without_command() >= silence.max(1) {
             controller_lost_at = controller_lost_at.or(Some(plant.tick()));
         }

@@ -1,4 +1,4 @@
-//! How long the nodes of a run wait: for their partner, and for each other.
+//! Time-outs of the nodes: for the handshake with their partner, and for each other during the run.
 
 use std::time::Duration;
 

@@ -28,6 +28,13 @@ built_in!(
     "stuck-solenoid",
     "held-up-bus",
     "doubled-frames",
+    "lane-change-on-belgian",
+    "lane-change-laden",
+    "step-steer",
+    "side-slope",
+    "bus-silence-in-lane-change",
+    "masquerade",
+    "replay",
 );
 
 /// A built-in scenario by its name, or a file by its path.

@@ -1,4 +1,4 @@
-//! `[[check]]` tables of a scenario file: keys to a checked [`Check`].
+//! `[[check]]` tables of a scenario file, converted into a [`Check`].
 
 use oleo_plant_sim::model_file::names::suggestion;
 use oleo_plant_sim::model_file::{Checked, InvalidValue, Limit, Range};
@@ -39,8 +39,8 @@ impl Checked for CheckEntry {
 }
 
 impl CheckEntry {
-    /// The check.
-    pub fn check(&self) -> Result<Check, InvalidValue> {
+    /// Converts the entry of the file into a check.
+    pub fn check(&self, has_manoeuvre: bool) -> Result<Check, InvalidValue> {
         let metric = Metric::from_name(&self.metric).ok_or_else(|| {
             let names: Vec<&str> = Metric::ALL.iter().map(|metric| metric.name()).collect();
             let what = format!(
@@ -50,6 +50,13 @@ impl CheckEntry {
             );
             InvalidValue::new("metric", what)
         })?;
+        if metric.needs_manoeuvre() && !has_manoeuvre {
+            let what = format!(
+                "is {:?}, which the ride model does not have: add a manoeuvre to the scenario",
+                self.metric
+            );
+            return Err(InvalidValue::new("metric", what));
+        }
         let (key, comparison) = match (self.at_most, self.at_least, &self.equals) {
             (Some(limit), None, None) => ("at_most", Comparison::AtMost(limit)),
             (None, Some(limit), None) => ("at_least", Comparison::AtLeast(limit)),

@@ -1,14 +1,16 @@
-//! A run, complete and checked: what is driven, how time passes, what goes wrong, what must hold.
+//! A complete and valid scenario: vehicle and road, clock, faults and checks.
 
 use oleo_controller::{DamperPolicy, Strategy};
 use oleo_interface::tick::TICK_S;
+use oleo_plant_sim::course::CourseSettings;
+use oleo_plant_sim::vehicle::Load;
 use strum::{EnumString, IntoStaticStr, VariantNames};
 
 use super::check::Check;
 use super::fault::Fault;
 use crate::bus::BusAddress;
 
-/// How time passes.
+/// How time passes in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, EnumString, IntoStaticStr, VariantNames)]
 #[strum(serialize_all = "lowercase")]
 pub enum Clock {
@@ -33,24 +35,26 @@ pub enum OnControllerLoss {
     /// Goes on to the end with de-energised valves.
     #[default]
     Continue,
-    /// Ends the run.
+    /// The run ends.
     End,
 }
 
 /// A run, complete and checked.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
-    /// Short name.
+    /// Name of the scenario, for messages and pages.
     pub name: String,
-    /// What it shows.
+    /// One sentence that says what the scenario shows.
     pub description: String,
     /// Built-in road or path of a `.crg` or `.csv` file.
     pub road: String,
-    /// Forward speed, m/s.
+    /// The manoeuvre that is driven with the handling model; `None` drives straight ahead with the ride model.
+    pub course: Option<CourseSettings>,
+    /// Forward speed of the vehicle, m/s, 0 to 250 km/h; in a circle the speed at the end.
     pub speed_m_s: f64,
-    /// Simulated time, whole ticks.
+    /// Number of ticks of the run.
     pub ticks: u32,
-    /// How valves are decided.
+    /// Strategy that sets the valves.
     pub strategy: Strategy,
     /// How dampers are switched in ride mode.
     pub damper_policy: DamperPolicy,
@@ -58,29 +62,35 @@ pub struct Scenario {
     pub strut: String,
     /// Vehicle: `defender110` or the path of a parameter file.
     pub vehicle: String,
+    /// Handling parameters: `defender110` or the path of a file.
+    pub handling: String,
+    /// What the vehicle carries. The controller does not know it.
+    pub load: Load,
+    /// Time at the start that does not count for ride measures, s.
+    pub score_from_s: f64,
     /// Of the road and of all fault randomness.
     pub seed: u64,
-    /// Where the frames go.
+    /// Bus that carries the frames.
     pub bus: BusAddress,
-    /// How time passes.
+    /// Whether the run is in lockstep or in real time.
     pub clock: Clock,
     /// What the plant does without a controller.
     pub on_controller_loss: OnControllerLoss,
     /// Wall-clock time after which a silent partner is gone, s. A guard against hanging, without effect on results.
     pub partner_timeout_s: f64,
-    /// What goes wrong.
+    /// Faults that are injected.
     pub faults: Vec<Fault>,
-    /// What must hold.
+    /// Checks that the run must meet.
     pub checks: Vec<Check>,
 }
 
 impl Scenario {
-    /// Simulated time, s.
+    /// Simulated time of the whole scenario, s.
     pub fn duration_s(&self) -> f64 {
         f64::from(self.ticks) * TICK_S
     }
 
-    /// Length of road needed, m, with room for the smooth entry and the rear axle.
+    /// Length of road that the ride model needs, m, with room for the smooth entry and the rear axle.
     pub fn road_length_m(&self) -> f64 {
         self.speed_m_s * self.duration_s() + 20.0
     }

@@ -1,4 +1,4 @@
-//! What goes wrong, where and when.
+//! Faults that a scenario injects: kind, place and time.
 //!
 //! Faults of messages (and of whole nodes, which others know by their messages only) become [`Injection`]s of the bus; faults of sensors and
 //! solenoids happen inside the plant. All of them live on the plant's side, so that a run in one process and one in two
@@ -27,7 +27,7 @@ fn corner_from_name(name: &str) -> Option<Corner> {
 /// A sensor of a strut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sensor {
-    /// Strut displacement.
+    /// The displacement of the strut, m.
     Displacement,
     /// One of the four pressures.
     Pressure(PressurePoint),
@@ -46,14 +46,14 @@ impl Sensor {
 /// One sensor of one strut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SensorPlace {
-    /// Which strut.
+    /// The corner of the vehicle that the sensor belongs to.
     pub corner: Corner,
-    /// Which of its sensors.
+    /// The sensor at that corner.
     pub sensor: Sensor,
 }
 
 impl SensorPlace {
-    /// From `front-left.p1`.
+    /// The sensor with this name, such as `front-left.p1`.
     pub fn from_name(text: &str) -> Option<Self> {
         let (corner, sensor) = text.split_once('.')?;
         Some(Self {
@@ -66,9 +66,9 @@ impl SensorPlace {
 /// One valve of one strut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ValvePlace {
-    /// Which strut.
+    /// The corner of the vehicle that the valve belongs to.
     pub corner: Corner,
-    /// Which of its valves.
+    /// The valve at that corner.
     pub valve: Valve,
 }
 
@@ -94,6 +94,10 @@ pub enum SensorFault {
     Value(f32),
     /// The truth and this much more; SI.
     Offset(f32),
+    /// The truth and normally distributed noise of this standard deviation; SI.
+    Noise(f32),
+    /// The truth and an offset that grows by this much a second; SI.
+    Drift(f32),
 }
 
 /// Kind and place of a fault.
@@ -101,27 +105,34 @@ pub enum SensorFault {
 pub enum FaultKind {
     /// Some frames are disturbed.
     Message {
-        /// Which.
+        /// The messages that are affected.
         target: Target,
         /// How many of them, 0 to 1.
         probability: f64,
-        /// How.
+        /// What happens to them.
         disturbance: Disturbance,
     },
     /// A node is gone: nothing of it is heard, and a plant without its node does not drive its valves.
     NodeKilled(Role),
-    /// A sensor lies.
+    /// A sensor reports a wrong value.
     Sensor {
-        /// Which.
+        /// The sensor that is affected.
         place: SensorPlace,
-        /// How.
+        /// What it reports instead of the true value.
         fault: SensorFault,
+    },
+    /// Two sensors of one quantity have changed their plugs.
+    SensorsSwapped {
+        /// One of them.
+        one: SensorPlace,
+        /// The other one.
+        other: SensorPlace,
     },
     /// A valve no longer follows its signal.
     SolenoidStuck {
-        /// Which.
+        /// The valve that is affected.
         place: ValvePlace,
-        /// Where it stays.
+        /// Whether it is stuck open; otherwise it is stuck closed.
         open: bool,
     },
 }
@@ -129,9 +140,9 @@ pub enum FaultKind {
 /// A fault during a stretch of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fault {
-    /// What and where.
+    /// What happens, and to which messages, sensor, valve or node.
     pub kind: FaultKind,
-    /// First tick concerned.
+    /// First tick in which the fault acts.
     pub from_tick: u32,
     /// First tick no longer concerned.
     pub until_tick: u32,
@@ -153,7 +164,9 @@ impl Fault {
             } => (target, probability, disturbance),
             FaultKind::NodeKilled(Role::Plant) => (Target::All, 1.0, Disturbance::Drop),
             FaultKind::NodeKilled(Role::Controller) => (Target::Controller, 1.0, Disturbance::Drop),
-            FaultKind::Sensor { .. } | FaultKind::SolenoidStuck { .. } => return None,
+            FaultKind::Sensor { .. } | FaultKind::SensorsSwapped { .. } | FaultKind::SolenoidStuck { .. } => {
+                return None;
+            }
         };
         let (from_tick, until_tick) = (self.from_tick, self.until_tick);
         Some(Injection {

@@ -1,4 +1,4 @@
-//! `[[fault]]` tables of a scenario file: keys to a checked [`Fault`].
+//! `[[fault]]` tables of a scenario file, converted into a [`Fault`].
 
 use oleo_controller::can::MESSAGES;
 use oleo_interface::tick::TICK_S;
@@ -7,7 +7,7 @@ use oleo_plant_sim::model_file::{Checked, InvalidValue, Limit, Range};
 use serde::Deserialize;
 use strum::IntoStaticStr;
 
-use super::fault::{CORNER_NAMES, Fault, FaultKind, SENSOR_NAMES, SensorFault, SensorPlace, ValvePlace};
+use super::fault::{CORNER_NAMES, Fault, FaultKind, SENSOR_NAMES, Sensor, SensorFault, SensorPlace, ValvePlace};
 use crate::bus::{Disturbance, Target};
 use crate::sync::Role;
 
@@ -24,11 +24,16 @@ enum Kind {
     Corrupt,
     Delay,
     Duplicate,
+    Replay,
+    Masquerade,
     NodeKilled,
     SensorStuck,
     SensorNan,
     SensorOutOfRange,
     SensorOffset,
+    SensorNoise,
+    SensorDrift,
+    SensorSwap,
     SolenoidStuck,
 }
 
@@ -61,6 +66,7 @@ pub(super) struct FaultEntry {
     bits: Option<u32>,
     ticks: Option<u32>,
     sensor: Option<String>,
+    other: Option<String>,
     value: Option<f64>,
     valve: Option<String>,
     position: Option<Position>,
@@ -123,6 +129,15 @@ impl FaultEntry {
                 let ticks = self.ticks.take().unwrap_or(1) as u16;
                 self.disturbed(Disturbance::Delay { ticks })?
             }
+            Kind::Replay => {
+                let ticks = self.ticks.take().unwrap_or(200) as u16;
+                self.disturbed(Disturbance::Replay { ticks })?
+            }
+            Kind::Masquerade => FaultKind::Message {
+                target: self.target()?,
+                probability: 1.0,
+                disturbance: Disturbance::Masquerade,
+            },
             Kind::NodeKilled => FaultKind::NodeKilled(match self.node.take() {
                 Some(Node::Plant) => Role::Plant,
                 Some(Node::Controller) => Role::Controller,
@@ -137,6 +152,32 @@ impl FaultEntry {
             Kind::SensorOffset => {
                 let value = self.value.take().ok_or_else(|| self.needs("value (SI)", "0.05"))?;
                 self.sensor(SensorFault::Offset(value as f32))?
+            }
+            Kind::SensorNoise => {
+                let value = self.value.take().ok_or_else(|| self.needs("value (SI)", "0.002"))?;
+                if value < 0.0 {
+                    let what = format!("is {value}: a standard deviation is 0 or more");
+                    return Err(InvalidValue::new("value", what));
+                }
+                self.sensor(SensorFault::Noise(value as f32))?
+            }
+            Kind::SensorDrift => {
+                let value = self
+                    .value
+                    .take()
+                    .ok_or_else(|| self.needs("value (SI a second)", "0.001"))?;
+                self.sensor(SensorFault::Drift(value as f32))?
+            }
+            Kind::SensorSwap => {
+                let one = self.place("sensor", self.sensor.clone())?;
+                let other = self.place("other", self.other.clone())?;
+                (self.sensor, self.other) = (None, None);
+                let is_displacement = |place: SensorPlace| place.sensor == Sensor::Displacement;
+                if one == other || is_displacement(one) != is_displacement(other) {
+                    let what = "must be another sensor than sensor, and of the same quantity";
+                    return Err(InvalidValue::new("other", what));
+                }
+                FaultKind::SensorsSwapped { one, other }
             }
             Kind::SolenoidStuck => {
                 let name = self
@@ -171,16 +212,19 @@ impl FaultEntry {
 
     /// A sensor is faulty.
     fn sensor(&mut self, fault: SensorFault) -> Result<FaultKind, InvalidValue> {
-        let name = self
-            .sensor
-            .take()
-            .ok_or_else(|| self.needs("sensor", "\"front-left.p1\""))?;
-        let place = SensorPlace::from_name(&name).ok_or_else(|| {
+        let name = self.sensor.take();
+        let place = self.place("sensor", name)?;
+        Ok(FaultKind::Sensor { place, fault })
+    }
+
+    /// The sensor that a key names.
+    fn place(&self, key: &'static str, name: Option<String>) -> Result<SensorPlace, InvalidValue> {
+        let name = name.ok_or_else(|| self.needs(key, "\"front-left.p1\""))?;
+        SensorPlace::from_name(&name).ok_or_else(|| {
             let (corners, sensors) = (CORNER_NAMES.join(", "), SENSOR_NAMES.join(", "));
             let what = format!("is {name:?}: must be CORNER.SENSOR, of {corners} and {sensors}");
-            InvalidValue::new("sensor", what)
-        })?;
-        Ok(FaultKind::Sensor { place, fault })
+            InvalidValue::new(key, what)
+        })
     }
 
     /// Which messages; all of them where nothing is said.
@@ -223,6 +267,7 @@ impl FaultEntry {
             ("bits", self.bits.is_some()),
             ("ticks", self.ticks.is_some()),
             ("sensor", self.sensor.is_some()),
+            ("other", self.other.is_some()),
             ("value", self.value.is_some()),
             ("valve", self.valve.is_some()),
             ("position", self.position.is_some()),

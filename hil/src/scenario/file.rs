@@ -1,12 +1,15 @@
-//! Scenario files: TOML to checked values, or one line with file, line and key.
+//! Reads scenario files: TOML is converted into valid values, or into one error line with file, line and key.
 
 use std::path::Path;
 
 use oleo_interface::tick::TICK_S;
+use oleo_plant_sim::course::{CourseSettings, DriverStyle, ManoeuvreKind};
 use oleo_plant_sim::model_file::limits::each_checked;
-use oleo_plant_sim::model_file::names::one_of;
+use oleo_plant_sim::model_file::names::{one_of, suggestion};
 use oleo_plant_sim::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, read};
+use oleo_plant_sim::vehicle::Load;
 use serde::Deserialize;
+use strum::VariantArray;
 
 use super::check_entry::CheckEntry;
 use super::definition::Scenario;
@@ -15,7 +18,7 @@ use crate::bus::BusAddress;
 
 pub use super::fault_entry::LONGEST_S;
 
-/// Fastest vehicle, km/h.
+/// Highest forward speed that a scenario may have, km/h.
 pub const FASTEST_KM_H: f64 = 250.0;
 /// Name of the built-in vehicle and strut.
 pub const DEFENDER: &str = "defender110";
@@ -34,6 +37,17 @@ struct ScenarioFile {
     damper_policy: Option<String>,
     strut: Option<String>,
     vehicle: Option<String>,
+    handling: Option<String>,
+    load: Option<String>,
+    manoeuvre: Option<String>,
+    driver: Option<String>,
+    entry_m: Option<f64>,
+    radius_m: Option<f64>,
+    steer_deg: Option<f64>,
+    change_m_s2: Option<f64>,
+    begin_s: Option<f64>,
+    side_slope_percent: Option<f64>,
+    score_from_s: Option<f64>,
     seed: Option<u64>,
     bus: Option<String>,
     clock: Option<String>,
@@ -52,6 +66,9 @@ impl Checked for ScenarioFile {
         }),
         Limit::one("duration_s", Range::FromTo(TICK_S, LONGEST_S), "s", |file| {
             file.duration_s
+        }),
+        Limit::optional("score_from_s", Range::FromTo(0.0, LONGEST_S), "s", |file| {
+            file.score_from_s
         }),
         Limit::optional("partner_timeout_s", Range::FromTo(0.1, 600.0), "s", |file| {
             file.partner_timeout_s
@@ -77,16 +94,26 @@ impl ScenarioFile {
     /// The scenario, its names looked up.
     fn scenario(self, folder: &Path) -> Result<Scenario, InvalidValue> {
         let ticks = (self.duration_s / TICK_S).round() as u32;
+        let course = self.course()?;
+        let speed_m_s = self.speed_km_h / 3.6;
+        if let Some(settings) = &course {
+            settings.manoeuvre(speed_m_s, Some(f64::from(ticks) * TICK_S))?;
+        }
+        let has_manoeuvre = course.is_some();
         Ok(Scenario {
             name: self.name,
             description: self.description,
             road: located(&self.road, folder, &oleo_plant_sim::road::NAMES),
-            speed_m_s: self.speed_km_h / 3.6,
+            course,
+            speed_m_s,
             ticks,
             strategy: one_of("strategy", self.strategy.as_deref())?,
             damper_policy: one_of("damper_policy", self.damper_policy.as_deref())?,
             strut: located(self.strut.as_deref().unwrap_or(DEFENDER), folder, &[DEFENDER]),
             vehicle: located(self.vehicle.as_deref().unwrap_or(DEFENDER), folder, &[DEFENDER]),
+            handling: located(self.handling.as_deref().unwrap_or(DEFENDER), folder, &[DEFENDER]),
+            load: word::<Load>("load", self.load.as_deref())?.unwrap_or_default(),
+            score_from_s: self.score_from_s.unwrap_or(0.0),
             seed: self.seed.unwrap_or(1),
             bus: match self.bus {
                 Some(bus) => bus
@@ -98,9 +125,57 @@ impl ScenarioFile {
             on_controller_loss: one_of("on_controller_loss", self.on_controller_loss.as_deref())?,
             partner_timeout_s: self.partner_timeout_s.unwrap_or(3.0),
             faults: each(self.fault, "fault", |entry| entry.fault(ticks))?,
-            checks: each(self.check, "check", |entry| entry.check())?,
+            checks: each(self.check, "check", |entry| entry.check(has_manoeuvre))?,
         })
     }
+}
+
+impl ScenarioFile {
+    /// The settings of the manoeuvre, where there is one. Without one, its settings are refused.
+    fn course(&self) -> Result<Option<CourseSettings>, InvalidValue> {
+        let driver = word::<DriverStyle>("driver", self.driver.as_deref())?;
+        let Some(kind) = word::<ManoeuvreKind>("manoeuvre", self.manoeuvre.as_deref())? else {
+            let given = [
+                ("driver", self.driver.is_some()),
+                ("entry_m", self.entry_m.is_some()),
+                ("radius_m", self.radius_m.is_some()),
+                ("steer_deg", self.steer_deg.is_some()),
+                ("change_m_s2", self.change_m_s2.is_some()),
+                ("begin_s", self.begin_s.is_some()),
+                ("side_slope_percent", self.side_slope_percent.is_some()),
+            ];
+            return match given.into_iter().find(|(_, given)| *given) {
+                None => Ok(None),
+                Some((key, _)) => Err(InvalidValue::new(key, NEEDS_MANOEUVRE)),
+            };
+        };
+        Ok(Some(CourseSettings {
+            kind,
+            driver,
+            entry_m: self.entry_m,
+            radius_m: self.radius_m,
+            steer_deg: self.steer_deg,
+            change_m_s2: self.change_m_s2,
+            begin_s: self.begin_s,
+            side_slope_percent: self.side_slope_percent,
+        }))
+    }
+}
+
+/// What is wrong with a setting of a course where there is none.
+const NEEDS_MANOEUVRE: &str = "needs a manoeuvre, since without one the ride model drives straight ahead: add manoeuvre = \"straight\" or another";
+
+/// A value that a key names out of a list.
+fn word<T>(key: &'static str, name: Option<&str>) -> Result<Option<T>, InvalidValue>
+where
+    T: std::str::FromStr + VariantArray + Copy + Into<&'static str>,
+{
+    let Some(name) = name else { return Ok(None) };
+    name.parse().map(Some).map_err(|_| {
+        let names: Vec<&str> = T::VARIANTS.iter().map(|variant| (*variant).into()).collect();
+        let what = format!("is {name:?}: {}", suggestion(name, &names, "choices"));
+        InvalidValue::new(key, what)
+    })
 }
 
 /// Every entry of an array of tables made into what it stands for.
@@ -227,6 +302,60 @@ mod tests {
             (
                 "[[check]]\nmetric = \"max_roll_deg\"\nat_most = inf\n",
                 "x.toml:7: [check 1] at_most is inf: must be a finite number",
+            ),
+            (
+                "manoeuvre = \"lane_change\"\n",
+                "x.toml:5: manoeuvre is \"lane_change\": did you mean lane-change? The choices are straight, ",
+            ),
+            (
+                "manoeuvre = \"straight\"\ndriver = \"harsh\"\n",
+                "x.toml:6: driver is \"harsh\": did you mean hard? The choices are eased, hard",
+            ),
+            (
+                "load = \"heavy\"\n",
+                "x.toml:5: load is \"heavy\": the choices are as-sold",
+            ),
+            ("entry_m = 50\n", "x.toml:5: entry_m needs a manoeuvre"),
+            ("driver = \"hard\"\n", "x.toml:5: driver needs a manoeuvre"),
+            (
+                "manoeuvre = \"step-steer\"\nentry_m = 50\n",
+                "x.toml:6: entry_m does not belong to the manoeuvre step-steer",
+            ),
+            (
+                "manoeuvre = \"step-steer\"\nbegin_s = 2\n",
+                "x.toml:6: begin_s is 2: the drive ends before, at 2 s",
+            ),
+            (
+                "manoeuvre = \"braking\"\nchange_m_s2 = 20\n",
+                "x.toml:6: change_m_s2 is 20: must be from 0.1 to 12 m/s2",
+            ),
+            (
+                "manoeuvre = \"straight\"\nside_slope_percent = -41\n",
+                "x.toml:6: side_slope_percent is -41: must be from -40 to 40 %",
+            ),
+            (
+                "score_from_s = -1\n",
+                "x.toml:5: score_from_s is -1: must be from 0 to 3600 s",
+            ),
+            (
+                "[[fault]]\nkind = \"sensor-swap\"\nat_s = 1\nsensor = \"front-left.p1\"\n",
+                "x.toml:6: [fault 1] kind is \"sensor-swap\", which needs other too",
+            ),
+            (
+                "[[fault]]\nkind = \"sensor-swap\"\nat_s = 1\nsensor = \"front-left.p1\"\nother = \"rear-left.displacement\"\n",
+                "x.toml:9: [fault 1] other must be another sensor",
+            ),
+            (
+                "[[fault]]\nkind = \"sensor-noise\"\nat_s = 1\nsensor = \"front-left.p1\"\nvalue = -1\n",
+                "x.toml:9: [fault 1] value is -1: a standard deviation is 0 or more",
+            ),
+            (
+                "[[fault]]\nkind = \"masquerade\"\nat_s = 1\nprobability = 0.5\n",
+                "x.toml:8: [fault 1] probability does not belong",
+            ),
+            (
+                "[[check]]\nmetric = \"decision_s\"\nat_most = 1\n",
+                "x.toml:6: [check 1] metric is \"decision_s\", which the ride model does not have",
             ),
         ];
         for (more, expected) in table {

@@ -1,4 +1,4 @@
-//! What is driven, what goes wrong when, and what must hold: everything that makes a run repeatable.
+//! Scenarios: what is driven, which faults occur, and which checks must be met. They make a run repeatable.
 //!
 //! ```text
 //!   TOML --> file --> fault_entry, check_entry --> definition: a Scenario of checked values

@@ -1,4 +1,4 @@
-//! A vehicle on a course, tick by tick: the plant of a loop.
+//! Drives a vehicle along a course tick by tick, so that it can be the plant of a loop.
 //!
 //! ```text
 //!  valves' signals --> tick: 5 ms of driver, vehicle and road --> sample: everything measured; ending, once there is one
@@ -12,7 +12,7 @@ use std::sync::Arc;
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Axle, Corners};
 
-use super::manoeuvre::Manoeuvre;
+use super::manoeuvre::{Manoeuvre, Phase};
 use super::optimal_preview::OptimalPreviewDriver;
 use super::preview::PreviewDriver;
 use super::sample::{Sample, Signals};
@@ -182,10 +182,39 @@ impl<E: SuspensionElement> Drive<E> {
         if self.manoeuvre.is_guided(time_s) && self.track.error_m(station_m, lateral_m).abs() > LOST_M {
             return Some(Ending::LostTrack(time_s));
         }
-        let past = self.track.end_m().is_some_and(|end_m| station_m > end_m);
+        let past = self.manoeuvre.ends_behind_cones() && self.is_behind_cones();
         let stands = matches!(self.manoeuvre, Manoeuvre::Braking { at_s, .. } if time_s > at_s)
             && motion.speed_m_s < STANDING_M_S;
         (past || stands || self.ticks >= self.last_tick).then_some(Ending::Completed)
+    }
+
+    fn is_behind_cones(&self) -> bool {
+        let [station_m, ..] = self.model.motion().position_m;
+        self.track.end_m().is_some_and(|end_m| station_m > end_m)
+    }
+
+    /// Where in the manoeuvre the vehicle is; `None` where the manoeuvre has no cornering.
+    pub fn phase(&self) -> Option<Phase> {
+        let from_s = self.manoeuvre.corners_from_s()?;
+        Some(if self.is_behind_cones() {
+            Phase::After
+        } else if self.model.time_s() >= from_s {
+            Phase::Cornering
+        } else {
+            Phase::Before
+        })
+    }
+
+    /// How far the body's centre of mass is from the line that the driver follows, m, positive where it is right of the line;
+    /// `None` while the steering wheel is held.
+    pub fn path_deviation_m(&self) -> Option<f64> {
+        let [station_m, lateral_m, _] = self.model.motion().position_m;
+        (self.manoeuvre.is_guided(self.model.time_s())).then(|| self.track.error_m(station_m, lateral_m))
+    }
+
+    /// The line and its cones.
+    pub fn track(&self) -> &Track {
+        &self.track
     }
 
     /// Everything measured now; `valves` are the signals that hold from now on.
@@ -232,12 +261,12 @@ impl<E: SuspensionElement> Drive<E> {
         margins.reduce(f64::min)
     }
 
-    /// The vehicle.
+    /// The vehicle model that drives.
     pub fn model(&self) -> &HandlingModel<E> {
         &self.model
     }
 
-    /// Ticks driven.
+    /// Number of ticks of 5 ms that were driven.
     pub fn ticks(&self) -> u32 {
         self.ticks
     }

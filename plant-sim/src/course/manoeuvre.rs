@@ -1,4 +1,4 @@
-//! What is asked of vehicle and driver: the standards' manoeuvres with their speeds.
+//! The manoeuvres of the standards with their speeds, times and dimensions.
 
 use super::style::DriverStyle;
 use super::track::Track;
@@ -12,24 +12,37 @@ pub enum LaneChange {
     ObstacleAvoidance,
 }
 
-/// What is driven.
+/// Where in a drive that corners the vehicle is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Phase {
+    /// Straight ahead, before.
+    Before,
+    /// In the manoeuvre.
+    Cornering,
+    /// Straight ahead behind the last cones.
+    After,
+}
+
+/// A manoeuvre with its speeds, times and dimensions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Manoeuvre {
     /// Straight ahead at constant speed.
     Straight {
-        /// Speed, m/s.
+        /// Forward speed, m/s.
         speed_m_s: f64,
         /// Time to drive, s.
         duration_s: f64,
     },
-    /// ISO 3888: a double lane change at constant speed, over when the vehicle is past its last cones.
+    /// ISO 3888: a double lane change at constant speed.
     LaneChange {
         /// Which of the standard's two.
         kind: LaneChange,
-        /// Speed, m/s.
+        /// Forward speed, m/s.
         speed_m_s: f64,
         /// Station of the first cones, m: how far the vehicle drives straight ahead before.
         entry_m: f64,
+        /// Time to drive, s, straight ahead in the last lane behind the cones; `None` ends the drive there.
+        duration_s: Option<f64>,
     },
     /// ISO 4138, constant radius: follow a circle while the speed rises evenly.
     ConstantRadius {
@@ -39,12 +52,12 @@ pub enum Manoeuvre {
         from_m_s: f64,
         /// Speed at the end, m/s.
         to_m_s: f64,
-        /// Time between, s.
+        /// Time in which the speed rises from the first to the last, s.
         duration_s: f64,
     },
     /// ISO 7401, step of steer at constant speed: after `at_s` to `angle_rad` at the steering's highest rate, then held.
     StepSteer {
-        /// Speed, m/s.
+        /// Forward speed, m/s.
         speed_m_s: f64,
         /// Angle of the steering wheel over the steering ratio, rad, left positive.
         angle_rad: f64,
@@ -55,7 +68,7 @@ pub enum Manoeuvre {
     },
     /// Braking from constant speed to a stop, straight ahead or (ISO 7975) in a bend with the steering wheel held as it was.
     Braking {
-        /// Speed before, m/s.
+        /// Speed before the brakes are applied, m/s.
         speed_m_s: f64,
         /// Radius of the bend, m, positive to the left; `None` is straight ahead.
         radius_m: Option<f64>,
@@ -68,7 +81,7 @@ pub enum Manoeuvre {
     },
     /// Acceleration straight ahead from constant speed.
     Acceleration {
-        /// Speed before, m/s.
+        /// Speed before the acceleration begins, m/s.
         speed_m_s: f64,
         /// Acceleration that the drive force is set for, m/s2; engine power may give less.
         acceleration_m_s2: f64,
@@ -80,7 +93,8 @@ pub enum Manoeuvre {
 }
 
 impl Manoeuvre {
-    /// Longest time that it takes, s. A lane change is given two and a half times what its length takes at its speed.
+    /// Longest time that it takes, s. A lane change without a time of its own is given two and a half times what its length takes
+    /// at its speed.
     pub fn duration_s(&self, track: &Track) -> f64 {
         match *self {
             Self::Straight { duration_s, .. }
@@ -88,7 +102,26 @@ impl Manoeuvre {
             | Self::StepSteer { duration_s, .. }
             | Self::Braking { duration_s, .. }
             | Self::Acceleration { duration_s, .. } => duration_s,
+            Self::LaneChange {
+                duration_s: Some(duration_s),
+                ..
+            } => duration_s,
             Self::LaneChange { speed_m_s, .. } => 2.5 * track.end_m().unwrap_or(0.0) / speed_m_s.max(1.0),
+        }
+    }
+
+    /// Whether the drive is over behind the last cones.
+    pub fn ends_behind_cones(&self) -> bool {
+        matches!(self, Self::LaneChange { duration_s: None, .. })
+    }
+
+    /// Time from which the vehicle corners, s: a lane change from a second before its first cones, since the driver looks ahead;
+    /// `None` where it goes ahead all the time.
+    pub fn corners_from_s(&self) -> Option<f64> {
+        match *self {
+            Self::LaneChange { entry_m, speed_m_s, .. } => Some((entry_m / speed_m_s - 1.0).max(0.0)),
+            Self::StepSteer { at_s, .. } => Some(at_s),
+            _ => self.radius_m().map(|_| 0.0),
         }
     }
 
@@ -116,9 +149,10 @@ impl Manoeuvre {
             } => speed_m_s + acceleration_m_s2 * duration_s,
             _ => self.initial_speed_m_s(),
         };
-        let driven = match self {
-            Self::LaneChange { .. } => track.end_m().unwrap_or(0.0),
-            _ => fastest * self.duration_s(track),
+        let driven = if self.ends_behind_cones() {
+            track.end_m().unwrap_or(0.0)
+        } else {
+            fastest * self.duration_s(track)
         };
         driven + 50.0
     }

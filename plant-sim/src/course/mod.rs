@@ -7,14 +7,16 @@
 //!                                                                              Sample, Ending <---------------+
 //! ```
 //!
-//! Nothing here reads a file or knows a command line: a road is handed in.
+//! [`CourseSettings`] is a course as people describe it. Nothing here reads a file or knows a command line: a road is handed in.
 
 mod drive;
+mod kind;
 mod manoeuvre;
 mod optimal_preview;
 mod preview;
 mod run;
 mod sample;
+mod settings;
 mod speed;
 mod style;
 mod track;
@@ -22,11 +24,13 @@ mod track;
 use std::sync::Arc;
 
 pub use drive::{Drive, NotFinite};
-pub use manoeuvre::{LaneChange, Manoeuvre};
+pub use kind::ManoeuvreKind;
+pub use manoeuvre::{LaneChange, Manoeuvre, Phase};
 pub use optimal_preview::OptimalPreviewDriver;
 pub use preview::PreviewDriver;
 pub use run::Run;
 pub use sample::{Sample, Signals};
+pub use settings::CourseSettings;
 pub use speed::SpeedControl;
 pub use style::DriverStyle;
 pub use track::{Gate, LaneChangeLine, Track};
@@ -39,7 +43,7 @@ use crate::vehicle::VehicleParameters;
 pub struct Course {
     /// What is driven, and how fast.
     pub manoeuvre: Manoeuvre,
-    /// Who drives.
+    /// The driver of the manoeuvre.
     pub driver: DriverStyle,
     /// What it is driven on.
     pub road: Arc<dyn Road>,
@@ -55,7 +59,7 @@ impl Course {
 /// How a drive ended. Roll-over, spinning and hit cones are outcomes, not failures.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Ending {
-    /// To the end.
+    /// The vehicle completed the manoeuvre.
     Completed,
     /// The body lay on its side or beyond at this time, s.
     RolledOver(f64),

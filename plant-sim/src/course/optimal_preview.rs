@@ -1,4 +1,4 @@
-//! A driver who knows the car: optimal preview control.
+//! The driver `hard`: optimal preview control with a model of the vehicle.
 //!
 //! C. C. MacAdam, "Application of an Optimal Preview Control for Simulation of Closed-Loop Automobile Driving", *IEEE Transactions
 //! on Systems, Man, and Cybernetics* 11(6), 1981. The driver has the linear single-track model of the vehicle in mind and sets

@@ -1,4 +1,4 @@
-//! The report's driver.
+//! The report's driver, `eased`: preview and pure pursuit.
 //!
 //! Section 3.1: "The vehicle is steered over a predetermined course by a simple driver model which estimates the lateral
 //! positional error based on the yaw angle of the vehicle body at the current time step and the desired lateral position

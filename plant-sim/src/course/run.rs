@@ -1,4 +1,4 @@
-//! A drive from start to end, and what is kept of it.
+//! A drive from start to end, and the record of it.
 
 use oleo_interface::Corners;
 use oleo_interface::tick::TICK_S;
@@ -12,11 +12,11 @@ use crate::vehicle::suspension::SuspensionElement;
 /// What is kept of a drive.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
-    /// How it ended.
+    /// How the run ended, and when.
     pub ending: Ending,
     /// A sample at every tick, from the start.
     pub history: Vec<Sample>,
-    /// Least room to the cones, m; negative where some were hit; `None` without cones.
+    /// Smallest clearance to the cones, m; negative if one was hit; `None` without cones.
     pub cone_margin_m: Option<f64>,
     /// Largest body roll, rad; a roll-over counts as it ended.
     pub max_roll_rad: f64,
@@ -27,7 +27,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// Nothing driven yet, with room for `ticks` samples.
+    /// An empty run with memory for `ticks` samples.
     pub fn with_capacity(ticks: usize) -> Self {
         Self {
             ending: Ending::Completed,
@@ -39,7 +39,7 @@ impl Run {
         }
     }
 
-    /// Adds an instant, and the room to the cones then.
+    /// Adds a sample, and the clearance to the cones at that time.
     pub fn note(&mut self, sample: Sample, cone_margin_m: Option<f64>) {
         self.max_roll_rad = self.max_roll_rad.max(sample.roll_rad.abs());
         self.max_lateral_m_s2 = self.max_lateral_m_s2.max(sample.lateral_acceleration_m_s2.abs());

@@ -18,7 +18,7 @@ pub struct Sample {
     pub lateral_m: f64,
     /// Centre of mass of the body above its height at rest, m.
     pub heave_m: f64,
-    /// Heading, rad.
+    /// Heading of the body, rad, positive to the left.
     pub yaw_rad: f64,
     /// Pitch of the body, rad.
     pub pitch_rad: f64,
@@ -28,7 +28,7 @@ pub struct Sample {
     pub speed_m_s: f64,
     /// Angle between velocity and heading, rad.
     pub side_slip_rad: f64,
-    /// Yaw rate, rad/s.
+    /// Yaw rate of the body, rad/s, positive to the left.
     pub yaw_rate_rad_s: f64,
     /// Horizontal acceleration of the body's centre of mass along the heading, m/s2.
     pub longitudinal_acceleration_m_s2: f64,

@@ -1,11 +1,11 @@
-//! The driver's right foot: drive and brake that hold a speed, or a deceleration.
+//! Speed control of the driver: drive and brake forces that hold a speed or a deceleration.
 //!
 //! The report's model has "forward speed" as a constraint (table 1). Here it is held by a proportional-integral force: drive
 //! within engine power and traction, or brake.
 
 use crate::handling::{Controls, Drive};
 
-/// Holds a speed.
+/// Speed controller: a PI force that keeps the vehicle at a speed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SpeedControl {
     integral_n: f64,

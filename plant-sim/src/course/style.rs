@@ -1,4 +1,4 @@
-//! Two drivers for the same manoeuvre.
+//! The two drivers, of whom one demands more of the vehicle than the other.
 
 use strum::{EnumString, IntoStaticStr, VariantArray};
 

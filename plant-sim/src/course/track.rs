@@ -1,4 +1,4 @@
-//! Where the driver wants to go, and the cones beside it.
+//! The line that the driver wants to follow, and the cones beside it.
 //!
 //! ISO 3888-1 (severe double lane change) and ISO 3888-2 (obstacle avoidance) as lanes of cones whose width depends on the
 //! vehicle's width w; ISO 4138 as a circle.
@@ -42,7 +42,7 @@ impl LaneChangeLine {
 pub struct Gate {
     /// First and last cone, station, m.
     pub from_m: f64,
-    /// Last cone, m.
+    /// Station of the last cone, m.
     pub to_m: f64,
     /// Cones on the right, lateral, m (left positive).
     pub right_m: f64,
@@ -75,16 +75,14 @@ enum Line {
 pub struct Track {
     line: Line,
     gates: Vec<Gate>,
-    side: f64,
 }
 
 impl Track {
-    /// Straight ahead.
+    /// A track that leads straight ahead, without cones.
     pub fn straight() -> Self {
         Self {
             line: Line::Straight,
             gates: Vec::new(),
-            side: 1.0,
         }
     }
 
@@ -93,7 +91,6 @@ impl Track {
         Self {
             line: Line::Circle { radius_m },
             gates: Vec::new(),
-            side: 1.0,
         }
     }
 
@@ -111,7 +108,6 @@ impl Track {
         Self {
             line: Line::Lanes { shape, ease_m },
             gates,
-            side: 1.0,
         }
     }
 
@@ -125,15 +121,7 @@ impl Track {
         Self {
             line: Line::Lanes { shape, ease_m: 3.5 },
             gates,
-            side: 1.0,
         }
-    }
-
-    /// The same track seen in a mirror: left and right exchanged.
-    #[must_use]
-    pub fn mirrored(mut self) -> Self {
-        self.side = -self.side;
-        self
     }
 
     /// Station at which the manoeuvre is over, m.
@@ -142,16 +130,8 @@ impl Track {
     }
 
     /// The lanes of cones.
-    pub fn gates(&self) -> Vec<Gate> {
-        let side = |gate: &Gate| match self.side < 0.0 {
-            true => Gate {
-                right_m: -gate.left_m,
-                left_m: -gate.right_m,
-                ..*gate
-            },
-            false => *gate,
-        };
-        self.gates.iter().map(side).collect()
+    pub fn gates(&self) -> &[Gate] {
+        &self.gates
     }
 
     /// How far the line runs to the left of a point, m.
@@ -182,14 +162,13 @@ impl Track {
             let s = ((x_m - from) / (to - from)).clamp(0.0, 1.0);
             lateral += shape.share(s) * (pair[1].middle_m() - pair[0].middle_m());
         }
-        self.side * lateral
+        lateral
     }
 
     /// Room between a point and the nearest line of cones beside it, m; negative outside; `None` where there are none.
     pub fn margin_m(&self, x_m: f64, y_m: f64) -> Option<f64> {
         let gate = self.gates.iter().find(|gate| x_m >= gate.from_m && x_m <= gate.to_m)?;
-        let y = self.side * y_m;
-        Some((gate.left_m - y).min(y - gate.right_m))
+        Some((gate.left_m - y_m).min(y_m - gate.right_m))
     }
 }
 
@@ -230,7 +209,8 @@ mod tests {
 
     #[test]
     fn iso_3888_2_has_a_metre_between_the_lanes() {
-        let gates = Track::obstacle_avoidance(1.79, 25.0, LaneChangeLine::Eased).gates();
+        let track = Track::obstacle_avoidance(1.79, 25.0, LaneChangeLine::Eased);
+        let gates = track.gates();
         assert!((gates[1].right_m - gates[0].left_m - 1.0).abs() < 1e-12);
         assert!((gates[2].to_m - gates[0].from_m - 61.0).abs() < 1e-12);
     }
@@ -277,8 +257,5 @@ mod tests {
         let left = Track::circle(50.0);
         assert!((left.error_m(0.0, -1.0) - 1.0).abs() < 1e-12 && (left.error_m(52.0, 50.0) - 2.0).abs() < 1e-12);
         assert_eq!(Track::circle(-50.0).error_m(3.0, 4.0), -left.error_m(3.0, -4.0));
-        let track = Track::severe_lane_change(1.79, 25.0, LaneChangeLine::Eased);
-        assert_eq!(track.clone().mirrored().error_m(60.0, -1.0), -track.error_m(60.0, 1.0));
-        assert_eq!(track.clone().mirrored().margin_m(30.0, -0.3), track.margin_m(30.0, 0.3));
     }
 }

@@ -1,4 +1,4 @@
-//! From the two parameter files to the inertias and geometry that the equations of motion know.
+//! Computes the inertias and the geometry of the equations of motion from the two parameter files.
 
 use nalgebra::Vector3;
 use oleo_interface::{Axle, Axles};

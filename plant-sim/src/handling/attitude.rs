@@ -1,4 +1,4 @@
-//! Which way the body points: a unit quaternion, valid for any angle, integrated without trigonometry.
+//! Attitude of the body: a unit quaternion, which is valid for any angle and is integrated without trigonometry.
 
 use nalgebra::{Matrix3, Vector3};
 

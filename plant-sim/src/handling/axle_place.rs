@@ -24,7 +24,7 @@ impl AxleCoordinates {
 /// An axle in its place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AxlePlace {
-    /// Roll centre.
+    /// Position of the roll centre, m.
     pub(super) centre: Vector3<f64>,
     /// Centre of mass (middle between the wheel centres).
     pub(super) mass_centre: Vector3<f64>,

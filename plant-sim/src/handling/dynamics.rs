@@ -41,7 +41,7 @@ use super::guide::Guide;
 /// Inertia of the body and what the axles are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Masses {
-    /// Sprung mass, kg.
+    /// Sprung mass of the vehicle, kg.
     pub body_kg: f64,
     /// J_x, J_y, J_z of the body, kg m2.
     pub body_inertia_kg_m2: Vector3<f64>,
@@ -255,7 +255,7 @@ impl Masses {
         }
     }
 
-    /// Kinetic energy, J.
+    /// Kinetic energy of all bodies, J.
     pub(super) fn kinetic_energy_j(&self, places: &Axles<AxlePlace>, velocities: &Velocities) -> f64 {
         let (v, w) = (velocities.linear, velocities.angular);
         let j = self.body_inertia_kg_m2;

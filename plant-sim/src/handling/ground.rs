@@ -1,4 +1,4 @@
-//! The plane that a wheel sees of the road below it.
+//! The plane that approximates the road below a wheel.
 //!
 //! A rigid-body tyre model needs a plane: a height below the wheel centre and a normal. The height is the road's at that
 //! place (or, where the vehicle's file gives a contact length, the mean over it, as in the ride model); the slopes are
@@ -13,7 +13,7 @@ use crate::road::Road;
 pub(super) struct Plane {
     /// Height below the wheel centre, m.
     pub(super) height_m: f64,
-    /// Unit normal, up.
+    /// Unit normal of the ground, pointing up.
     pub(super) normal: Vector3<f64>,
 }
 

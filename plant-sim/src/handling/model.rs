@@ -1,4 +1,4 @@
-//! The handling model in time: a fixed step, the same bits on every machine.
+//! Time integration of the handling model with a fixed step and bit-identical results on every machine.
 //!
 //! The step is the ride model's (velocity Verlet, kick-drift-kick; see `vehicle::ride` for why it is stable with struts that
 //! solve their own flows): half a kick, move, forces at the new place with predicted speeds, half a kick. Tyre slips
@@ -266,7 +266,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
             let (sin, cos) = libm::sincos(yaw + steer_rad);
             places[axle].left * cos - Vector3::new(sin, 0.0, 0.0)
         });
-        Corners::from_fn(|corner| axis[corner.axle()])
+        Corners::from_axles(axis)
     }
 
     fn accelerate(&mut self, velocities: &Velocities, controls: Controls) -> Accelerations {
@@ -350,7 +350,8 @@ impl<E: SuspensionElement> HandlingModel<E> {
 
     /// Puts the body into a motion, for tests against closed forms: height above rest, velocity in the world, angular
     /// velocity in body axes, axle rates. Forces follow at the next step.
-    pub fn throw(
+    #[cfg(test)]
+    fn throw(
         &mut self,
         height_m: f64,
         velocity_m_s: [f64; 3],

@@ -1,4 +1,4 @@
-//! What goes into the vehicle from its driver and what can be seen of it: plain numbers, world axes.
+//! Inputs of the vehicle from its driver, and its observable motion, as plain numbers in world axes.
 
 /// What driver or test asks of the vehicle in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -30,6 +30,8 @@ pub struct HandlingMotion {
     pub roll_rad: f64,
     /// Angular velocity about the body's x, y, z, rad/s.
     pub rates_rad_s: [f64; 3],
+    /// Angular acceleration about the body's x, y, z, rad/s2.
+    pub angular_acceleration_rad_s2: [f64; 3],
     /// Horizontal speed along the heading, m/s.
     pub speed_m_s: f64,
     /// Horizontal velocity of the foot to the left of the heading, m/s.

@@ -24,7 +24,7 @@ pub struct HandlingParameters {
     pub frame: Frame,
     /// Drive, brakes and speed control.
     pub drive: Drive,
-    /// Preview driver.
+    /// Parameters of the preview driver.
     pub driver: DriverParameters,
     /// The plane that a tyre sees of an uneven road.
     pub ground: Ground,
@@ -66,7 +66,7 @@ impl Checked for Steering {
     ];
 }
 
-/// A live axle.
+/// Parameters of a live axle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct HandlingAxle {
@@ -184,7 +184,7 @@ pub struct DriverParameters {
     pub preview_time_s: f64,
     /// Steer over that of the arc through the previewed point.
     pub gain: f64,
-    /// Integral action, 1/s.
+    /// Gain of the integral action, 1/s.
     pub integral_per_s: f64,
     /// First-order lag of arms and steering box, s.
     pub lag_s: f64,
@@ -208,9 +208,9 @@ impl Checked for DriverParameters {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ground {
-    /// Along, m.
+    /// Length along the road over which the slope is taken, m.
     pub plane_length_m: f64,
-    /// Across, m.
+    /// Width across the road over which the slope is taken, m.
     pub plane_width_m: f64,
 }
 

@@ -1,4 +1,4 @@
-//! From the driver's hands to the front wheels: limits of angle and rate, and the elasticity of the linkage.
+//! The steering from the driver to the front wheels: limits of angle and rate, and the elasticity of the linkage.
 //!
 //! The linkage between a held steering wheel and the road wheels gives way to the torque about the swivel pins, which the
 //! tyres' aligning moments and their side forces at the castor trail make:

@@ -1,4 +1,4 @@
-//! One wheel on the ground: contact, slip with its lag, and the forces on axle and wheel.
+//! A wheel on the ground: contact, slip with relaxation, and the forces on axle and wheel.
 //!
 //! Contact. A thin disc of free radius R0 on a plane (see `ground`): the tyre's force acts along the plane's normal, its
 //! deflection is `R0 cos(camber) - distance of the wheel centre from the plane`, spring and damper push and never pull.

@@ -15,7 +15,7 @@ pub(super) struct Analogue {
     pub(super) numerator: [f64; 3],
     /// Natural frequency of the poles, Hz.
     pub(super) pole_hz: f64,
-    /// Their quality factor.
+    /// Quality factor of the poles.
     pub(super) pole_q: f64,
 }
 
@@ -87,7 +87,7 @@ impl Biquad {
         }
     }
 
-    /// One sample.
+    /// Filters one sample.
     pub(super) fn filter(&mut self, input: f64) -> f64 {
         let output = self.b[0] * input + self.state[0];
         self.state[0] = self.b[1] * input - self.a[0] * output + self.state[1];

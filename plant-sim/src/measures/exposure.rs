@@ -5,7 +5,7 @@ use super::weighting::{WB, WF, WK, WeightingFilter};
 /// Vertical vibration that a seat has been exposed to so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RideMeasures {
-    /// Time measured, s.
+    /// Time over which the exposure was measured, s.
     pub duration_s: f64,
     /// RMS of the acceleration itself, m/s2.
     pub rms_m_s2: f64,

@@ -70,7 +70,7 @@ impl SeatMeter {
         }
     }
 
-    /// One sample.
+    /// Adds one sample of the seat's acceleration.
     pub fn add(&mut self, acceleration: SeatAcceleration) {
         let fore_aft = self.fore_aft.filter(acceleration.fore_aft_m_s2);
         let lateral = self.lateral.filter(acceleration.lateral_m_s2);

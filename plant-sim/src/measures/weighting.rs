@@ -27,7 +27,7 @@ pub struct Weighting {
     pub zero5: (f64, f64),
     /// f6, Hz, and Q6.
     pub pole6: (f64, f64),
-    /// K.
+    /// Gain K of the transition.
     pub gain: f64,
 }
 

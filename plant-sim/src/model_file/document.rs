@@ -1,4 +1,4 @@
-//! A TOML document that knows where each of its keys and array entries stands.
+//! A TOML document with the position of each of its keys and array entries.
 
 use std::ops::Range;
 
@@ -21,7 +21,7 @@ enum Node<'tree, 'text> {
 }
 
 impl<'text> Document<'text> {
-    /// Parse a text.
+    /// Parses the text of a model file.
     pub fn parse(text: &'text str) -> Result<Self, toml::de::Error> {
         let root = DeTable::parse(text)?;
         Ok(Self { text, root })

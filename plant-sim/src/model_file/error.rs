@@ -1,4 +1,4 @@
-//! What can be wrong with a model, with and without a file around it.
+//! Errors of a model, with and without the file that it was read from.
 
 use super::document::Document;
 use super::path::{KeyPath, Step};

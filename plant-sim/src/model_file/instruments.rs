@@ -30,25 +30,51 @@ pub fn check_noise(noise: &BTreeMap<String, f64>, channels: &[&str]) -> Result<(
         .map_err(|invalid| invalid.inside("noise"))
 }
 
-/// Refuse a model that does not state the noise of every channel. Simulation does without; a diagnosis, which judges every
-/// residual by it, does not.
+/// Refuse a model that does not state the noise of every channel, or states none for a channel that is `compared` with the
+/// model. Simulation does without; a diagnosis does not, because it judges every residual by the noise of its channel.
 ///
 /// # Errors
-/// The channels whose noise is missing.
-pub fn check_noise_is_complete(noise: &BTreeMap<String, f64>, channels: &[&str]) -> Result<(), InvalidValue> {
-    let missing: Vec<&str> = channels
+/// The channels whose noise is missing, all at once; a compared channel whose noise is zero.
+pub fn check_noise_is_complete(
+    noise: &BTreeMap<String, f64>,
+    channels: &[&str],
+    compared: &[&str],
+) -> Result<(), InvalidValue> {
+    let mut missing = channels
         .iter()
         .filter(|channel| !noise.contains_key(**channel))
-        .copied()
-        .collect();
-    if missing.is_empty() {
-        return Ok(());
+        .copied();
+    if let Some(first) = missing.next() {
+        return Err(missing_noise(first, &missing.collect::<Vec<_>>()));
     }
-    let what = format!(
-        "says nothing of {}: give the standard deviation of every channel's noise",
-        missing.join(", ")
-    );
-    Err(InvalidValue::new("noise", what))
+    compared
+        .iter()
+        .try_for_each(|channel| noise_of_compared(noise, channel).map(drop))
+}
+
+/// Standard deviation of the noise of a channel that is compared with the model, in the unit of its name; above 0.
+///
+/// # Errors
+/// The noise is missing or zero.
+pub fn noise_of_compared(noise: &BTreeMap<String, f64>, channel: &str) -> Result<f64, InvalidValue> {
+    match noise.get(channel) {
+        Some(&deviation) if deviation > 0.0 => Ok(deviation),
+        Some(_) => {
+            let what = "is 0: must be above 0, because the residuals of this channel are divided by it";
+            Err(InvalidValue::new(channel.to_owned(), what).inside("noise"))
+        }
+        None => Err(missing_noise(channel, &[])),
+    }
+}
+
+fn missing_noise(first: &str, others: &[&str]) -> InvalidValue {
+    let others = match others {
+        [] => String::new(),
+        [one] => format!(", and so is {one}"),
+        several => format!(", and so are {}", several.join(", ")),
+    };
+    let what = format!("is missing{others}: state the standard deviation of the noise of every recorded channel");
+    InvalidValue::new(first.to_owned(), what).inside("noise")
 }
 
 fn sizes(table: &BTreeMap<String, f64>) -> Result<(), InvalidValue> {
@@ -101,12 +127,33 @@ mod tests {
 
     #[test]
     fn missing_channels_are_named_all_at_once() {
-        let noise = table(&[("force_N", 12.0)]);
-        let missing = check_noise_is_complete(&noise, &CHANNELS).unwrap_err().to_string();
-        assert!(
-            missing.starts_with("noise says nothing of displacement_m, p_Pa: "),
-            "{missing}"
-        );
-        assert!(check_noise_is_complete(&noise, &["force_N"]).is_ok());
+        let complaint = |noise: &[(&str, f64)]| {
+            check_noise_is_complete(&table(noise), &CHANNELS, &CHANNELS[1..]).map_err(|invalid| invalid.to_string())
+        };
+        let starts = |noise: &[(&str, f64)], start: &str| complaint(noise).is_err_and(|said| said.starts_with(start));
+        assert!(starts(
+            &[],
+            "[noise] displacement_m is missing, and so are force_N, p_Pa: state the"
+        ));
+        assert!(starts(
+            &[("force_N", 12.0)],
+            "[noise] displacement_m is missing, and so is p_Pa: state the"
+        ));
+        assert!(starts(
+            &[("displacement_m", 1e-5), ("force_N", 12.0)],
+            "[noise] p_Pa is missing: state the"
+        ));
+    }
+
+    #[test]
+    fn an_input_may_be_exact_but_no_channel_that_is_compared() {
+        let check = |displacement, force| {
+            let noise = table(&[("displacement_m", displacement), ("force_N", force), ("p_Pa", 300.0)]);
+            check_noise_is_complete(&noise, &CHANNELS, &CHANNELS[1..]).map_err(|invalid| invalid.to_string())
+        };
+        assert_eq!(check(0.0, 12.0), Ok(()));
+        assert!(check(0.0, 0.0).is_err_and(|said| said.starts_with("[noise] force_N is 0: must be above 0")));
+        assert_eq!(noise_of_compared(&table(&[("p_Pa", 300.0)]), "p_Pa"), Ok(300.0));
+        assert!(noise_of_compared(&table(&[]), "p_Pa").is_err());
     }
 }

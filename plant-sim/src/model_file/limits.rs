@@ -47,7 +47,7 @@ enum Field<T> {
 }
 
 impl<T> Limit<T> {
-    /// A number.
+    /// The limit of a single number.
     pub const fn one(key: &'static str, range: Range, unit: &'static str, field: fn(&T) -> f64) -> Self {
         let quantity = Quantity { key, range, unit };
         let field = Field::One(field);

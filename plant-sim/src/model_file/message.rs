@@ -1,4 +1,4 @@
-//! What toml and serde complain of, in this project's words and with the path of the key.
+//! Converts the error messages of toml and serde into this project's terms, with the path of the key.
 
 use super::document::{Document, line_at};
 use super::error::ModelFileError;

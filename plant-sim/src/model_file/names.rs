@@ -1,4 +1,4 @@
-//! Names that are looked up in a list, with a suggestion where one is misspelt.
+//! Looks names up in a list and suggests the nearest one for a misspelt name.
 
 use std::collections::BTreeMap;
 use std::str::FromStr;

@@ -1,4 +1,4 @@
-//! The way from the top of a model file to one value in it.
+//! The path of keys from the top of a model file to one value.
 
 use std::borrow::Cow;
 use std::fmt;

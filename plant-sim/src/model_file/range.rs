@@ -1,11 +1,11 @@
-//! The values that a number of a model file may have.
+//! Ranges of the numbers in a model file.
 
 use std::fmt;
 
 /// The values that a number may have. No range contains infinity or NaN.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Range {
-    /// Any finite number.
+    /// Any finite number is permitted.
     Finite,
     /// From the first number to the second, both included.
     FromTo(f64, f64),

@@ -14,15 +14,15 @@ use super::valve_response::measure_valve_responses;
 /// One specification and what was found.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limit {
-    /// "i" to "vii".
+    /// Number of the specification in the report, "i" to "vii".
     pub number: &'static str,
     /// The report's words, shortened.
     pub specification: &'static str,
     /// Value found, in `unit`.
     pub found: f64,
-    /// Unit of `found`.
+    /// Unit of [`Self::found`].
     pub unit: &'static str,
-    /// Within the specification.
+    /// Whether the specification is met.
     pub met: bool,
     /// How it was measured and what else a designer should know.
     pub note: String,
@@ -31,19 +31,19 @@ pub struct Limit {
 /// Full travel, m: 300 mm of which 120 in jounce, as the presets divide it.
 const JOUNCE_M: f64 = 0.120;
 const REBOUND_M: f64 = 0.180;
-/// Full bump of the stiff setting on the test rig, m (3.5.1).
+/// Full bump on the test rig in the stiff setting, m (report, 3.5.1). Specifications iv and vi are judged here.
 const STIFF_BUMP_M: f64 = 0.040;
 const HIGHEST_PA: f64 = 20e6;
 const HIGHEST_N: f64 = 40e3;
 const FASTEST_M_S: f64 = 2.0;
-/// How far gas volumes may be from the specified.
+/// Largest relative deviation of a gas volume from its specification.
 const VOLUME_TOLERANCE: f64 = 0.05;
 /// Duration of the small triangle that gas volumes are found by, s: slow against the gas's thermal time constants.
 const VOLUME_TEST_S: f64 = 900.0;
 /// Speed of the report's slow sawtooth, m/s.
 const SLOW_M_S: f64 = 1.2e-3;
 
-/// Checks all seven.
+/// Checks the strut against all seven specifications.
 ///
 /// # Errors
 /// Impossible values in the model.
@@ -60,7 +60,7 @@ pub fn check_limits(model: &StrutModel) -> Result<Vec<Limit>, InvalidValue> {
     ])
 }
 
-/// Slow stroke; highest and lowest p1 (gauge, Pa) and highest load-cell force (N).
+/// Plays a slow stroke. Returns the highest and lowest p1 (gauge, Pa) and the highest load-cell force (N).
 fn stroke(model: &StrutModel, corners_m: &[f64], signals: StrutValves<bool>) -> Result<(f64, f64, f64), InvalidValue> {
     let path_m: f64 = corners_m.windows(2).map(|leg| (leg[1] - leg[0]).abs()).sum();
     let record = play(model, &Programme::sawtooth(corners_m, path_m / SLOW_M_S, 0.05, signals))?;
@@ -93,7 +93,8 @@ fn travel(model: &StrutModel) -> Result<Limit, InvalidValue> {
         unit: "mm",
         met: found >= 300.0,
         note: format!(
-            "soft setting, slow stroke of +120 and -180 mm: {:.2} to {:.2} MPa, {:.1} kN with the bump stop at full bump",
+            "A slow stroke from -180 to +120 mm in the soft setting gives {:.2} to {:.2} MPa, and {:.1} kN including the bump \
+             stop at full bump.",
             1e-6 * low,
             1e-6 * high,
             1e-3 * force
@@ -118,7 +119,7 @@ fn gas_volume(model: &StrutModel, spring: Spring) -> Result<Limit, InvalidValue>
     let litres = 1e3 * by_gas * model.static_pressure().absolute().pa();
     let (number, specification, wanted) = match spring {
         Spring::Soft => ("ii", "soft static gas volume of 0.5 l", 0.5),
-        Spring::Stiff => ("iii", "hard static gas volume of 0.1 l", 0.1),
+        Spring::Stiff => ("iii", "stiff static gas volume of 0.1 l", 0.1),
     };
     Ok(Limit {
         number,
@@ -127,7 +128,8 @@ fn gas_volume(model: &StrutModel, spring: Spring) -> Result<Limit, InvalidValue>
         unit: "l",
         met: (litres / wanted - 1.0).abs() <= VOLUME_TOLERANCE,
         note: format!(
-            "from the rate {:.1} kN/m of a 2 mm triangle in 900 s, the oil's share taken off; +-{:.0} %",
+            "The volume follows from the spring rate of {:.1} kN/m in a triangle of 2 mm over 900 s, less the compliance of \
+             the oil. The tolerance is {:.0} %.",
             1e-3 * model.piston_area_m2() * xy / xx,
             100.0 * VOLUME_TOLERANCE
         ),
@@ -147,25 +149,27 @@ fn pressure_and_force(model: &StrutModel) -> Result<[Limit; 2], InvalidValue> {
     Ok([
         Limit {
             number: "iv",
-            specification: "system pressure at full bump <= 20 MPa",
+            specification: "system pressure <= 20 MPa at full bump of the test rig (+40 mm)",
             found: 1e-6 * high,
             unit: "MPa",
             met: high <= HIGHEST_PA,
             note: format!(
-                "hard setting at the rig's +40 mm, slowly; 20 MPa is reached at +{:.0} mm hard and +{:.0} mm soft: a \
-                 controller has to open valve 3 before",
+                "This is the pressure in the stiff setting after a slow stroke to +40 mm. The pressure reaches 20 MPa at \
+                 +{:.0} mm in the stiff setting and at +{:.0} mm in the soft setting, so the controller must open valve 3 \
+                 before +{:.0} mm.",
                 reach(Spring::Stiff),
-                reach(Spring::Soft)
+                reach(Spring::Soft),
+                reach(Spring::Stiff)
             ),
         },
         Limit {
             number: "vi",
-            specification: "suspension force <= 40 kN (5 x static)",
+            specification: "suspension force <= 40 kN (5 x static) at full bump of the test rig (+40 mm)",
             found: 1e-3 * force,
             unit: "kN",
             met: force <= HIGHEST_N,
             note: format!(
-                "hard setting at +40 mm, load cell; {:.1} x the static {:.1} kN",
+                "This is the load-cell force in the stiff setting at +40 mm. It is {:.1} times the static load of {:.1} kN.",
                 force / static_n,
                 1e-3 * static_n
             ),
@@ -181,20 +185,21 @@ fn flow(model: &StrutModel) -> Result<Limit, InvalidValue> {
     let static_mpa = 1e-6 * model.cylinder.static_pressure_pa;
     let hard_rebound = static_mpa + drop(Damping::HighStiff, -FASTEST_M_S);
     let parts = if hard_rebound < -1e-6 * ATMOSPHERE_PA {
-        "oil would part there"
+        "so the oil would cavitate"
     } else {
-        "oil does not part"
+        "and the oil does not cavitate"
     };
     Ok(Limit {
         number: "v",
         specification: "flow of 230 l/min (2 m/s)",
         found: 6e4 * area_m2 * FASTEST_M_S,
         unit: "l/min",
-        // The open valves have to pass it without reaching the pressure limit from static.
+        // The open valves have to pass this flow without reaching the pressure limit from the static pressure.
         met: static_mpa + low <= 1e-6 * HIGHEST_PA && 6e4 * area_m2 * FASTEST_M_S >= 230.0,
         note: format!(
-            "piston area x 2 m/s; steady drop {low:.2} MPa with the dampers bypassed, {:.2} MPa hard in jounce; hard in \
-             rebound p1 comes to {hard_rebound:.2} MPa: {parts}",
+            "The flow is the piston area times 2 m/s. At this flow the steady pressure drop is {low:.2} MPa with the dampers \
+             bypassed and {:.2} MPa in the stiff setting in jounce. In the stiff setting in rebound p1 falls to \
+             {hard_rebound:.2} MPa gauge, {parts}.",
             drop(Damping::HighStiff, FASTEST_M_S)
         ),
     })
@@ -217,8 +222,8 @@ fn valve_response(model: &StrutModel) -> Result<Limit, InvalidValue> {
         // "In the order of": between half and twice.
         met: low >= 25.0 && high <= 100.0,
         note: format!(
-            "valve 3, 1 to 13 MPa: {low:.0} to {high:.0} ms to 95 % of the pressure difference, {:.0} to {opening_high:.0} ms to 95 % \
-             open",
+            "Valve 3 was switched at 1 to 13 MPa. It takes {low:.0} to {high:.0} ms until 95 % of the pressure difference has disappeared, \
+             and {:.0} to {opening_high:.0} ms until it is 95 % open.",
             opening.fold(f64::INFINITY, f64::min)
         ),
     })

@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Vector3};
 /// `y = c0 + c1 x + c2 x^2` by least squares.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parabola {
-    /// `c0`, `c1`, `c2`.
+    /// Coefficients `c0`, `c1`, `c2` of the parabola `c0 + c1 x + c2 x^2`.
     pub coefficients: [f64; 3],
     /// Root mean square of the residuals, unit of y.
     pub residual: f64,
@@ -37,7 +37,7 @@ impl Parabola {
             .then_some(Self { residual, ..fit })
     }
 
-    /// Value at x.
+    /// Value of the parabola at x.
     #[must_use]
     pub fn at(&self, x: f64) -> f64 {
         let [c0, c1, c2] = self.coefficients;

@@ -111,7 +111,7 @@ impl Programme {
         }
     }
 
-    /// Sample times, s.
+    /// Times of the samples, s.
     #[must_use]
     pub fn time_s(&self) -> &[f64] {
         &self.time_s
@@ -144,11 +144,11 @@ impl Programme {
 /// What was played and what the instruments read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
-    /// Sample times, s.
+    /// Times of the samples, s.
     pub time_s: Vec<f64>,
     /// Actuator displacement, m, compression positive.
     pub displacement_m: Vec<f64>,
-    /// Actuator speed, m/s.
+    /// Speed of the actuator, m/s, positive in jounce.
     pub speed_m_s: Vec<f64>,
     /// Load cell, N, compression positive.
     pub force_n: Vec<f64>,

@@ -10,11 +10,11 @@ use crate::strut::Inputs;
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// A column is missing.
-    #[error("{file}:1: no column {column}; a recording of this kind has {needed}")]
+    #[error("{file}:1: there is no column {column}; a recording of this kind needs {needed}")]
     Column {
-        /// File.
+        /// Path of the recording.
         file: String,
-        /// Column.
+        /// Name of the missing column.
         column: String,
         /// All that are needed.
         needed: String,
@@ -22,31 +22,31 @@ pub enum RecordingError {
     /// A value is not usable.
     #[error("{file}:{line}: {column} is {value:?}; {need}")]
     Value {
-        /// File.
+        /// Path of the recording.
         file: String,
-        /// Line, from 1.
+        /// Line of the file, counted from 1.
         line: u64,
-        /// Column.
+        /// Name of the column.
         column: String,
-        /// Text found.
+        /// Text that was found there.
         value: String,
-        /// What is needed.
+        /// What is needed instead.
         need: &'static str,
     },
-    /// Not a table.
+    /// The file is not a table in CSV format.
     #[error("{file}: {reason}")]
     Csv {
-        /// File.
+        /// Path of the recording.
         file: String,
         /// What the reader says.
         reason: String,
     },
-    /// Too short.
-    #[error("{file}: {samples} samples; a replay needs two or more")]
+    /// The recording is too short.
+    #[error("{file}: the recording has {samples} samples; a replay needs two or more")]
     Short {
-        /// File.
+        /// Path of the recording.
         file: String,
-        /// Samples found.
+        /// Number of samples that were found.
         samples: usize,
     },
 }
@@ -130,7 +130,7 @@ impl Columns {
         Ok(Self { names, values })
     }
 
-    /// Sample times, s.
+    /// Times of the samples, s.
     #[must_use]
     pub fn time_s(&self) -> &[f64] {
         &self.values[0]
@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn refusals_name_file_line_and_column() {
         for (from, to, part) in [
-            ("displacement_m", "x_m", "r.csv:1: no column displacement_m"),
+            ("displacement_m", "x_m", "r.csv:1: there is no column displacement_m"),
             ("1e-3", "nan", "r.csv:3: displacement_m is \"nan\""),
             ("0.1,", "0,", "r.csv:3: time_s is \"0\"; time must increase"),
             ("4.1e6,1,", "4.1e6,0.5,", "r.csv:3: valve1 is \"0.5\""),

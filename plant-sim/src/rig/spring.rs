@@ -12,10 +12,10 @@ use crate::strut_first::Spring;
 use super::isothermal::{Isothermal, Oil};
 use super::programme::{Programme, Record, play};
 
-/// The slow sawtooth.
+/// The slow sawtooth with which a spring is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SpringTest {
-    /// Greatest compression, m.
+    /// Largest compression, m.
     pub bump_m: f64,
     /// Greatest extension, m (positive).
     pub rebound_m: f64,
@@ -24,7 +24,7 @@ pub struct SpringTest {
 }
 
 impl Default for SpringTest {
-    /// The report's cycle.
+    /// The report's cycle: +40 and -100 mm in 300 s.
     fn default() -> Self {
         Self {
             bump_m: 0.040,
@@ -42,7 +42,7 @@ const GRID: usize = 281;
 /// A measured characteristic and what it is held against.
 #[derive(Debug, Clone)]
 pub struct SpringCharacteristic {
-    /// Which spring.
+    /// The spring that was measured, soft or stiff.
     pub spring: Spring,
     /// Everything the instruments read.
     pub record: Record,
@@ -58,7 +58,7 @@ pub struct SpringCharacteristic {
     pub grid_m: Vec<f64>,
     /// Force from pressure at them while extending (from bump to rebound) and while compressing, N.
     pub extending_n: Vec<f64>,
-    /// While compressing.
+    /// Force while the strut is compressed, N, at each grid point.
     pub compressing_n: Vec<f64>,
 }
 
@@ -116,7 +116,7 @@ pub fn test_spring(model: &StrutModel, spring: Spring, test: SpringTest) -> Resu
 }
 
 impl SpringCharacteristic {
-    /// Mean of both directions at a grid point, N: what is left of the loop without its hysteresis.
+    /// Mean force of both directions at each grid point, N, which contains no hysteresis.
     #[must_use]
     pub fn mean_n(&self) -> Vec<f64> {
         self.extending_n

@@ -1,4 +1,4 @@
-//! A road laid round a circle.
+//! A road that follows a circle.
 
 use core::f64::consts::{PI, TAU};
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! A smooth start: a vehicle in equilibrium on level ground must not begin with a kerb.
+//! A smooth start of a road, because a vehicle in equilibrium on level ground must not start at a step.
 
 use super::Road;
 

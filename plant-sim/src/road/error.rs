@@ -1,20 +1,20 @@
-//! Why a road could not be made, in one line each.
+//! Errors of roads, in one line each.
 
 /// A road that cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RoadError {
     /// Neither a built-in name nor a file.
-    #[error("road '{spec}' is neither a file (.crg, .csv) nor one of {names}")]
+    #[error("road '{spec}' is neither a .crg or .csv file nor one of the built-in roads {names}")]
     Unknown {
-        /// As given.
+        /// The text that the user gave.
         spec: String,
-        /// The built-in names.
+        /// The names of the built-in roads.
         names: String,
     },
     /// The file could not be read from disk.
     #[error("{path}: cannot be read: {reason}")]
     Unreadable {
-        /// As given.
+        /// The path as the user gave it.
         path: String,
         /// The operating system's reason.
         reason: String,
@@ -22,9 +22,9 @@ pub enum RoadError {
     /// Something is wrong at a line of a file.
     #[error("{path}:{line}: {problem}")]
     Line {
-        /// As given.
+        /// The path as the user gave it.
         path: String,
-        /// From 1.
+        /// Line of the file, counted from 1.
         line: usize,
         /// What is wrong and what to do.
         problem: String,
@@ -32,7 +32,7 @@ pub enum RoadError {
     /// Something is wrong with the binary part of a file.
     #[error("{path}: {problem}")]
     Payload {
-        /// As given.
+        /// The path as the user gave it.
         path: String,
         /// What is wrong and what to do.
         problem: String,
@@ -40,7 +40,7 @@ pub enum RoadError {
     /// The length asked for cannot be made.
     #[error("road length {length_m} m is not possible: give between 1 and {limit_m} m")]
     Length {
-        /// As given.
+        /// The length that was asked for, m.
         length_m: f64,
         /// Longest length that is made.
         limit_m: f64,

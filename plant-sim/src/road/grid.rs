@@ -55,7 +55,7 @@ impl GridRoad {
         1.0 / self.per_m
     }
 
-    /// Number of rows.
+    /// Number of rows of the grid.
     pub fn rows(&self) -> usize {
         self.rows
     }

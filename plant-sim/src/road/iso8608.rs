@@ -22,13 +22,13 @@ use rustfft::num_complex::Complex;
 pub enum Class {
     /// 16e-6 m3: a very good motorway.
     A,
-    /// 64e-6 m3.
+    /// Class B: Gd(0.1 cycles/m) = 64e-6 m3.
     B,
-    /// 256e-6 m3.
+    /// Class C: Gd(0.1 cycles/m) = 256e-6 m3.
     C,
-    /// 1024e-6 m3.
+    /// Class D: Gd(0.1 cycles/m) = 1024e-6 m3.
     D,
-    /// 4096e-6 m3.
+    /// Class E: Gd(0.1 cycles/m) = 4096e-6 m3.
     E,
     /// 16384e-6 m3: rough terrain.
     F,

@@ -1,4 +1,4 @@
-//! A road of many lanes from a surface that is known only under one vehicle.
+//! Adds parallel lanes to a surface that is known only under one vehicle.
 //!
 //! Synthesised roads and files have two wheel tracks or a strip of a few metres. A vehicle that changes lanes leaves them, and
 //! with heights that are constant outside both of its sides would roll over the same track. Here every lane has a pair of

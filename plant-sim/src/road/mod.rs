@@ -1,4 +1,4 @@
-//! What the wheels roll over.
+//! Roads: the surfaces on which the wheels roll.
 //!
 //! A [`Road`] is a height for every station and lateral position, defined everywhere, so that no simulation ends
 //! because a surface did. Vehicles only know the trait; where heights come from (a measured file, a standard's
@@ -48,7 +48,7 @@ pub trait Road: Send + Sync {
     fn height_m(&self, station_m: f64, lateral_m: f64) -> f64;
 }
 
-/// Level ground.
+/// Level ground at height 0.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Flat;
 

@@ -1,4 +1,4 @@
-//! One word to a road: what a command line or a scenario file says.
+//! Finds the road for a name on the command line or in a scenario file.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use super::{
     ApgObstacle, EnteredSmoothly, Flat, HALF_TRACK_M, LANE_M, Lanes, Road, RoadError, belgian, crg, profile_from_csv,
 };
 
-/// The built-in roads.
+/// Names of the built-in roads.
 pub const NAMES: [&str; 11] = [
     "belgian",
     "apg-left",

@@ -1,4 +1,4 @@
-//! A road that leans to one side.
+//! Adds a side slope to a road.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! Measures a road: displacement spectral density of its tracks and the coherence between them.
+//! Computes the displacement spectral density of a road's tracks and the coherence between them.
 //!
 //! One-sided spectral density `Gd(n)` in m3 over spatial frequency `n` in cycles/m, as ISO 8608 defines it, by Welch's
 //! averaged, Hann-windowed periodograms of linearly detrended segments. The complex coherence
@@ -11,9 +11,9 @@ use std::sync::Arc;
 /// What a band of spatial frequencies holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Band {
-    /// Lower edge, cycles/m.
+    /// Lower edge of the band, cycles/m.
     pub low_per_m: f64,
-    /// Upper edge, cycles/m.
+    /// Upper edge of the band, cycles/m.
     pub high_per_m: f64,
     /// Mean of Gd in the band over both tracks, m3.
     pub psd_m3: f64,

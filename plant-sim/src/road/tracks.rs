@@ -25,7 +25,7 @@ impl TwoTracks {
         }
     }
 
-    /// One period, m.
+    /// Length of one period of the track, m.
     pub fn length_m(&self) -> f64 {
         (self.heights_m.len() - 1) as f64 / self.per_m
     }

@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::name::SpecimenName;
-use crate::model_file::instruments::{check_noise, check_tolerance};
+use crate::model_file::instruments::{check_noise, check_noise_is_complete, check_tolerance};
 use crate::model_file::limits::each_checked;
 use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
 use crate::strut::{
@@ -47,10 +47,10 @@ const LEAST_AREA_M2: f64 = 1e-8;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CylinderSeal {
-    /// Coulomb force, N.
+    /// Coulomb friction force, N, 0 or more.
     #[serde(rename = "coulomb_force_N")]
     pub coulomb_force_n: f64,
-    /// Presliding stiffness, N/m.
+    /// Stiffness of the seal before it slides, N/m.
     #[serde(rename = "presliding_stiffness_N_m")]
     pub presliding_stiffness_n_m: f64,
 }
@@ -117,19 +117,19 @@ impl CylinderEffects {
         source: "Theron & Els, final report 2002, section 3.5.1",
     };
 
-    /// [`CylinderEffects::moving_mass_kg`].
+    /// Equation of [`CylinderEffects::moving_mass_kg`].
     pub const MOVING_MASS: Equation = Equation {
         text: "F = m d2x/dt2",
         source: "Newton's second law; no name in the vocabulary",
     };
 
-    /// [`CylinderEffects::viscous_friction_n_s_m`].
+    /// Equation of [`CylinderEffects::viscous_friction_n_s_m`].
     pub const VISCOUS_FRICTION: Equation = Equation {
         text: "F = c dx/dt",
         source: "Newton's law of viscosity; no name in the vocabulary",
     };
 
-    /// [`CylinderEffects::parallel_stiffness_n_m`].
+    /// Equation of [`CylinderEffects::parallel_stiffness_n_m`].
     pub const PARALLEL_STIFFNESS: Equation = Equation {
         text: "F = k x",
         source: "Hooke's law; no name in the vocabulary",
@@ -173,11 +173,11 @@ impl Checked for CylinderEffects {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CylinderModel {
-    /// Name and kind.
+    /// Name and kind of the specimen.
     pub specimen: SpecimenName,
-    /// Chambers.
+    /// Pressure chambers that act on the piston, one or more.
     pub chamber: Vec<CylinderChamber>,
-    /// Terms.
+    /// Effects that the model contains.
     #[serde(default)]
     pub effects: CylinderEffects,
     /// How far values may be off: `area` relative, `force_offset_N`, `pressure_offset_Pa`.
@@ -193,9 +193,9 @@ pub struct CylinderModel {
 pub struct SmoothedMotion {
     /// Displacement, m, compression positive.
     pub displacement_m: Vec<f64>,
-    /// Speed, m/s.
+    /// Speed of the piston, m/s, positive in jounce.
     pub speed_m_s: Vec<f64>,
-    /// Acceleration, m/s2.
+    /// Acceleration of the piston, m/s2, positive in jounce.
     pub acceleration_m_s2: Vec<f64>,
 }
 
@@ -260,8 +260,7 @@ impl Checked for CylinderModel {
         check_columns(TermId::SensorLag, e.sensor_lag.as_ref(), &[FORCE])
             .map_err(|invalid| invalid.inside("effects"))?;
         check_tolerance(&self.tolerance, &["area", "force_offset_N", "pressure_offset_Pa"])?;
-        let channels: Vec<&str> = ["displacement_m", FORCE].into_iter().chain(chambers).collect();
-        check_noise(&self.noise, &channels)
+        check_noise(&self.noise, &self.channels())
     }
 }
 
@@ -269,6 +268,21 @@ impl Checked for CylinderModel {
 const FORCE: &str = "force_N";
 
 impl CylinderModel {
+    /// The displacement, the force, which is compared with the model, and the pressure of every chamber.
+    fn channels(&self) -> Vec<&str> {
+        let chambers = self.chamber.iter().map(|chamber| chamber.column.as_str());
+        ["displacement_m", FORCE].into_iter().chain(chambers).collect()
+    }
+
+    /// Refuse a model that does not state the noise of every channel, which only a diagnosis needs. Displacement and
+    /// pressures, which are not compared, may be without noise (0).
+    ///
+    /// # Errors
+    /// The channels whose noise is missing, or a force without noise.
+    pub fn check_noise_is_complete(&self) -> Result<(), InvalidValue> {
+        check_noise_is_complete(&self.noise, &self.channels(), &[FORCE])
+    }
+
     /// Read and check a model. `file` is the name that appears in errors.
     ///
     /// ```

@@ -8,17 +8,17 @@
 use serde::{Deserialize, Serialize};
 
 use super::name::SpecimenName;
-use crate::model_file::instruments::{check_noise, check_tolerance};
+use crate::model_file::instruments::{check_noise, check_noise_is_complete, check_tolerance};
 use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
 use crate::strut::{
     Effects, Equation, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K, SensorEffect, TermId, check_columns, record_column,
 };
 
-/// The chamber.
+/// The gas chamber of a gas spring.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SpringChamber {
-    /// Piston area, m2.
+    /// Area of the piston, m2.
     pub area_m2: f64,
     /// Gas volume at displacement zero, m3.
     pub volume_at_zero_m3: f64,
@@ -39,15 +39,15 @@ impl Checked for SpringChamber {
 pub enum GasProcess {
     /// Stays at its first temperature.
     Isothermal,
-    /// Exchanges no heat.
+    /// The gas exchanges no heat with its surroundings.
     Adiabatic,
 }
 
-/// The gas.
+/// The gas in the chamber.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GasSpringGas {
-    /// `nitrogen`.
+    /// Species of the gas; only `nitrogen` is possible.
     pub species: String,
     /// Process without heat transfer.
     pub process: GasProcess,
@@ -142,13 +142,13 @@ impl GasSpringEffects {
         source: "Els & Grobbelaar, SAE 930265, 1993; Otis & Pourmovahed, J. Dyn. Sys. Meas. Control 107, 1985",
     };
 
-    /// [`GasSpringEffects::polytropic_exponent`].
+    /// Equation of [`GasSpringEffects::polytropic_exponent`].
     pub const POLYTROPIC_EXPONENT: Equation = Equation {
         text: "p V^n = constant",
         source: "polytropic process; no name in the vocabulary",
     };
 
-    /// [`GasSpringEffects::gas_leak_rate_1_s`].
+    /// Equation of [`GasSpringEffects::gas_leak_rate_1_s`].
     pub const GAS_LOST: Equation = Equation {
         text: "dm/dt = -k m",
         source: "a leak in proportion to what is left, assumed; no name in the vocabulary",
@@ -199,13 +199,13 @@ const PRESSURE: &str = "p_Pa";
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GasSpringModel {
-    /// Name and kind.
+    /// Name and kind of the specimen.
     pub specimen: SpecimenName,
-    /// Geometry.
+    /// Geometry of the gas chamber.
     pub chamber: SpringChamber,
-    /// Gas.
+    /// The gas in the chamber.
     pub gas: GasSpringGas,
-    /// Terms.
+    /// Effects that the model contains.
     #[serde(default)]
     pub effects: GasSpringEffects,
     /// How far values may be off: `volume_at_zero`, `initial_pressure` relative, `temperature_K` in K.
@@ -228,11 +228,23 @@ impl Checked for GasSpringModel {
             &self.tolerance,
             &["volume_at_zero", "initial_pressure", "temperature_K", "time_constant"],
         )?;
-        check_noise(&self.noise, &["displacement_m", PRESSURE])
+        check_noise(&self.noise, &CHANNELS)
     }
 }
 
+/// Channels of a gas spring: the displacement and the pressure, which is compared with the model.
+const CHANNELS: [&str; 2] = ["displacement_m", PRESSURE];
+
 impl GasSpringModel {
+    /// Refuse a model that does not state the noise of both channels, which only a diagnosis needs. The displacement, which is
+    /// not compared, may be without noise (0).
+    ///
+    /// # Errors
+    /// The channels whose noise is missing, or a pressure without noise.
+    pub fn check_noise_is_complete(&self) -> Result<(), InvalidValue> {
+        check_noise_is_complete(&self.noise, &CHANNELS, &[PRESSURE])
+    }
+
     /// Read and check a model. `file` is the name that appears in errors.
     ///
     /// ```
@@ -274,7 +286,7 @@ impl GasSpringModel {
         let smallest = displacement_m.iter().map(|&x| volume(x)).fold(f64::INFINITY, f64::min);
         if smallest <= 0.0 {
             return Err(format!(
-                "the stroke leaves a gas volume of {smallest} m3; volume_at_zero_m3 or area_m2 is wrong"
+                "the recorded stroke would leave a gas volume of {smallest} m3; correct volume_at_zero_m3 or area_m2"
             ));
         }
         let ambient = gas.temperature_k;

@@ -17,9 +17,9 @@ pub const NITROGEN_CV_J_KG_K: f64 = 743.0;
 /// Volume and temperature of a gas charge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GasState {
-    /// Gas volume, m3.
+    /// Volume of the gas, m3.
     pub volume_m3: f64,
-    /// Gas temperature, K.
+    /// Temperature of the gas, K.
     pub temperature_k: f64,
 }
 

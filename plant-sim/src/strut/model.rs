@@ -17,7 +17,7 @@ use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, che
 pub struct Specimen {
     /// Name of the individual.
     pub name: String,
-    /// Kind: [`StrutModel::KIND`].
+    /// Kind of the specimen, which must be [`StrutModel::KIND`].
     pub kind: String,
 }
 
@@ -33,11 +33,11 @@ impl Checked for Specimen {
     }
 }
 
-/// Main cylinder.
+/// The main cylinder of the strut.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Cylinder {
-    /// Bore, m.
+    /// Bore of the cylinder, m.
     pub bore_m: f64,
     /// Oil volume at displacement zero, m3.
     pub oil_volume_m3: f64,
@@ -81,7 +81,7 @@ impl Checked for GasCharge {
     }
 }
 
-/// One accumulator.
+/// An accumulator with its gas charge.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Accumulator {
@@ -196,17 +196,17 @@ pub struct StrutModel {
     pub accumulator: [Accumulator; 2],
     /// Valves 1 to 3.
     pub valve: [Valve; 3],
-    /// Name and kind.
+    /// Name and kind of the specimen.
     pub specimen: Specimen,
-    /// Main cylinder.
+    /// The main cylinder of the strut.
     pub cylinder: Cylinder,
-    /// Gas filling.
+    /// Species and temperature of the gas.
     pub gas: GasCharge,
     /// Damper packs 1 and 2.
     pub damper: [DamperTable; 2],
-    /// Orifice law.
+    /// Flow law of the valves and leaks.
     pub orifice: Orifice,
-    /// Valve timing.
+    /// Response times of the valves.
     pub valve_timing: ValveTiming,
     /// The terms that the model has.
     #[serde(default)]
@@ -300,7 +300,7 @@ impl StrutModel {
         model
     }
 
-    /// Piston area, m2.
+    /// Area of the piston, m2.
     #[must_use]
     pub fn piston_area_m2(&self) -> f64 {
         0.25 * std::f64::consts::PI * self.cylinder.bore_m * self.cylinder.bore_m
@@ -326,7 +326,7 @@ impl StrutModel {
     }
 
     /// Refuse a model that does not state the noise of every channel. A simulation does without; a diagnosis, which judges
-    /// every residual by it, does not.
+    /// every residual by it, does not. Only the displacement, which is not compared, may be without noise (0).
     ///
     /// ```
     /// use oleo_plant_sim::strut::StrutModel;
@@ -334,13 +334,14 @@ impl StrutModel {
     /// assert_eq!(model.check_noise_is_complete(), Ok(()));
     /// model.noise.remove("p3_Pa");
     /// let missing = model.check_noise_is_complete().unwrap_err();
-    /// assert!(missing.to_string().starts_with("noise says nothing of p3_Pa: "));
+    /// assert!(missing.to_string().starts_with("[noise] p3_Pa is missing: "));
     /// ```
     ///
     /// # Errors
-    /// The channels whose noise is missing. [`InvalidValue::in_file`] adds file and line.
+    /// The channels whose noise is missing, or a zero. [`InvalidValue::in_file`] adds file and line.
     pub fn check_noise_is_complete(&self) -> Result<(), InvalidValue> {
-        check_noise_is_complete(&self.noise, &COLUMNS)
+        let [_, compared @ ..] = &COLUMNS;
+        check_noise_is_complete(&self.noise, &COLUMNS, compared)
     }
 }
 
@@ -403,7 +404,7 @@ mod tests {
         let line = 1 + text.lines().position(|line| line == "[noise]").unwrap();
         let shown = missing.in_file(&text, "model.toml").to_string();
         assert!(
-            shown.starts_with(&format!("model.toml:{line}: noise says nothing of p3_Pa: ")),
+            shown.starts_with(&format!("model.toml:{line}: [noise] p3_Pa is missing: ")),
             "{shown}"
         );
     }

@@ -103,7 +103,7 @@ const TEMPERATURE_NODES: usize = 54;
 /// A state of the real gas and its derivatives.
 #[derive(Debug, Clone, Copy)]
 pub struct State {
-    /// Pressure.
+    /// Absolute pressure of the gas.
     pub pressure: Absolute<f64>,
     /// Isothermal derivative by density, Pa m3/kg.
     pub dp_drho_pa_m3_kg: f64,
@@ -137,7 +137,7 @@ impl Nitrogen {
         GRID.clone()
     }
 
-    /// The Benedict-Webb-Rubin equation.
+    /// Nitrogen by the Benedict-Webb-Rubin equation.
     #[must_use]
     pub fn bwr() -> Self {
         static GRID: LazyLock<Nitrogen> = LazyLock::new(|| Nitrogen::tabulate(8314.0 / 28.013_48, bwr_isotherm));

@@ -1,4 +1,4 @@
-//! A recording's inputs through a model: what the instruments should have read.
+//! Simulates the inputs of a recording with a model, and returns the predicted readings.
 
 use oleo_interface::StrutValves;
 
@@ -43,7 +43,7 @@ impl Inputs {
 /// Predicted columns, one value a sample.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Prediction {
-    /// Load cell, N.
+    /// Force of the load cell, N.
     pub force_n: Vec<f64>,
     /// Gauge pressures p1 to p4, Pa.
     pub pressure_pa: [Vec<f64>; 4],

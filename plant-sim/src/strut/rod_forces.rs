@@ -1,4 +1,4 @@
-//! Forces between rod and cylinder beside that of the oil: friction, stops, and unmodelled laws.
+//! Forces between rod and cylinder other than the oil pressure: friction, stops and laws without a name.
 
 use super::friction::{PRESLIDING_STIFFNESS_N_M, advance_friction};
 use super::terms::{BumpStop, Effects, LawPlace, SealFriction, SealLaw, SideLoadFriction};
@@ -19,7 +19,7 @@ pub(super) struct RodForces {
 pub(super) struct RodState {
     /// Displacement, m, compression positive.
     pub displacement_m: f64,
-    /// Speed, m/s.
+    /// Speed of the rod, m/s, positive in jounce.
     pub speed_m_s: f64,
     /// Gauge pressure p1, Pa.
     pub p1_pa: f64,

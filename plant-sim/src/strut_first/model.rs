@@ -57,7 +57,7 @@ impl FirstGenerationStrut {
         })
     }
 
-    /// The tables.
+    /// The look-up tables of the model.
     #[must_use]
     pub fn characteristics(&self) -> &Characteristics {
         &self.characteristics

@@ -1,4 +1,4 @@
-//! One combination of springs and dampers, and what a drive says of it.
+//! One combination of springs and dampers, and the results of driving with it.
 //!
 //! Ride: Belgian block at 60 km/h for 20 s, straight ahead. Handling: the severe double lane change of ISO 3888-1 at 60 km/h.
 //! Both with the handling model, as the report did both with DADS (section 3.2).
@@ -111,11 +111,11 @@ pub struct Handling {
     pub max_roll_rad: f64,
     /// Largest lateral acceleration, m/s2.
     pub max_lateral_m_s2: f64,
-    /// Least room to the cones, m; negative where some were hit.
+    /// Smallest clearance to the cones, m; negative if one was hit.
     pub cone_margin_m: f64,
     /// Rolled over, spun or left the track: a gap in the surface.
     pub completed: bool,
-    /// It rolled over.
+    /// Whether the vehicle rolled over.
     pub rolled_over: bool,
 }
 
@@ -128,16 +128,16 @@ pub enum StudyError {
     /// The model left the real numbers.
     #[error(transparent)]
     NotFinite(#[from] NotFinite),
-    /// No road.
+    /// The road cannot be made.
     #[error(transparent)]
     Road(#[from] RoadError),
 }
 
 /// Everything a run needs that is the same for all cases.
 pub struct Bench {
-    /// The vehicle.
+    /// Parameters of the vehicle.
     pub parameters: VehicleParameters,
-    /// Its handling.
+    /// Handling parameters of the vehicle.
     pub handling: HandlingParameters,
     /// How it is driven.
     pub conditions: Conditions,
@@ -227,6 +227,7 @@ impl Bench {
             kind: LaneChange::Severe,
             speed_m_s: self.conditions.lane_change_speed_m_s,
             entry_m: ENTRY_M,
+            duration_s: None,
         };
         let drive = self.begin(case, manoeuvre, Arc::new(Flat))?;
         Ok(drive.to_end(|_| Default::default(), |_| {})?)

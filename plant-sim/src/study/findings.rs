@@ -2,20 +2,21 @@
 
 use super::sweep::Surface;
 
-/// One statement of the report and what the sweep says of it.
+/// One statement of the report, and whether the sweep agrees with it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
     /// What the report says (section 3.2).
     pub report: &'static str,
-    /// What was found.
+    /// What the sweep shows, with its figures.
     pub found: String,
-    /// They agree.
+    /// Whether the sweep agrees with the statement.
     pub met: bool,
-    /// A conclusion the report draws, which a check holds the sweep to; else an observation beside it.
+    /// Whether it is one of the report's conclusions, which `--check` tests; otherwise it is an observation that is only shown.
     pub conclusion: bool,
 }
 
-/// Roll may spread this much over the damper factors, of its spread over the volumes, and still be "insensitive".
+/// Roll counts as insensitive to the damper factor if its spread over the factors is below this fraction of its spread over
+/// the whole grid.
 const INSENSITIVE: f64 = 0.25;
 
 /// Checks the conclusions of section 3.2 on a swept grid.
@@ -45,7 +46,7 @@ pub fn findings(surface: &Surface) -> Vec<Finding> {
         });
         list.push(Finding {
             report: "... and soft springs (static gas volume > 0.5 liters)",
-            found: format!("lowest at {:.2} l", 1e3 * volume),
+            found: format!("lowest mean weighted RMS at {:.2} l", 1e3 * volume),
             met: volume > 5e-4 + 1e-12,
             conclusion: true,
         });
@@ -82,7 +83,7 @@ pub fn findings(surface: &Surface) -> Vec<Finding> {
     if let Some((i, j, volume, _)) = least {
         list.push(Finding {
             report: "smallest body roll angle with the stiffest spring (static gas volume of 0.01 liter)",
-            found: format!("smallest {:.2} degrees at {:.3} l", roll(i, j), 1e3 * volume),
+            found: format!("smallest roll angle {:.2} degrees at {:.3} l", roll(i, j), 1e3 * volume),
             met: i == 0,
             conclusion: true,
         });
@@ -110,7 +111,7 @@ pub fn findings(surface: &Surface) -> Vec<Finding> {
         list.push(Finding {
             report: "the roll angle is insensitive to the damper scale factor",
             found: format!(
-                "spread over the factors {over_factors:.2} degrees (mean), over the grid {:.2}",
+                "mean spread over the damper factors {over_factors:.2} degrees, spread over the whole grid {:.2} degrees",
                 high - low
             ),
             met: over_factors < INSENSITIVE * (high - low),
@@ -121,7 +122,7 @@ pub fn findings(surface: &Surface) -> Vec<Finding> {
     let rolled = cells().filter(|&(i, j, ..)| surface.handling[i][j].rolled_over).count();
     list.push(Finding {
         report: "gaps in the graph are where the vehicle could not complete the lane change without rolling over",
-        found: format!("{gaps} gaps, {rolled} of them roll-overs"),
+        found: format!("{gaps} gaps, of which {rolled} are roll-overs"),
         met: gaps > 0 && gaps == rolled,
         conclusion: false,
     });

@@ -41,7 +41,7 @@ impl Ledger {
         self.records.len()
     }
 
-    /// Nothing known.
+    /// Whether no run is stored.
     pub fn is_empty(&self) -> bool {
         self.records.is_empty()
     }

@@ -36,10 +36,10 @@ pub struct Weights {
     pub roll: f64,
 }
 
-/// What is searched.
+/// What the search minimises, and under which conditions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Objective {
-    /// Weights.
+    /// Weights of the measures in the objective.
     pub weights: Weights,
     /// Front and rear each for itself: four variables instead of two.
     pub per_axle: bool,
@@ -50,9 +50,9 @@ pub struct Objective {
 /// One point the search has looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Visit {
-    /// Where.
+    /// Gas volumes and damper factors of the point.
     pub case: Case,
-    /// Value there.
+    /// Value of the objective at the point.
     pub objective: f64,
     /// Ride there; `None` where its weights are 0.
     pub ride: Option<Ride>,
@@ -63,7 +63,7 @@ pub struct Visit {
 /// The end of a search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Optimum {
-    /// The best point.
+    /// The point with the lowest objective.
     pub best: Visit,
     /// All points in the order of looking, the reference first.
     pub path: Vec<Visit>,

@@ -16,7 +16,7 @@ use fnv::FnvHasher;
 
 /// A file of records that cannot be read or written.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: {problem}: give another --out folder or free this one", path.display())]
+#[error("{}: {problem}: give another --out folder, or empty this one", path.display())]
 pub struct RecordsError {
     path: PathBuf,
     problem: std::io::Error,

@@ -21,29 +21,29 @@ pub enum SweepError {
     /// A run that could not be made.
     #[error("gas volume {:.3} l, damper factor {}: {problem}", 1e3 * case.gas_volume_m3.front, case.damper_factor.front)]
     Run {
-        /// Of this case.
+        /// The case that could not be simulated.
         case: Case,
-        /// Why.
+        /// Why it could not be simulated.
         problem: StudyError,
     },
     /// The ledger cannot be written.
     #[error(transparent)]
     Ledger(#[from] RecordsError),
     /// The caller asked to stop.
-    #[error("stopped before the end; run the same command again to go on")]
+    #[error("the study was stopped before its end; run the same command again to resume it")]
     Stopped,
 }
 
 /// Results over the grid: `[volume][factor]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
-    /// m3.
+    /// Static gas volumes of the grid, m3.
     pub gas_volumes_m3: Vec<f64>,
     /// Factors on the baseline damper.
     pub damper_factors: Vec<f64>,
-    /// Belgian block.
+    /// Results on the Belgian block, for each gas volume and each damper factor.
     pub ride: Vec<Vec<Ride>>,
-    /// Lane change.
+    /// Results of the lane change, for each gas volume and each damper factor.
     pub handling: Vec<Vec<Handling>>,
     /// Runs made now; the others were in the ledger.
     pub runs_made: usize,

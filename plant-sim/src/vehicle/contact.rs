@@ -1,4 +1,4 @@
-//! What height a tyre feels, and with what force it answers.
+//! Point or line contact of a tyre: the road height below it and the force on it.
 //!
 //! Appendix A's tyre touches the road in a point. Stallmann & Els found that such a tyre "can't be used for ride
 //! simulations" over obstacles shorter than its contact patch, so the height can be averaged over the contact length
@@ -95,9 +95,9 @@ impl Envelope {
 /// A tyre in the vertical direction: a spring and damper that push and never pull.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tyre {
-    /// N/m.
+    /// Vertical stiffness of the tyre, N/m.
     pub(super) stiffness_n_m: f64,
-    /// N s/m.
+    /// Vertical damping of the tyre, N s/m.
     pub(super) damping_n_s_m: f64,
     /// Force at zero deflection change (static), N.
     pub(super) static_load_n: f64,

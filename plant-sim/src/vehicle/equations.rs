@@ -134,7 +134,7 @@ pub struct Equations {
     pub half_strut_spacing_m: Axles<f64>,
     /// l_w/d2: half the track, m.
     pub half_track_m: Axles<f64>,
-    /// k_arb, N m/rad.
+    /// Stiffness k_arb of the anti-roll bars, N m/rad.
     pub anti_roll_n_m_rad: Axles<f64>,
 }
 

@@ -1,4 +1,4 @@
-//! A vehicle whose gas has become warmer or colder since its struts were charged.
+//! A vehicle whose gas is warmer or colder than when its struts were charged.
 //!
 //! The mass of each charge stays, and the load, so that the pressure at rest stays too. At that pressure the gas takes another
 //! volume, `V = m / rho(p, T)` (of an ideal gas `V0 T / T0`), and the oil that it pushes out or lets in raises or lowers the

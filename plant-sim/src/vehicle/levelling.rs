@@ -1,4 +1,4 @@
-//! Ride-height levelling: oil pumped into a strut or let out of it, as an actuator of the plant.
+//! Ride-height levelling: an actuator that pumps oil into a strut or drains it.
 //!
 //! The report makes levelling an optional provision. Here a pump feeds each strut's cylinder at a constant flow and a drain
 //! empties it; both are slow (some millimetres a second), so that they correct load and temperature, not the road. Oil of volume

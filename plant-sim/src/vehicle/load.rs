@@ -1,4 +1,4 @@
-//! What a vehicle carries: variants of one vehicle for the same drive.
+//! Loads of a vehicle: variants of one vehicle for the same drive.
 //!
 //! A load is a box on the body. Masses and moments add; inertias by the parallel-axis theorem. With struts the vehicle stands at
 //! its ride height whatever it carries, because each strut is charged for its load; on coil springs it sinks, which brings the

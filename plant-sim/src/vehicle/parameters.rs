@@ -1,9 +1,9 @@
-//! What a vehicle is made of, as numbers with units and a source.
+//! Parameters of a vehicle, each with its unit and source.
 //!
 //! One TOML file describes one vehicle; the ride model and the handling model read the same file, so that a mass is
 //! stated once. Every value of the shipped preset carries the label of its origin in a comment of
 //! `presets/defender110.toml`. A file with an unknown key, a missing key or an impossible value is refused with one
-//! line that names file, line and key: a simulation of a vehicle nobody meant is worse than none.
+//! line that names file, line and key: a simulation of the wrong vehicle is worse than none.
 
 use oleo_interface::{Axle, Corner, Corners};
 use serde::{Deserialize, Serialize};
@@ -20,9 +20,9 @@ pub const GRAVITY_M_S2: f64 = 9.80665;
 pub struct VehicleParameters {
     /// What the vehicle is called in reports.
     pub name: String,
-    /// Sprung mass.
+    /// Mass and inertias of the sprung mass.
     pub body: BodyParameters,
-    /// Overall dimensions.
+    /// Overall dimensions and weight distribution.
     pub layout: LayoutParameters,
     /// Front live axle with its wheels.
     pub front_axle: AxleParameters,
@@ -38,7 +38,7 @@ pub struct VehicleParameters {
     pub driver_seat: SeatParameters,
     /// Left rear passenger's seat.
     pub passenger_seat: SeatParameters,
-    /// Fixed-step integration.
+    /// Settings of the fixed-step integration.
     pub solver: SolverParameters,
 }
 
@@ -88,9 +88,9 @@ pub struct BodyParameters {
     pub sprung_mass_kg: f64,
     /// J_x about the body's own centre of mass, kg m2.
     pub roll_inertia_kg_m2: f64,
-    /// J_y, kg m2.
+    /// Pitch inertia J_y of the sprung mass, kg m2.
     pub pitch_inertia_kg_m2: f64,
-    /// J_z, kg m2.
+    /// Yaw inertia J_z of the sprung mass, kg m2.
     pub yaw_inertia_kg_m2: f64,
     /// Height of the *whole vehicle's* centre of mass above ground at static load, m.
     pub vehicle_cg_height_m: f64,
@@ -113,7 +113,7 @@ impl Checked for BodyParameters {
     ];
 }
 
-/// Overall dimensions.
+/// Overall dimensions of the vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LayoutParameters {
@@ -185,7 +185,7 @@ impl Checked for TyreParameters {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BaselineParameters {
-    /// Spring rate, N/m.
+    /// Spring rate of the coil spring, N/m.
     pub coil_stiffness_n_m: f64,
     /// Damper rate in compression, N s/m.
     pub bump_damping_n_s_m: f64,
@@ -240,7 +240,7 @@ impl Checked for SeatParameters {
     ];
 }
 
-/// Fixed-step integration.
+/// Settings of the fixed-step integration.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SolverParameters {
@@ -267,6 +267,17 @@ impl Checked for SolverParameters {
 impl VehicleParameters {
     /// Read and check a vehicle file. `file` is the name that appears in errors.
     ///
+    /// ```
+    /// use oleo_plant_sim::vehicle::VehicleParameters;
+    /// let vehicle = VehicleParameters::defender110();
+    /// assert_eq!(VehicleParameters::from_toml(&vehicle.to_toml(), "copy.toml"), Ok(vehicle.clone()));
+    /// // Struts carry the body, wheels the whole vehicle.
+    /// let (struts, wheels) = (vehicle.static_strut_load_n(), vehicle.static_wheel_load_n());
+    /// let sum = |load_n: &[f64; 4]| load_n.iter().sum::<f64>() / 9.806_65;
+    /// assert!((sum(struts.as_array()) - vehicle.body.sprung_mass_kg).abs() < 1e-6);
+    /// assert!((sum(wheels.as_array()) - vehicle.total_mass_kg()).abs() < 1e-6);
+    /// ```
+    ///
     /// # Errors
     /// Unknown, missing or mistyped keys and values outside their physical range, each with its line.
     pub fn from_toml(text: &str, file: &str) -> Result<Self, ModelFileError> {
@@ -284,7 +295,7 @@ impl VehicleParameters {
             .expect("the shipped preset is parsed in the tests")
     }
 
-    /// Whole vehicle, kg.
+    /// Mass of the whole vehicle, kg.
     pub fn total_mass_kg(&self) -> f64 {
         self.body.sprung_mass_kg + self.front_axle.mass_kg + self.rear_axle.mass_kg
     }

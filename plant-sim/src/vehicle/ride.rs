@@ -1,4 +1,4 @@
-//! The ride model in time: a fixed step, the same bits on every machine.
+//! Time integration of the ride model with a fixed step and bit-identical results on every machine.
 //!
 //! One step of `h` (1 ms in the preset) is velocity Verlet, the kick-drift-kick form of leapfrog:
 //!
@@ -30,12 +30,12 @@ use crate::strut::{Strut, StrutOutput};
 pub enum RideError {
     /// The suspension would not carry the vehicle near its design height.
     #[error(
-        "the {} strut pushes {carried_n:.0} N at its static position but the vehicle rests {needed_n:.0} N on it: \
+        "the {} strut carries {carried_n:.0} N at its static position, but the vehicle's weight on it is {needed_n:.0} N: \
          set the strut's static pressure for that load, or change the vehicle's masses",
         corner.name()
     )]
     StaticLoad {
-        /// Where it stands.
+        /// Corner at which the strut is.
         corner: Corner,
         /// Force of the strut at displacement 0, N.
         carried_n: f64,
@@ -51,32 +51,32 @@ pub enum RideError {
 /// down positive.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BodyMotion {
-    /// m, up positive.
+    /// Heave of the body's centre of mass, m, positive up.
     pub heave_m: f64,
-    /// rad.
+    /// Roll of the body, rad, positive with the left side up.
     pub roll_rad: f64,
-    /// rad.
+    /// Pitch of the body, rad, positive with the nose down.
     pub pitch_rad: f64,
-    /// m/s.
+    /// Heave rate of the body, m/s.
     pub heave_rate_m_s: f64,
-    /// rad/s.
+    /// Roll rate of the body, rad/s.
     pub roll_rate_rad_s: f64,
-    /// rad/s.
+    /// Pitch rate of the body, rad/s.
     pub pitch_rate_rad_s: f64,
-    /// m/s2, without gravity.
+    /// Heave acceleration of the body, m/s2, without gravity.
     pub heave_acceleration_m_s2: f64,
-    /// rad/s2.
+    /// Roll acceleration of the body, rad/s2.
     pub roll_acceleration_rad_s2: f64,
-    /// rad/s2.
+    /// Pitch acceleration of the body, rad/s2.
     pub pitch_acceleration_rad_s2: f64,
 }
 
-/// One wheel, vertical.
+/// Vertical motion of one wheel.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct WheelMotion {
     /// Wheel centre above its static position, m.
     pub height_m: f64,
-    /// Its rate, m/s.
+    /// Rate of the height, m/s.
     pub height_rate_m_s: f64,
     /// Road under the wheel (after enveloping), relative to the level the vehicle started on, m.
     pub road_height_m: f64,
@@ -291,7 +291,7 @@ impl<E: SuspensionElement> RideModel<E> {
         self.speed_m_s * self.time_s()
     }
 
-    /// Forward speed, m/s.
+    /// Forward speed of the vehicle, m/s.
     pub fn speed_m_s(&self) -> f64 {
         self.speed_m_s
     }
@@ -326,7 +326,7 @@ impl<E: SuspensionElement> RideModel<E> {
         }
     }
 
-    /// The four wheels.
+    /// Vertical motion of the four wheels.
     pub fn wheels(&self) -> Corners<WheelMotion> {
         self.wheels
     }

@@ -1,4 +1,4 @@
-//! The two seats at which ride comfort is judged, and what an accelerometer on a seat reads.
+//! The two seats at which ride comfort is judged, and the readings of an accelerometer on a seat.
 //!
 //! Seed report, section 3.2: "the driver position (right front) as well as the left rear passenger position".
 
@@ -74,7 +74,7 @@ impl<T> core::ops::Index<Seat> for Seats<T> {
 /// Acceleration that an accelerometer on a seat reads, along the body's axes, m/s2; 0 when the vehicle stands level.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SeatAcceleration {
-    /// Forward, m/s2.
+    /// Forward acceleration of the seat, m/s2.
     pub fore_aft_m_s2: f64,
     /// To the left, m/s2. A roll angle adds the share of gravity that acts along the body's lateral axis.
     pub lateral_m_s2: f64,

@@ -1,4 +1,4 @@
-//! The seam between vehicle and suspension: one element a corner, compression positive.
+//! The interface between vehicle and suspension: one element at each corner, compression positive.
 //!
 //! The vehicle asks for nothing but a force for a motion, so the same equations carry the hydropneumatic strut, the
 //! coil spring and damper of the vehicle as sold, and the linear elements that have a closed-form answer. This file is
@@ -74,7 +74,7 @@ impl StrutElement {
         self.output
     }
 
-    /// The strut itself.
+    /// The strut that the element contains.
     pub fn strut(&self) -> &Strut {
         &self.strut
     }
@@ -105,9 +105,9 @@ impl SuspensionElement for StrutElement {
 pub struct LinearElement {
     /// Force at the static position, N.
     pub static_load_n: f64,
-    /// k, N/m.
+    /// Stiffness k, N/m.
     pub stiffness_n_m: f64,
-    /// c, N s/m.
+    /// Damping coefficient c, N s/m.
     pub damping_n_s_m: f64,
     force_n: f64,
 }

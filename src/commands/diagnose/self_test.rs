@@ -1,4 +1,4 @@
-//! `oleo diagnose --self-test`: how good the diagnosis is on campaigns whose answers are known.
+//! `oleo diagnose --self-test`: measures how good the diagnosis is on campaigns whose answers are known.
 
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
@@ -8,15 +8,16 @@ use oleo_report::{OutputDirectory, Progress};
 
 use crate::failure::Failure;
 
-/// What only the self-test takes.
+/// Options of the self-test.
 #[derive(clap::Args)]
 // Flattened into the command's own `Args`: two groups of one name are refused.
 #[group(id = "self-test arguments")]
 pub struct Args {
-    /// Diagnose simulated campaigns with concealed effects, and report power, confusion, coverage and false alarms
+    /// Diagnose simulated campaigns whose models leave known effects out, and report detection rate (power), confusion,
+    /// coverage of the confidence intervals, and false alarms
     #[arg(long, conflicts_with = "campaign", help_heading = "Self-test")]
     pub self_test: bool,
-    /// Number of simulated campaigns [default: 70, two rounds of all terms]
+    /// Number of simulated campaigns [default: 70, which is every term twice]
     #[arg(
         long,
         value_name = "N",
@@ -26,7 +27,7 @@ pub struct Args {
         hide_default_value = true
     )]
     campaigns: usize,
-    /// Seed of everything drawn
+    /// Seed of all random draws
     #[arg(
         long,
         value_name = "S",
@@ -35,7 +36,7 @@ pub struct Args {
         help_heading = "Self-test"
     )]
     seed: u64,
-    /// Only these: terms of the vocabulary, none (complete models), pair (two effects), with commas between
+    /// Conceal only these, separated by commas: ids of effects, none (the model is complete) or pair (two effects) [default: all]
     #[arg(
         long,
         value_name = "A,B",
@@ -44,13 +45,13 @@ pub struct Args {
         help_heading = "Self-test"
     )]
     terms: Vec<String>,
-    /// Leave each concealed term out of the search: it must be found as unlisted
+    /// Remove each concealed term from the search, so that it can only be found as a law without a name
     #[arg(long, requires = "self_test", help_heading = "Self-test")]
     without_names: bool,
-    /// Write the campaigns as folders of recordings with their answers into DIR, and diagnose none
+    /// Write the simulated campaigns and their answers into DIR instead of diagnosing them
     #[arg(long, requires_all = ["self_test", "out"], help_heading = "Self-test")]
     save: bool,
-    /// Campaigns at a time, one thread each [default: all cores]
+    /// Number of campaigns that run at the same time, one thread each [default: all cores]
     #[arg(long, value_name = "N", requires = "self_test", help_heading = "Self-test")]
     threads: Option<usize>,
 }
@@ -69,7 +70,7 @@ pub fn run_self_test(args: &Args, out: Option<&std::path::Path>) -> Result<ExitC
     };
     if plan.without_names && plan.subjects.iter().any(|s| !matches!(s, Subject::Effect(_))) {
         return Err(Failure::new(
-            "--terms: none and pair have no name to leave out; give terms of the vocabulary with --without-names",
+            "--terms: none and pair cannot be combined with --without-names; give ids of effects",
         ));
     }
     let cases = plan.cases();

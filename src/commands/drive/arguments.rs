@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use oleo_plant_sim::course::DriverStyle;
-use oleo_plant_sim::vehicle::Load;
+use oleo_plant_sim::course::ManoeuvreKind;
 use strum::IntoStaticStr;
 
-use crate::commands::word::word;
+use crate::commands::course_arguments::CourseArgs;
 
 /// Drive the vehicle through a manoeuvre and report its motion, comfort and handling.
 #[derive(clap::Args)]
@@ -18,90 +17,73 @@ use crate::commands::word::word;
                   oleo drive --manoeuvre straight --side-slope-percent 10 --setting soft\n  \
                   oleo drive --manoeuvre belgian --gas-temperature-c -20 --setting soft\n  \
                   oleo drive --manoeuvre bump --speed-km-h 10 --model both --setting baseline\n\n\
-                  Steer, yaw and lateral values are positive to the left, roll with the left side up, pitch with the nose down."
+                  Steer angle, yaw rate and lateral values are positive to the left. Roll is positive with the left side up, pitch \
+                  with the nose down."
 )]
 pub struct Args {
-    /// What to drive
+    /// Manoeuvre to drive
     #[arg(long, value_enum)]
     pub manoeuvre: Kind,
-    /// Model of the vehicle; `both` compares them on the same road
+    /// Vehicle model; both runs the two models on the same road and compares them
     #[arg(long, value_enum, default_value_t = Model::Handling)]
     pub model: Model,
-    /// Suspension: struts with all valves open, all closed, under the controller, or the coil springs of the vehicle as sold
+    /// Suspension of the vehicle
     #[arg(long, value_enum, default_value_t = Setting::Controlled)]
     pub setting: Setting,
-    /// Speed, km/h [default: 60, bump 5, braking in a bend and acceleration 40; constant-radius: speed at the end]
+    /// Speed, km/h; in constant-radius the speed at the end [default: 5 for bump, 40 for braking-in-bend and acceleration,
+    /// otherwise 60]
     #[arg(long, value_name = "KM_H", allow_negative_numbers = true)]
     pub speed_km_h: Option<f64>,
-    /// Road: belgian, apg-left, apg-right, apg-both, iso-a .. iso-f, flat, or a .crg or .csv file [default: flat; belgian and
-    /// bump have their own]
+    /// Road: belgian, apg-left, apg-right, apg-both, iso-a .. iso-f, flat, or a .crg or .csv file [default: flat; the manoeuvres
+    /// belgian and bump have a road of their own]
     #[arg(long, value_name = "ROAD")]
     pub road: Option<String>,
-    /// Side slope of the road, %, positive where the left side is the higher one; it grows over 30 m
-    #[arg(long, value_name = "PERCENT", default_value_t = 0.0, allow_negative_numbers = true)]
-    pub side_slope_percent: f64,
-    /// Who drives: eased cuts corners, hard asks for all that a lane change takes
-    #[arg(long, value_name = "eased|hard", default_value = "eased", value_parser = word::<DriverStyle>)]
-    pub driver: DriverStyle,
-    /// What the vehicle carries: as-sold (nothing), laden (900 kg), roof (150 kg on the roof) or laden-roof (750 and 150 kg)
-    #[arg(long, value_name = "LOAD", default_value = "as-sold", value_parser = word::<Load>)]
-    pub load: Load,
-    /// Temperature of the struts' gas, degrees Celsius; they were charged at 20
+    #[command(flatten)]
+    pub course: CourseArgs,
+    /// Gas temperature of the struts, degrees Celsius; the struts were charged at 20 [default: 20]
     #[arg(long, value_name = "CELSIUS", allow_negative_numbers = true)]
     pub gas_temperature_c: Option<f64>,
-    /// Time to drive, s [default: 20; lane changes end behind the last cones]
+    /// Simulated time, s [default: 20; lane changes end behind the last cones, and with a time they continue straight ahead]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub duration_s: Option<f64>,
-    /// Way to drive straight ahead before the first cones of a lane change, m
-    #[arg(long, value_name = "M", default_value_t = 25.0, allow_negative_numbers = true)]
-    pub entry_m: f64,
-    /// Radius of constant-radius and braking-in-bend, m, positive to the left
-    #[arg(long, value_name = "M", default_value_t = 40.0, allow_negative_numbers = true)]
-    pub radius_m: f64,
-    /// Angle of the steering wheel over the steering ratio in step-steer, degrees, positive to the left
-    #[arg(long, value_name = "DEG", default_value_t = 2.0, allow_negative_numbers = true)]
-    pub steer_deg: f64,
-    /// Deceleration or acceleration asked for, m/s2 [default: 5 for braking, 2 for acceleration]
-    #[arg(long, value_name = "M_S2", allow_negative_numbers = true)]
-    pub change_m_s2: Option<f64>,
-    /// Time at the start that does not count for comfort, s
+    /// Time at the start that is left out of the comfort measures, s
     #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
     pub score_from_s: f64,
-    /// Phases of random roads
+    /// Seed of random roads
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// Vehicle parameters; without it the built-in defender110
+    /// File of vehicle parameters [default: the built-in defender110]
     #[arg(long, value_name = "VEHICLE.toml")]
     pub vehicle: Option<PathBuf>,
-    /// Handling parameters; without it the built-in defender110
+    /// File of handling parameters [default: the built-in defender110]
     #[arg(long, value_name = "HANDLING.toml")]
     pub handling: Option<PathBuf>,
-    /// Folder for CSV data, summary.json and report.html; without it only the table is printed
+    /// Folder to which CSV data, summary.json and report.html are written; without it only the table is printed
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
 
-/// What to drive.
+/// The manoeuvres that can be driven.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Kind {
-    /// Belgian block, straight ahead
+    /// Straight ahead over Belgian block
     Belgian,
-    /// APG obstacle under the left wheels
+    /// Straight ahead over an APG obstacle under the left wheels
     Bump,
-    /// ISO 3888-1, severe double lane change
+    /// Severe double lane change, ISO 3888-1
     LaneChange,
-    /// ISO 3888-2, obstacle avoidance
+    /// Obstacle avoidance, ISO 3888-2
     #[value(name = "lane-change-2")]
     LaneChange2,
-    /// ISO 4138, circle at slowly rising speed
+    /// Steady circle at slowly rising speed, ISO 4138
     ConstantRadius,
-    /// ISO 7401, step of steer
+    /// Step of the steer angle, ISO 7401
     StepSteer,
-    /// Straight over any road
+    /// Straight ahead over the road given by --road
     Straight,
     /// Braking straight ahead to a stop
     Braking,
-    /// ISO 7975, braking in a bend with the steering wheel held
+    /// Braking in a bend with the steering wheel held, ISO 7975
     BrakingInBend,
     /// Acceleration straight ahead
     Acceleration,
@@ -113,19 +95,35 @@ impl Kind {
         !matches!(self, Self::Belgian | Self::Bump | Self::Straight)
     }
 
+    /// What is driven; the first two are straight drives over roads of their own.
+    pub fn manoeuvre(self) -> ManoeuvreKind {
+        match self {
+            Self::Belgian | Self::Bump | Self::Straight => ManoeuvreKind::Straight,
+            Self::LaneChange => ManoeuvreKind::LaneChange,
+            Self::LaneChange2 => ManoeuvreKind::LaneChange2,
+            Self::ConstantRadius => ManoeuvreKind::ConstantRadius,
+            Self::StepSteer => ManoeuvreKind::StepSteer,
+            Self::Braking => ManoeuvreKind::Braking,
+            Self::BrakingInBend => ManoeuvreKind::BrakingInBend,
+            Self::Acceleration => ManoeuvreKind::Acceleration,
+        }
+    }
+
+    /// The road that it has, whatever others are given.
+    pub fn own_road(self) -> Option<&'static str> {
+        match self {
+            Self::Belgian => Some("belgian"),
+            Self::Bump => Some("apg-left"),
+            _ => None,
+        }
+    }
+
     /// Heading of the report.
     pub fn title(self) -> &'static str {
         match self {
             Self::Belgian => "Belgian block",
             Self::Bump => "APG obstacle, left wheels",
-            Self::LaneChange => "Severe double lane change, ISO 3888-1",
-            Self::LaneChange2 => "Obstacle avoidance, ISO 3888-2",
-            Self::ConstantRadius => "Constant radius, ISO 4138",
-            Self::StepSteer => "Step of steer, ISO 7401",
-            Self::Straight => "Straight ahead",
-            Self::Braking => "Braking straight ahead",
-            Self::BrakingInBend => "Braking in a bend, ISO 7975",
-            Self::Acceleration => "Acceleration straight ahead",
+            _ => self.manoeuvre().title(),
         }
     }
 }
@@ -133,11 +131,11 @@ impl Kind {
 /// Model of the vehicle.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Model {
-    /// Appendix A, seven degrees of freedom
+    /// Ride model of the report's appendix A, seven degrees of freedom
     Ride,
-    /// Fourteen degrees of freedom with tyres and driver
+    /// Handling model with tyres and driver, fourteen degrees of freedom
     Handling,
-    /// Both, compared
+    /// Both models, compared
     Both,
 }
 
@@ -145,13 +143,13 @@ pub enum Model {
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum, IntoStaticStr)]
 #[strum(serialize_all = "kebab-case")]
 pub enum Setting {
-    /// All valves open
+    /// Hydropneumatic struts with all valves open
     Soft,
-    /// All valves closed
+    /// Hydropneumatic struts with all valves closed
     Stiff,
-    /// The controller decides every 5 ms
+    /// Hydropneumatic struts whose valves the controller sets every 5 ms
     Controlled,
-    /// Coil springs and dampers of the vehicle as sold
+    /// Coil springs and dampers of the production vehicle
     Baseline,
 }
 

@@ -1,4 +1,4 @@
-//! What a drive amounts to in numbers: comfort at both seats, roll, room to the cones, and what each standard asks of its manoeuvre.
+//! The measures of a drive: comfort at both seats, roll, clearance to the cones, and the measures of each standard.
 
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::{Manoeuvre, Run, Sample};
@@ -24,13 +24,13 @@ pub fn measures(plan: &Plan, run: &Run, score_from_s: f64) -> Vec<Measure> {
     let mut list = vec![
         (
             "driver_weighted_rms_m_s2",
-            "weighted RMS at the driver (BS 6841)",
+            "vertical weighted RMS at the driver (BS 6841)",
             driver.vertical.weighted_rms_m_s2,
             "m/s2",
         ),
         (
             "passenger_weighted_rms_m_s2",
-            "weighted RMS at the left rear passenger",
+            "vertical weighted RMS at the left rear passenger",
             passenger.vertical.weighted_rms_m_s2,
             "m/s2",
         ),
@@ -78,12 +78,12 @@ pub fn measures(plan: &Plan, run: &Run, score_from_s: f64) -> Vec<Measure> {
             ),
             (
                 "driver_combined_rms_m_s2",
-                "three axes combined at the driver",
+                "weighted RMS of all three axes at the driver",
                 driver.combined_rms_m_s2,
             ),
             (
                 "passenger_combined_rms_m_s2",
-                "three axes combined at the left rear passenger",
+                "weighted RMS of all three axes at the left rear passenger",
                 passenger.combined_rms_m_s2,
             ),
         ] {
@@ -114,19 +114,24 @@ pub fn measures(plan: &Plan, run: &Run, score_from_s: f64) -> Vec<Measure> {
     if rise_m != (0.0, 0.0) {
         list.push((
             "front_rise_m",
-            "ride height by the gas's temperature, front",
+            "change of ride height from the gas temperature, front",
             rise_m.0,
             "m",
         ));
         list.push((
             "rear_rise_m",
-            "ride height by the gas's temperature, rear",
+            "change of ride height from the gas temperature, rear",
             rise_m.1,
             "m",
         ));
     }
     if let Some(margin) = run.cone_margin_m {
-        list.push(("cone_margin_m", "least room to the cones (negative: hit)", margin, "m"));
+        list.push((
+            "cone_margin_m",
+            "smallest clearance to the cones (negative if one is hit)",
+            margin,
+            "m",
+        ));
     }
     match &plan.course.manoeuvre {
         Manoeuvre::ConstantRadius { .. } => {
@@ -157,7 +162,7 @@ pub fn measures(plan: &Plan, run: &Run, score_from_s: f64) -> Vec<Measure> {
         }
         Manoeuvre::Braking { at_s, .. } => {
             if let Some((distance_m, mean_m_s2)) = stopping(&run.history, *at_s) {
-                list.push(("stopping_distance_m", "way from the brake to the end", distance_m, "m"));
+                list.push(("stopping_distance_m", "stopping distance", distance_m, "m"));
                 list.push(("mean_deceleration_m_s2", "mean deceleration", mean_m_s2, "m/s2"));
             }
         }

@@ -1,11 +1,12 @@
-//! What a drive leaves: a table, CSV histories, pictures.
+//! Writes the results of a drive: tables, CSV files and the page.
 
 use std::io::Write as _;
 
 use oleo_controller::ValveCommand;
+use oleo_hil::page::Path;
 use oleo_interface::{Axle, Corner, StrutValves};
 use oleo_plant_sim::course::{Ending, Manoeuvre, Run, Sample, Signals};
-use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Style, Table, significant};
+use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Table, significant};
 use serde_json::{Map, Value, json};
 
 use super::arguments::Args;
@@ -116,7 +117,7 @@ pub fn publish(plan: &Plan, args: &Args, runs: &[(&str, Run)], out: Option<Outpu
     columns.push(Column::text("Unit"));
     let mut table = Table::new(columns);
     let mut summary = Map::new();
-    let mut row = vec!["ending".to_owned()];
+    let mut row = vec!["end of the run".to_owned()];
     row.extend(runs.iter().map(|(_, run)| ending(run.ending)));
     row.push(String::new());
     table.row(row);
@@ -145,7 +146,7 @@ pub fn publish(plan: &Plan, args: &Args, runs: &[(&str, Run)], out: Option<Outpu
     if let [(_, one), (_, other)] = runs {
         let mut rows = Table::new([
             Column::text("Signal"),
-            Column::number("RMS difference over RMS of the ride model, place by place"),
+            Column::number("RMS difference at the same place on the road / RMS of the ride model"),
         ]);
         for (key, words, of) in COMPARED {
             let ratio = difference(&one.history, &other.history, of);
@@ -191,7 +192,7 @@ fn page(plan: &Plan, args: &Args, runs: &[(&str, Run)], table: &Table, compariso
     );
     page.fact("Vehicle", &plan.vehicle.name)
         .fact("Suspension", args.setting.name())
-        .fact("Driver", args.driver.key())
+        .fact("Driver", plan.course.driver.key())
         .fact("Road", &plan.road_name)
         .fact(
             "Speed",
@@ -291,31 +292,10 @@ fn page(plan: &Plan, args: &Args, runs: &[(&str, Run)], table: &Table, compariso
 
 /// The course from above with its cones.
 fn map(plan: &Plan, runs: &[(&str, Run)]) -> Curves {
-    let mut figure = Curves::new("From above", Axis::new("Ahead", "m"));
-    let panel = figure.panel(Axis::new("Left", "m"));
-    for (name, run) in runs {
-        panel.line(
-            &format!("{name}, centre of mass"),
-            &column(run, |s| s.station_m),
-            &column(run, |s| s.lateral_m),
-        );
-    }
-    let (mut x, mut y) = (Vec::new(), Vec::new());
-    for gate in plan.track.gates() {
-        for i in 0..=4 {
-            let station = gate.from_m + (gate.to_m - gate.from_m) * f64::from(i) / 4.0;
-            x.extend([station, station]);
-            y.extend([gate.right_m, gate.left_m]);
-        }
-    }
-    if !x.is_empty() {
-        panel.series(Style::Points, "cones", &x, &y);
-        let (first, last) = (0.0, plan.track.end_m().unwrap_or(0.0));
-        let stations: Vec<f64> = (0..=200)
-            .map(|i| first + (last - first) * f64::from(i) / 200.0)
-            .collect();
-        let line: Vec<f64> = stations.iter().map(|x| plan.track.lateral_m(*x)).collect();
-        panel.series(Style::Dashed, "line wanted", &stations, &line);
-    }
-    figure
+    let path = |(name, run): &(&str, Run)| Path {
+        name: format!("{name}, centre of mass"),
+        ahead_m: column(run, |s| s.station_m),
+        left_m: column(run, |s| s.lateral_m),
+    };
+    oleo_hil::page::map(&plan.track, &runs.iter().map(path).collect::<Vec<_>>())
 }

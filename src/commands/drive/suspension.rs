@@ -1,6 +1,7 @@
-//! The suspension as set on the command line: fixed valves, or the controller called directly, without a bus between.
+//! The suspension that the command line selects: fixed valves, or the controller, which is called directly without a
+//! bus.
 
-use oleo_controller::{Configuration, Inputs, State, tick};
+use oleo_controller::{Builder, Configuration, ConfigurationError, Inputs, State, VehicleDescription, tick};
 use oleo_interface::{Corners, Gauge, StrutPressures, StrutValves};
 use oleo_plant_sim::course::Signals;
 use oleo_plant_sim::model_file::InvalidValue;
@@ -19,15 +20,22 @@ pub enum Valves {
 }
 
 impl Valves {
-    pub fn new(setting: Setting) -> Self {
-        match setting {
+    /// `vehicle` is what a controller knows of the vehicle.
+    pub fn new(setting: Setting, vehicle: VehicleDescription) -> Result<Self, ConfigurationError> {
+        Ok(match setting {
             Setting::Soft => Self::Fixed(true),
             Setting::Stiff | Setting::Baseline => Self::Fixed(false),
-            Setting::Controlled => Self::Controlled {
-                configuration: Box::new(Configuration::defender110()),
-                state: Box::new(State::new()),
-            },
-        }
+            Setting::Controlled => {
+                let builder = Builder {
+                    vehicle,
+                    ..Builder::default()
+                };
+                Self::Controlled {
+                    configuration: Box::new(builder.build()?),
+                    state: Box::new(State::new()),
+                }
+            }
+        })
     }
 
     /// Signals before the first tick: what the struts start with.

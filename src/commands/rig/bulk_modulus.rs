@@ -1,4 +1,4 @@
-//! `oleo rig bulk-modulus`: figure 21 of the report, the strut full of oil and without gas.
+//! `oleo rig bulk-modulus`: figure 21 of the report, the compression of a strut full of oil without gas.
 
 use std::process::ExitCode;
 
@@ -10,7 +10,7 @@ use super::sheet::Specimen;
 use super::spring::within;
 use crate::failure::Failure;
 
-/// Compression of the oil alone, both accumulators against their end stops.
+/// Measure the bulk modulus: compress the oil alone, with both accumulator pistons against their end stops.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  oleo rig bulk-modulus --air 0.005 --out oil")]
 pub struct Args {
@@ -19,7 +19,7 @@ pub struct Args {
     /// Highest pressure, MPa gauge
     #[arg(long, value_name = "MPA", default_value_t = 20.0)]
     pressure: f64,
-    /// Undissolved air by volume at atmospheric pressure; without it what the model has
+    /// Undissolved air in the oil, volume fraction at atmospheric pressure [default: that of the model]
     #[arg(long, value_name = "FRACTION")]
     air: Option<f64>,
 }
@@ -46,12 +46,12 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         "GPa",
     ]);
     table.row([
-        "bulk modulus found, upper half",
+        "bulk modulus from the upper half of the pressure range",
         &format!("{:.4}", 1e-9 * test.found_pa),
         "GPa",
     ]);
     table.row([
-        "largest deviation from the closed form",
+        "largest deviation of the force from the closed form",
         &format!("{:.3}", 100.0 * test.deviation),
         "%",
     ]);
@@ -74,7 +74,8 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         &x,
         &scaled(&test.straight_n),
     );
-    figure.caption("Closed form: p - p0 = beta ln(V / (V - A x)). What bends the beginning is undissolved air.");
+    figure.caption("The closed form is p - p0 = beta ln(V / (V - A x)). Undissolved air makes the oil softer at low pressure, which bends the \
+         beginning of the measured curve.");
     sheet.page.section("Oil").figure(figure);
     sheet.record(
         "oil.csv",

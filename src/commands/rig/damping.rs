@@ -1,4 +1,4 @@
-//! `oleo rig damping`: figure 23 of the report.
+//! `oleo rig damping`: figure 23 of the report, the damper characteristics.
 
 use std::process::ExitCode;
 
@@ -12,7 +12,8 @@ use super::sheet::Specimen;
 use super::spring::within;
 use crate::failure::Failure;
 
-/// Damping characteristics by sines of 25 mm in three states, with tight and with leaking damper packs.
+/// Measure the damping characteristics with sines of 25 mm amplitude in three valve states, with and without leaking damper
+/// packs.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  oleo rig damping --leak 1.2e-6 --out damping")]
 pub struct Args {
@@ -21,12 +22,12 @@ pub struct Args {
     /// Highest speed at mid-stroke, m/s
     #[arg(long, value_name = "M/S", default_value_t = 1.0)]
     speed: f64,
-    /// Flow coefficient beside each damper pack in the leaking strut, m3/s/sqrt(Pa)
+    /// Flow coefficient of the leak past each damper pack in the leaking strut, m3/s/sqrt(Pa)
     #[arg(long, value_name = "COEFFICIENT", default_value_t = 1.2e-6)]
     leak: f64,
 }
 
-/// Speeds measured, as parts of the highest.
+/// Speeds at which the damping is measured, as fractions of the highest.
 const PARTS: [f64; 9] = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0];
 
 /// Runs the measurement.
@@ -117,8 +118,8 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         &ends.map(|speed| 1e-3 * reference(speed)),
     );
     figure.caption(
-        "Force from the pressures at mid-stroke, sines of 25 mm. Three discrete levels; leaking packs pull the high ones \
-         below the baseline, as on the prototype.",
+        "The force at mid-stroke of sines of 25 mm amplitude, computed from the pressures. The valves give three discrete \
+         levels. Leaking damper packs lower the two high levels below the baseline damper, as on the prototype.",
     );
     sheet.page.section("Characteristics").figure(figure);
 

@@ -1,4 +1,4 @@
-//! `oleo rig limits`: the design specifications of the report's section 3.3, checked.
+//! `oleo rig limits`: checks the design specifications of the report's section 3.3.
 
 use std::process::ExitCode;
 
@@ -9,7 +9,7 @@ use serde_json::json;
 use super::sheet::Specimen;
 use crate::failure::Failure;
 
-/// Check the strut against the design specifications i to vii; exit status 1 where one is not met.
+/// Check the strut against the report's design specifications i to vii; the exit status is 1 if one is not met.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  oleo rig limits --strut model.toml --out limits")]
 pub struct Args {
@@ -44,11 +44,17 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let met = limits.iter().filter(|limit| limit.met).count();
     let all = met == limits.len();
     let verdict = if all { Verdict::Pass } else { Verdict::Fail };
-    sheet
-        .page
-        .verdict(verdict, &format!("{met} of {} specifications met", limits.len()));
+    sheet.page.verdict(
+        verdict,
+        &format!("{met} of {} design specifications are met.", limits.len()),
+    );
     sheet.page.outcome(table.clone());
-    sheet.page.section("How it was found").table(notes.clone());
+    sheet.page.section("How it was found").table(notes);
+    // As lines of text: sentences do not fit into the columns of a terminal.
+    let explanations: String = limits
+        .iter()
+        .map(|limit| format!("{:<5}{}\n", limit.number, limit.note))
+        .collect();
     let limits: Vec<_> = limits
         .iter()
         .map(|limit| {
@@ -58,6 +64,6 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         .collect();
     sheet.summarise("limits", limits);
     sheet.publish(&table)?;
-    let _ = std::io::Write::write_all(&mut std::io::stdout(), notes.to_string().as_bytes());
+    let _ = std::io::Write::write_all(&mut std::io::stdout(), explanations.as_bytes());
     Ok(if all { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }

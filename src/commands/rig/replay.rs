@@ -1,4 +1,5 @@
-//! `oleo rig replay`: figures 31 to 34 of the report, or a recording's inputs through either generation.
+//! `oleo rig replay`: figures 31 to 34 of the report, or the inputs of a recording simulated with either model
+//! generation.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -14,30 +15,30 @@ use serde_json::json;
 use super::sheet::{Sheet, Specimen};
 use crate::failure::Failure;
 
-/// Run the first generation (the report's SIMULINK model) and the second on the same inputs.
+/// Run the first-generation model (the report's SIMULINK model) and the second-generation model on the same inputs.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  oleo rig replay --generation first --out replay        the report's figures 31 to 34\n  \
+    after_help = "Examples:\n  oleo rig replay --generation first --out replay        repeats the report's figures 31 to 34\n  \
                   oleo rig replay campaign/road_switching.csv --strut campaign/model.toml --out replay"
 )]
 pub struct Args {
-    /// Recording whose displacement and switching signals are played; without it the report's illustrative runs
+    /// Recording whose displacement and switching signals are the inputs [default: the report's illustrative runs]
     #[arg(value_name = "RECORDING.csv")]
     recording: Option<PathBuf>,
     #[command(flatten)]
     specimen: Specimen,
-    /// Which model to run
+    /// Model to run
     #[arg(long, value_enum, default_value_t = Generation::Both)]
     generation: Generation,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Generation {
-    /// Look-up tables, isothermal, delayed step switching
+    /// The report's model: look-up tables, isothermal gas, valves that switch as a delayed step
     First,
-    /// The hydraulic network with the model's effects
+    /// The hydraulic network of oleo, with the effects of the model file
     Second,
-    /// Both, compared
+    /// Both models, compared
     Both,
 }
 
@@ -71,7 +72,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// One set of inputs through both generations; the second stands for the test rig unless something was recorded.
+/// One set of inputs simulated with both generations. Without a recording the second generation replaces the test rig.
 struct Run {
     name: String,
     record: Record,
@@ -244,8 +245,9 @@ impl Run {
             );
         }
         force.caption(
-            "The first generation switches between its tables at once: away from the reference position its force jumps, where \
-             the second generation lets the trapped gas equalise.",
+            "The first-generation model switches between its tables in one step, so its force jumps when a valve switches away \
+             from the reference position. In the second-generation model the pressure of the trapped gas equalises \
+             gradually.",
         );
         sheet.page.figure(force);
     }

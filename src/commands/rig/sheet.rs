@@ -1,4 +1,4 @@
-//! What the rig's measurements have in common: which strut, and the sheet of results that is printed and written.
+//! What all measurements of the rig share: the choice of the strut, and the sheet of results.
 
 use std::path::PathBuf;
 
@@ -8,10 +8,10 @@ use serde_json::{Map, Value};
 
 use crate::failure::Failure;
 
-/// Which strut, and where results go.
+/// Options that all measurements share: the strut and the output folder.
 #[derive(clap::Args)]
 pub struct Specimen {
-    /// Strut model (model.toml); without it the built-in defender110
+    /// File of the strut model [default: the built-in defender110]
     #[arg(long, value_name = "MODEL.toml")]
     strut: Option<PathBuf>,
     /// Static load of the built-in strut, N
@@ -23,13 +23,13 @@ pub struct Specimen {
         allow_negative_numbers = true
     )]
     static_load: f64,
-    /// Folder for CSV data, summary.json and report.html; without it only the table is printed
+    /// Folder to which CSV data, summary.json and report.html are written; without it only the table is printed
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
 impl Specimen {
-    /// The strut's model.
+    /// Reads the strut's model from its file, or takes the built-in one.
     pub fn model(&self) -> Result<StrutModel, Failure> {
         match &self.strut {
             Some(path) => {
@@ -79,7 +79,7 @@ impl Sheet {
         self.summary.insert(key.to_owned(), value.into());
     }
 
-    /// A CSV file.
+    /// Adds a CSV file with the given columns.
     pub fn csv(&mut self, name: &str, columns: &[(&str, &[f64])]) -> Result<(), Failure> {
         if let Some(out) = &mut self.out {
             out.csv(name, columns)?;

@@ -1,4 +1,4 @@
-//! `oleo rig spring`: figures 18, 19, 20, 22 of the report, and the corrected stiff spring of figure 21.
+//! `oleo rig spring`: figures 18, 19, 20 and 22 of the report, and the corrected stiff spring of figure 21.
 
 use std::process::ExitCode;
 
@@ -11,22 +11,22 @@ use serde_json::json;
 use super::sheet::{Sheet, Specimen};
 use crate::failure::Failure;
 
-/// Isothermal spring characteristics by a slow sawtooth, soft and stiff.
+/// Measure the spring characteristics, soft and stiff, with a slow sawtooth.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  oleo rig spring --out spring")]
 pub struct Args {
     #[command(flatten)]
     specimen: Specimen,
-    /// Greatest compression, mm
+    /// Largest compression, mm
     #[arg(long, value_name = "MM", default_value_t = 40.0)]
     bump: f64,
-    /// Greatest extension, mm
+    /// Largest extension, mm
     #[arg(long, value_name = "MM", default_value_t = 100.0)]
     rebound: f64,
     /// Duration of the cycle, s
     #[arg(long, value_name = "S", default_value_t = 300.0)]
     duration: f64,
-    /// Friction of the offset mounting over strut force, for the load cell of figure 18
+    /// Friction coefficient of the offset mounting: friction force divided by strut force, for the load cell of figure 18
     #[arg(long, value_name = "MU", default_value_t = 0.1)]
     side_load: f64,
 }
@@ -64,7 +64,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// A number in its range, or the line that says so.
+/// Refuses a value outside its range.
 pub fn within(name: &str, value: f64, least: f64, most: f64, unit: &str) -> Result<(), Failure> {
     if value.is_finite() && (least..=most).contains(&value) {
         Ok(())
@@ -128,6 +128,19 @@ fn predictions() -> [Prediction; 3] {
     ]
 }
 
+/// How far the measured mean force is from each prediction, with the figures of the table.
+fn agreement(spring: &SpringCharacteristic) -> String {
+    let deviations = predictions().map(|(name, prediction)| {
+        let (largest, rms) = spring.deviation(prediction(spring));
+        format!("{} % at most and {} % RMS ({name})", percent(largest), percent(rms))
+    });
+    format!(
+        "The measured mean force deviates from the predicted force by {}. Heat that flows between the gas and its \
+         surroundings opens the loop between compression and extension.",
+        deviations.join(", ")
+    )
+}
+
 fn percent(ratio: f64) -> String {
     format!("{:+.2}", 100.0 * ratio)
 }
@@ -171,23 +184,16 @@ fn draw(
         &kn(&bent.pressure_force_n),
     );
     figure.caption(&format!(
-        "Soft spring with a side load of {} of the strut force: the load cell feels it, the pressure does not.",
+        "This is the soft spring with a friction of {} times the strut force from the offset mounting. The load cell measures \
+         this friction, and the pressure does not contain it.",
         args.side_load
     ));
     page.figure(figure);
 
     page.section("Springs");
-    for (spring, title, caption) in [
-        (
-            soft,
-            "Soft spring characteristic (report, figure 19)",
-            "The loop is heat between gas and surroundings.",
-        ),
-        (
-            stiff,
-            "Stiff spring characteristic (report, figures 20 and 21)",
-            "The oil is the discrepancy: corrected with its bulk modulus the prediction meets the measurement.",
-        ),
+    for (spring, title) in [
+        (soft, "Soft spring characteristic (report, figure 19)"),
+        (stiff, "Stiff spring characteristic (report, figures 20 and 21)"),
     ] {
         let mut figure = Curves::new(title, x_axis());
         figure.panel(y_axis()).line(
@@ -209,11 +215,11 @@ fn draw(
         );
         figure.series(
             Style::Dashed,
-            "and real nitrogen",
+            "with bulk modulus and real gas",
             &mm(&spring.grid_m),
             &predicted(spring, &|x| spring.real.force_n(x)),
         );
-        figure.caption(caption);
+        figure.caption(&agreement(spring));
         page.figure(figure);
     }
     let mut both = Curves::new("Soft and stiff spring characteristics (report, figure 22)", x_axis());
@@ -293,4 +299,29 @@ fn compare_terms(sheet: &mut Sheet, model: &StrutModel) {
         }
     }
     sheet.summarise("effects", terms);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_caption_states_the_figures_of_the_table() {
+        let test = SpringTest {
+            bump_m: 0.040,
+            rebound_m: 0.100,
+            duration_s: 60.0,
+        };
+        let stiff = test_spring(&StrutModel::defender110(8000.0), Spring::Stiff, test).expect("possible");
+        let (caption, table) = (agreement(&stiff), outcome(&stiff, &stiff, &stiff).to_string());
+        for (_, prediction) in predictions() {
+            let (largest, rms) = stiff.deviation(prediction(&stiff));
+            for figure in [percent(largest), percent(rms)] {
+                assert!(
+                    caption.contains(&figure) && table.contains(&figure),
+                    "{figure}: {caption}"
+                );
+            }
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! `oleo rig valve-response`: figures 24 and 25 of the report.
+//! `oleo rig valve-response`: figures 24 and 25 of the report, the response times of valve 3.
 
 use std::process::ExitCode;
 
@@ -10,7 +10,7 @@ use super::sheet::{Sheet, Specimen};
 use super::spring::within;
 use crate::failure::Failure;
 
-/// Response times of valve 3 by the 5 % and 95 % points of the pressure difference, with the parabola fitted.
+/// Measure the response time of valve 3, from the 5 % and 95 % points of the pressure difference, and fit a parabola to it.
 #[derive(clap::Args)]
 #[command(after_help = "Example:\n  oleo rig valve-response --highest 14 --out valves")]
 pub struct Args {
@@ -42,7 +42,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let fit = |time: &dyn Fn(&ValveResponse) -> f64| {
         let points: Vec<(f64, f64)> = responses.iter().map(|r| (1e-6 * r.initial_pa, 1e3 * time(r))).collect();
         Parabola::fit(&points).ok_or_else(|| {
-            Failure::new("the pressure differences reached are too few for a parabola; raise --highest or the strut's gas volume")
+            Failure::new("fewer than three pressure differences were reached, which is too few to fit a parabola; raise --highest or the strut's gas volume")
         })
     };
     let (total, opening) = (fit(&|r| r.total_s)?, fit(&|r| r.opening_total_s)?);

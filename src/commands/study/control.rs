@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use oleo_controller::Strategy;
-use oleo_hil::comparison::{self, Bench, Extent, Group, Means, Row, Scores, Setting, compare, groups, scores, settings};
+use oleo_hil::comparison::{
+    self, Bench, Extent, Group, Means, Row, Scores, Setting, compare, groups, scores, settings,
+};
 use oleo_plant_sim::study::Records;
 use oleo_report::interrupt::Graceful;
 use oleo_report::{Axis, Cell, Column, Curves, OutputDirectory, Page, Progress, Style, Table, Verdict};
@@ -58,10 +60,16 @@ struct Comparison {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     if !(1..=1000).contains(&args.seeds) {
-        return Err(Failure::new(format!("--seeds {}: give a number from 1 to 1000", args.seeds)));
+        return Err(Failure::new(format!(
+            "--seeds {}: give a number from 1 to 1000",
+            args.seeds
+        )));
     }
     if !(5.0..=600.0).contains(&args.duration_s) {
-        return Err(Failure::new(format!("--duration-s {}: give a value from 5 to 600", args.duration_s)));
+        return Err(Failure::new(format!(
+            "--duration-s {}: give a value from 5 to 600",
+            args.duration_s
+        )));
     }
     let (vehicle, handling) = parameters(args.vehicle.as_ref(), args.handling.as_ref())?;
     let bench = Bench::new(vehicle, handling);
@@ -79,7 +87,11 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let text: Vec<String> = tables.iter().map(ToString::to_string).collect();
     // A closed standard output (`| head`) is no failure of the study.
     let _ = std::io::stdout().write_all(text.join("\n").as_bytes());
-    Ok(if args.check && !met { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+    Ok(if args.check && !met {
+        ExitCode::FAILURE
+    } else {
+        ExitCode::SUCCESS
+    })
 }
 
 /// The finished drives and the staged results. Finished drives are kept in the folder itself, as they end.
@@ -98,7 +110,10 @@ fn results(args: &Args) -> Result<(Records, Option<OutputDirectory>), Failure> {
 
 fn comparison(args: &Args, bench: &Bench, records: &Records) -> Result<Comparison, Failure> {
     let controller = |strategy: Strategy| {
-        let builder = oleo_controller::Builder { strategy, ..bench.controller() };
+        let builder = oleo_controller::Builder {
+            strategy,
+            ..bench.controller()
+        };
         let configuration = builder.build().map_err(|error| Failure::new(error.to_string()))?;
         Ok(Setting::Controlled(strategy.name(), Box::new(configuration)))
     };
@@ -120,7 +135,16 @@ fn comparison(args: &Args, bench: &Bench, records: &Records) -> Result<Compariso
         // The first Ctrl-C lets the drives in hand end and keeps them.
         let graceful = Graceful::begin();
         let (progress, graceful, groups, settings) = (&progress, &graceful, &groups, &settings);
-        pool.install(move || compare(bench, groups, settings, records, || progress.add(1), || graceful.requested()))?
+        pool.install(move || {
+            compare(
+                bench,
+                groups,
+                settings,
+                records,
+                || progress.add(1),
+                || graceful.requested(),
+            )
+        })?
     };
     drop(progress);
     let means = Means::of(&groups, &results);
@@ -177,16 +201,14 @@ fn goals_table(scores: &Scores) -> Table {
 
 /// Geometric mean over the rows of a setting's figure over another one's.
 fn mean_ratio(rows: &[Row], place: usize, reference: usize) -> f64 {
-    let sum: f64 = rows.iter().map(|row| libm::log(row.by_setting[place] / row.by_setting[reference])).sum();
+    let sum: f64 = rows
+        .iter()
+        .map(|row| libm::log(row.by_setting[place] / row.by_setting[reference]))
+        .sum();
     libm::exp(sum / rows.len() as f64)
 }
 
-fn write(
-    out: &mut OutputDirectory,
-    comparison: &Comparison,
-    own: &Scores,
-    tables: &[Table; 3],
-) -> Result<(), Failure> {
+fn write(out: &mut OutputDirectory, comparison: &Comparison, own: &Scores, tables: &[Table; 3]) -> Result<(), Failure> {
     let Comparison {
         groups,
         settings,
@@ -234,32 +256,39 @@ fn page(comparison: &Comparison, own: &Scores, [ride, roll, goals]: &[Table; 3])
     let met = own.goals.len() - unmet.len();
     let counted = format!("{met} of {} goals are met.", own.goals.len());
     if unmet.is_empty() {
-        page.verdict(Verdict::Good, &counted);
+        page.verdict(Verdict::Pass, &counted);
     } else {
-        page.verdict(Verdict::Warning, &format!("{counted} Not met: {}.", unmet.join("; ")));
+        page.verdict(Verdict::Attention, &format!("{counted} Not met: {}.", unmet.join("; ")));
     }
     page.outcome(goals.clone());
 
     let place = |wanted: &Setting| settings.iter().position(|setting| setting == wanted);
     if let (Some(soft), Some(stiff)) = (place(&Setting::SOFT), place(&Setting::STIFF)) {
-        let flat_and_c: Vec<Row> = means.roll.iter().filter(|row| ["flat", "iso-c"].contains(&row.road)).cloned().collect();
-        let mut figure = Curves::new(
-            "Ride against roll",
-            Axis::new("Weighted RMS over all valves open", ""),
-        );
+        let flat_and_c: Vec<Row> = means
+            .roll
+            .iter()
+            .filter(|row| ["flat", "iso-c"].contains(&row.road))
+            .cloned()
+            .collect();
+        let mut figure = Curves::new("Ride against roll", Axis::new("Weighted RMS over all valves open", ""));
         figure.caption(
             "One point for each setting: the geometric means over the drives straight ahead, and over the manoeuvres on a flat road and on \
              class C. Lower left is better. A fixed setting lies on the arc from soft to stiff; the oracle knows when a manoeuvre begins.",
         );
         let panel = figure.panel(Axis::new("Peak roll over all valves closed", ""));
         for (number, setting) in settings.iter().enumerate() {
-            let point = (mean_ratio(&means.ride, number, soft), mean_ratio(&flat_and_c, number, stiff));
+            let point = (
+                mean_ratio(&means.ride, number, soft),
+                mean_ratio(&flat_and_c, number, stiff),
+            );
             panel.series(Style::Points, &setting.name(), &[point.0], &[point.1]);
         }
         page.section("Ride against roll").figure(figure);
     }
     let section = page.section("Ride, straight ahead");
-    section.text("Vertical acceleration at the seats, BS 6841 weighting, mean of driver and passenger, from the third second.");
+    section.text(
+        "Vertical acceleration at the seats, BS 6841 weighting, mean of driver and passenger, from the third second.",
+    );
     section.table(ride.clone());
     let section = page.section("Roll in manoeuvres");
     section.text("Largest roll of the body from the third second; 90 degrees stand for a vehicle that rolled over.");

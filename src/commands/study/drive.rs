@@ -1,4 +1,4 @@
-//! What both studies drive, on how many threads, and where finished runs are kept.
+//! The options of both studies: what is driven, on how many threads, and where finished runs are stored.
 
 use std::path::PathBuf;
 
@@ -14,31 +14,33 @@ use crate::failure::Failure;
 /// What both studies drive.
 #[derive(clap::Args)]
 pub struct Drive {
-    /// Vehicle parameters; without it the built-in defender110
+    /// File of vehicle parameters [default: the built-in defender110]
     #[arg(long, value_name = "VEHICLE.toml")]
     vehicle: Option<PathBuf>,
-    /// Handling parameters; without it the built-in defender110
+    /// File of handling parameters [default: the built-in defender110]
     #[arg(long, value_name = "HANDLING.toml")]
     handling: Option<PathBuf>,
     /// Speed on the Belgian block and in the lane change, km/h
     #[arg(long, value_name = "KM_H", default_value_t = 60.0, allow_negative_numbers = true)]
     speed_km_h: f64,
-    /// Who drives the lane change: eased or hard
+    /// Driver of the lane change: eased follows a smooth line that cuts the corners; hard steers hard left and hard right and
+    /// demands about twice as much of the vehicle
     #[arg(long, value_name = "eased|hard", default_value = "eased", value_parser = word::<DriverStyle>)]
     driver: DriverStyle,
-    /// What the vehicle carries: as-sold (nothing), laden (900 kg), roof (150 kg on the roof) or laden-roof (750 and 150 kg)
+    /// Load: as-sold (none), laden (900 kg), roof (150 kg on the roof) or laden-roof (750 kg, and 150 kg on the roof)
     #[arg(long, value_name = "LOAD", default_value = "as-sold", value_parser = word::<Load>)]
     load: Load,
-    /// Time on the Belgian block, s
+    /// Simulated time on the Belgian block, s
     #[arg(long, value_name = "S", default_value_t = 20.0, allow_negative_numbers = true)]
     duration_s: f64,
-    /// Phases of the Belgian block
+    /// Seed of the Belgian block
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Threads to use [default: all cores]
+    /// Number of threads [default: all cores]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// Folder for CSV data, summary.json, report.html and the finished runs; without it only the table is printed
+    /// Folder to which CSV data, summary.json, report.html and the finished runs are written; without it only the table is
+    /// printed
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! `oleo study optimise`: the sweep's optimum with fewer runs, and its path.
+//! `oleo study optimise`: finds the optimum of the sweep with fewer runs.
 
 use std::io::Write as _;
 use std::process::ExitCode;
@@ -11,12 +11,12 @@ use serde_json::json;
 use super::drive::Drive;
 use crate::failure::Failure;
 
-/// Search gas volume and damper factor for the least weighted sum of ride and handling measures
+/// Find the gas volume and damper factor that minimise a weighted sum of ride and handling measures
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     drive: Drive,
-    /// Weight of the weighted RMS acceleration, mean of both seats
+    /// Weight of the frequency-weighted RMS acceleration, mean of both seats
     #[arg(long, value_name = "W", default_value_t = 1.0, allow_negative_numbers = true)]
     ride: f64,
     /// Weight of the motion sickness dose, mean of both seats
@@ -25,10 +25,10 @@ pub struct Args {
     /// Weight of the largest roll angle in the lane change
     #[arg(long, value_name = "W", default_value_t = 0.0, allow_negative_numbers = true)]
     roll: f64,
-    /// Front and rear each for itself
+    /// Optimise front and rear axle separately
     #[arg(long)]
     per_axle: bool,
-    /// Most iterations of the search
+    /// Largest number of iterations
     #[arg(long, value_name = "N", default_value_t = 60)]
     iterations: u64,
 }
@@ -43,7 +43,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let all = [weights.ride, weights.sickness, weights.roll];
     if !all.iter().all(|w| w.is_finite() && *w >= 0.0) || all.iter().sum::<f64>() <= 0.0 {
         return Err(Failure::new(
-            "--ride, --sickness, --roll: give weights of 0 or more, one of them above 0",
+            "--ride, --sickness, --roll: no weight may be negative, and at least one must be above 0",
         ));
     }
     let bench = args.drive.bench()?;
@@ -97,11 +97,11 @@ fn outcome(optimum: &Optimum) -> Table {
         row("largest body roll", handling.max_roll_rad.to_degrees(), "degrees");
     }
     row(
-        "objective (reference 0.5 l, factor 1: sum of the weights)",
+        "objective (at 0.5 l and factor 1 it equals the sum of the weights)",
         best.objective,
         "",
     );
-    row("points looked at", optimum.path.len() as f64, "");
+    row("points evaluated", optimum.path.len() as f64, "");
     row("simulations", optimum.runs as f64, "");
     table
 }
@@ -147,7 +147,7 @@ fn write(out: &mut OutputDirectory, optimum: &Optimum, table: &Table) -> Result<
             .logarithmic()
             .range(1e3 * GAS_VOLUMES_M3[0], 1e3 * GAS_VOLUMES_M3[9]),
     );
-    path.caption("Every point looked at, in its order; the search begins with the reference case.");
+    path.caption("All points that the search evaluated, in this order. The search begins at the reference case, 0.5 l and factor 1.");
     let panel = path.panel(Axis::new("Damper factor", "").range(DAMPER_FACTORS[0] - 0.1, DAMPER_FACTORS[6] + 0.1));
     panel.series(Style::LineAndPoints, "front", &volume.front, &factor.front);
     if volume.front != volume.rear || factor.front != factor.rear {
@@ -162,7 +162,7 @@ fn write(out: &mut OutputDirectory, optimum: &Optimum, table: &Table) -> Result<
     );
     let mut progress = Curves::new("Objective", Axis::new("Point", ""));
     let panel = progress.panel(Axis::new("Objective", ""));
-    panel.series(Style::Points, "looked at", &number, &objective);
+    panel.series(Style::Points, "evaluated", &number, &objective);
     panel.series(Style::Step, "best so far", &number, &best);
     page.section("Path").figure(path).figure(progress);
     out.json(

@@ -11,12 +11,12 @@ use serde_json::json;
 use super::drive::Drive;
 use crate::failure::Failure;
 
-/// Run 10 gas volumes x 7 damper factors over the Belgian block and through the lane change
+/// Run 10 gas volumes x 7 damper factors over Belgian block and through a lane change
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     drive: Drive,
-    /// Exit with status 1 where a conclusion of the report is not met
+    /// Exit with status 1 if a conclusion of the report is not met
     #[arg(long)]
     check: bool,
 }
@@ -27,7 +27,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let (ledger, out) = args.drive.results(&bench)?;
     let progress = Progress::new("sweep", 2 * (GAS_VOLUMES_M3.len() * DAMPER_FACTORS.len()) as u64);
     let surface = {
-        // The first Ctrl-C lets the runs in hand end and keeps them.
+        // After the first Ctrl-C the running simulations are completed and stored.
         let graceful = Graceful::begin();
         let (bench, ledger, progress, graceful) = (&bench, &ledger, &progress, &graceful);
         args.drive.on_threads(move || {
@@ -68,18 +68,40 @@ fn conclusions_table(conclusions: &[Finding]) -> Table {
         Column::text("Met"),
     ]);
     for finding in conclusions {
-        let cells: [Cell; 3] = [
-            finding.report.into(),
-            finding.found.as_str().into(),
-            Cell::check(finding.met),
-        ];
+        let met = match (finding.conclusion, finding.met) {
+            (true, met) => Cell::check(met),
+            (false, true) => Cell::good("yes (not part of the check)"),
+            (false, false) => Cell::warning("no (not part of the check)"),
+        };
+        let cells: [Cell; 3] = [finding.report.into(), finding.found.as_str().into(), met];
         table.row(cells);
     }
     table
 }
 
+/// The sentence above the table of conclusions. It names the statements outside the check too, so that a "no" in the table
+/// never stands below a sentence that says that all is met.
+fn verdict_sentence(findings: &[Finding]) -> String {
+    let count = |conclusion: bool, met: bool| {
+        let such = findings.iter().filter(|f| f.conclusion == conclusion && f.met == met);
+        such.count()
+    };
+    let (met, of) = (count(true, true), count(true, true) + count(true, false));
+    let mut text = format!("{met} of the {of} conclusions of the report that are checked are met.");
+    match count(false, false) {
+        0 => {}
+        1 => text += " One further statement of the report, which is not part of the check, is not met.",
+        more => {
+            text += &format!(" {more} further statements of the report, which are not part of the check, are not met.")
+        }
+    }
+    text
+}
+
 fn grid_table(surface: &Surface) -> Table {
-    let mut columns = vec![Column::text("Gas volume, l: RMS m/s2 | roll degrees at factor")];
+    let mut columns = vec![Column::text(
+        "Gas volume, l (cells: weighted RMS, m/s2 | largest roll, degrees) at factor",
+    )];
     columns.extend(
         surface
             .damper_factors
@@ -92,8 +114,8 @@ fn grid_table(surface: &Surface) -> Table {
         for j in 0..surface.damper_factors.len() {
             let roll = match surface.handling[i][j].completed {
                 true => format!("{:.2}", surface.handling[i][j].max_roll_rad.to_degrees()),
-                false if surface.handling[i][j].rolled_over => "over".to_owned(),
-                false => "lost".to_owned(),
+                false if surface.handling[i][j].rolled_over => "rolled over".to_owned(),
+                false => "left the track".to_owned(),
             };
             row.push(format!("{:.2} | {roll}", surface.ride[i][j].mean_rms_m_s2()));
         }
@@ -149,16 +171,11 @@ fn write(
         &format!("oleo {}", arguments.join(" ")),
     );
     let verdict = if met { Verdict::Pass } else { Verdict::Fail };
-    let decisive = || conclusions.iter().filter(|finding| finding.conclusion);
-    let count = decisive().filter(|finding| finding.met).count();
-    page.verdict(
-        verdict,
-        &format!("{count} of {} conclusions of the report met", decisive().count()),
-    );
+    page.verdict(verdict, &verdict_sentence(conclusions));
     page.outcome(table.clone());
     page.section("Ride comfort (figure 8)").text(
-        "Belgian block at 60 km/h unless set otherwise, BS 6841 weighted vertical acceleration. Gaps: the vehicle did not \
-         stay on the road.",
+        "The figures show the vertical acceleration at the seats on Belgian block, frequency-weighted according to BS 6841. \
+         In a gap the vehicle did not stay on the road.",
     );
     for (title, values) in [
         ("Weighted RMS at the driver", ride(|r| r.driver_rms_m_s2)),
@@ -181,7 +198,7 @@ fn write(
         page.figure(figure);
     }
     page.section("Handling (figure 9)")
-        .text("Severe double lane change, ISO 3888-1. Gaps: rolled over, spun or left the track.");
+        .text("The figures show the severe double lane change of ISO 3888-1. In a gap the vehicle rolled over, spun or left the track.");
     for figure in both("Largest body roll angle", "Roll", "degrees", &roll) {
         page.figure(figure);
     }
@@ -238,4 +255,30 @@ fn write(
     out.json("summary.json", &json!({"conclusions": conclusions, "all_met": met}))?;
     out.page(&page)?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn finding(conclusion: bool, met: bool) -> Finding {
+        Finding {
+            report: "a statement",
+            found: "a figure".into(),
+            met,
+            conclusion,
+        }
+    }
+
+    #[test]
+    fn the_verdict_counts_every_no_of_the_table() {
+        let findings = [finding(true, true), finding(true, false), finding(false, false)];
+        let text = verdict_sentence(&findings);
+        assert!(text.starts_with("1 of the 2 conclusions"), "{text}");
+        assert!(text.contains("One further statement"), "{text}");
+        let table = conclusions_table(&findings).to_string();
+        assert_eq!(table.matches("NO").count(), 1, "{table}");
+        assert_eq!(table.matches("no (not part of the check)").count(), 1, "{table}");
+        assert!(!verdict_sentence(&[finding(true, true), finding(false, true)]).contains("further"));
+    }
 }

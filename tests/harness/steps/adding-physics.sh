@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# docs/adding-physics.md followed in a copy of the checkout: its files and changes apply, and the compiler accepts them
+# applies the files and changes of docs/adding-physics.md to a copy of the checkout, and compiles it
 . tests/harness/lib.sh
 . tests/harness/walk.sh
 walk || exit 0

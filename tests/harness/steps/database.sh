@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# the CAN database as an independent reader (cantools) sees it
+# reads the CAN database with an independent reader (cantools)
 . tests/harness/lib.sh
 readonly python=$CARGO_TARGET_DIR/test-python
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# the controller on an emulated Cortex-M4F: the host's valve words, instructions a tick
+# runs the controller on an emulated Cortex-M4F, compares its valve words with those of the host, and counts instructions
 . tests/harness/lib.sh
 . tests/harness/cross.sh
 

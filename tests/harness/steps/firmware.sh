@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# the firmware for the STM32F405 builds; its size and deepest stack
+# builds the firmware for the STM32F405, and prints its size and worst-case stack
 . tests/harness/lib.sh
 . tests/harness/cross.sh
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# extra: each fuzz target for OLEO_FUZZ_S (30) seconds, with cargo-fuzz on a nightly compiler
+# extra: runs each fuzz target for OLEO_FUZZ_S (30) seconds with cargo-fuzz on a nightly compiler
 . tests/harness/lib.sh
 readonly seconds=${OLEO_FUZZ_S:-30}
 

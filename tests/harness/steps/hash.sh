@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# the same valve words in debug and release, on one and two threads, and again
+# checks that the valve words are the same in debug and release, on one and two threads, and in a second run
 . tests/harness/lib.sh
 
 check "debug build" cargo build --locked --quiet && check "release build" cargo build --locked --quiet --release || exit 0

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# x86-64 instructions of a controller tick, counted by callgrind
+# counts the x86-64 instructions of a controller tick with callgrind
 . tests/harness/lib.sh
 . tests/harness/cross.sh
 

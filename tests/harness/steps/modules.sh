@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# no circle between modules, no crate that depends on one above it, and the check can fail
+# checks that no modules depend on each other in a cycle and no crate on one above it, and that the check can fail
 . tests/harness/lib.sh
 check "no circle, no dependency that points up" python3 tests/harness/modules.py
 grep -E '^[a-z-]+: [0-9]+ modules' "$log" | sed 's/^/   /'

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# extra: the physics of docs/adding-physics.md keeps every rule of terms and effects, and is found (minutes of building)
+# extra: tests the physics of docs/adding-physics.md by the rules of terms and effects, and finds it (minutes of building)
 . tests/harness/lib.sh
 . tests/harness/walk.sh
 walk || exit 0

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# the recordings beside the checkout, where there are any: tests/recordings.rs and tests/diagnose_real.rs in release
+# runs tests/recordings.rs and tests/diagnose_real.rs in release on the recordings beside the checkout, if there are any
 . tests/harness/lib.sh
 readonly folder=../shared/recordings
 

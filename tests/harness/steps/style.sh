@@ -1,10 +1,30 @@
 #!/usr/bin/env bash
-# formatting, clippy without warnings, shellcheck
+# checks formatting, clippy and documentation without warnings, unused dependencies, and shellcheck
 . tests/harness/lib.sh
 check "host code is formatted" cargo fmt --all --check -- --color=never
 check "firmware is formatted" cargo fmt --manifest-path firmware/Cargo.toml -p oleo-firmware -p oleo-bench --check -- --color=never
 check "fuzz targets are formatted" cargo fmt --manifest-path fuzz/Cargo.toml -p oleo-fuzz --check -- --color=never
 check "clippy finds nothing" cargo clippy --workspace --all-targets --locked --keep-going --quiet -- -D warnings
+RUSTDOCFLAGS="-D warnings" check "documentation builds without a warning" \
+    cargo doc --workspace --no-deps --locked --keep-going --quiet
+
+# cargo-machete looks for each dependency (not those of tests alone) in the sources below a manifest. Two manifests are
+# looked at in a copy: the members' sources are below the root's too, and firmware/ is taken for a part of the workspace around it.
+copy=$(mktemp -d)
+mkdir "$copy/oleo" "$copy/firmware"
+cp -r Cargo.toml src "$copy/oleo"
+cp -r firmware/Cargo.toml firmware/src firmware/bench "$copy/firmware"
+if cargo machete --version > /dev/null 2>&1 || {
+    echo "   installing cargo-machete"
+    cargo install --quiet --locked cargo-machete > "$OLEO_LOGS/cargo-machete.log" 2>&1
+}; then
+    for package in "$copy/oleo" interface controller plant-sim hil diagnose report "$copy/firmware" fuzz; do
+        check "no unused dependency in $(basename "$package")" cargo machete "$package"
+    done
+else
+    skip "no unused dependency" "no cargo-machete, and none to be installed"
+fi
+rm -r "$copy"
 if need shellcheck shellcheck; then
     check "shellcheck finds nothing" shellcheck -x -P . test .ci/run tests/harness/*.sh tests/harness/steps/*.sh
 else

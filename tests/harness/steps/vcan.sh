@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# real SocketCAN: frames cross vcan0, and tests/vcan.rs (the loop over it, in one and in two processes)
+# sends frames over a real SocketCAN interface, and runs tests/vcan.rs (the loop over it in one and in two processes)
 . tests/harness/lib.sh
 readonly with_vcan=tests/harness/with-vcan.sh
 

@@ -10,8 +10,8 @@ use crate::vocabulary::EffectId;
 pub static DRIFT: Fault = Fault {
     id: EffectId::SensorDrift,
     term: TermId::SensorDrift,
-    name: "a drifting instrument",
-    meaning: "what the instrument shows moves away from the truth x at the rate r",
+    name: "a drifting sensor",
+    meaning: "the reading moves away from the true value x at the constant rate r",
     symbols: &[("drift_m_s", "r"), ("drift_N_s", "r"), ("drift_Pa_s", "r")],
     parameter: Some(|reading| {
         let drift = reading.drift_per_s;

@@ -19,13 +19,13 @@ const REVERSED: f64 = -1.0;
 
 /// A fault of an instrument.
 pub struct Fault {
-    /// Its id.
+    /// Id of the fault in the vocabulary.
     pub id: EffectId,
-    /// Its term in plant-sim.
+    /// Term of plant-sim that computes the fault.
     pub term: TermId,
     /// What it is called in a sentence.
     pub name: &'static str,
-    /// What its equation means.
+    /// The meaning of its equation.
     pub meaning: &'static str,
     /// Keys and symbols of what is reported.
     pub symbols: &'static [(&'static str, &'static str)],
@@ -48,21 +48,21 @@ pub struct Fault {
 /// The instruments of a cylinder that may have a fault.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OfCylinder {
-    /// Load cell and pressures.
+    /// The fault may be in the load cell and in every pressure sensor.
     All,
     /// The load cell only: what the fault does to an input cannot be undone without amplifying its noise.
     LoadCell,
-    /// None.
+    /// The fault is not searched for in cylinders.
     No,
 }
 
 /// What an instrument shows over the recordings.
 pub struct Reading {
-    /// Its column.
+    /// Column that the sensor records.
     pub column: Column,
     /// Drift that would move it by its largest departure from rest over the longest recording, the column's unit per second.
     pub drift_per_s: f64,
-    /// Sampling interval, s.
+    /// Sampling interval of the recordings, s.
     pub interval_s: f64,
 }
 

@@ -10,8 +10,8 @@ use crate::vocabulary::EffectId;
 pub static GAIN: Fault = Fault {
     id: EffectId::SensorGain,
     term: TermId::SensorGain,
-    name: "a wrong gain of an instrument",
-    meaning: "the instrument shows the truth x with the relative error e",
+    name: "a sensor with a wrong gain",
+    meaning: "the reading differs from the true value x by the relative error e",
     symbols: &[("relative_error", "e")],
     parameter: Some(|_| Parameter::linear("relative_error", 0.0, 0.01, (-0.6, 0.6))),
     limited_by_clocks: |_| None,

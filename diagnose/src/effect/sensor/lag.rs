@@ -13,8 +13,8 @@ const MOSTLY: f64 = 0.8;
 pub static LAG: Fault = Fault {
     id: EffectId::SensorLag,
     term: TermId::SensorLag,
-    name: "a lagging instrument",
-    meaning: "the instrument follows the truth x with the time constant tau",
+    name: "a lagging sensor",
+    meaning: "the reading follows the true value x with the time constant tau",
     symbols: &[("time_constant_s", "tau")],
     parameter: Some(|reading| {
         let short = reading.interval_s;

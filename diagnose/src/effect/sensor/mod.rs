@@ -1,4 +1,4 @@
-//! Faults of instruments: what an instrument shows is wrong, the specimen is not.
+//! Sensor faults: the reading of a sensor is wrong, and the specimen is not.
 //!
 //! They are the same for every kind of specimen and are judged before physics is. A file holds what tells one fault from
 //! the others; what all have in common is in `fault`.

@@ -9,8 +9,8 @@ use crate::vocabulary::EffectId;
 pub static SIGN: Fault = Fault {
     id: EffectId::SensorSign,
     term: TermId::SensorSign,
-    name: "an instrument with the wrong sign",
-    meaning: "the instrument shows the truth x the wrong way round",
+    name: "a sensor with the wrong sign",
+    meaning: "the reading has the opposite sign of the true value x",
     symbols: &[],
     parameter: None,
     limited_by_clocks: |_| None,

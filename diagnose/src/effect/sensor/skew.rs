@@ -10,8 +10,8 @@ use crate::vocabulary::EffectId;
 pub static SKEW: Fault = Fault {
     id: EffectId::SensorSkew,
     term: TermId::SensorSkew,
-    name: "a late (or early) instrument",
-    meaning: "the instrument shows the truth x by the time s late",
+    name: "a sensor with a time offset",
+    meaning: "the reading shows the true value x later by the time s",
     symbols: &[("delay_s", "s")],
     parameter: Some(|reading| {
         let short = reading.interval_s;

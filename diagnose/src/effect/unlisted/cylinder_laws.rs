@@ -13,7 +13,7 @@ use crate::vocabulary::{EffectId, Site};
 /// A force in proportion to one quantity of the motion.
 struct Law {
     words: NamelessLaw,
-    /// Key of its number.
+    /// Key of the law's parameter.
     key: &'static str,
     /// Its number in a model.
     field: fn(&mut CylinderEffects) -> &mut Option<f64>,
@@ -45,7 +45,7 @@ const LAWS: [Law; 3] = [
     Law {
         words: NamelessLaw {
             label: "parallel stiffness",
-            name: "a stiffness in parallel",
+            name: "a parallel stiffness",
             equation: CylinderEffects::PARALLEL_STIFFNESS,
         },
         key: "parallel_stiffness_N_m",
@@ -85,7 +85,7 @@ impl ActsOn<Cylinder> for Laws {
     fn experiment(&self) -> Experiment {
         Experiment {
             record: "sines of full travel and of a tenth of it, at a tenth and at ten times the speed, at one pressure",
-            shows: "follows acceleration, speed or displacement, whichever its equation has, in proportion",
+            shows: "is proportional to the acceleration, speed or displacement in its equation",
         }
     }
 }

@@ -17,7 +17,7 @@ const POLYTROPIC_EXPONENT: NamelessLaw = NamelessLaw {
 };
 const GAS_LOST: NamelessLaw = NamelessLaw {
     label: "gas lost",
-    name: "gas being lost",
+    name: "loss of gas",
     equation: GasSpringEffects::GAS_LOST,
 };
 
@@ -65,8 +65,8 @@ impl ActsOn<GasSpring> for Laws {
 
     fn experiment(&self) -> Experiment {
         Experiment {
-            record: "the same stroke over 1 second, over 1 minute and over 10 minutes, each held for 10 minutes",
-            shows: "keeps its exponent at every speed, or goes on losing gas as long as the pressure stands",
+            record: "the same stroke in 1 second, in 1 minute and in 10 minutes, each held for 10 minutes",
+            shows: "has the same exponent at every speed, or loses gas as long as it is under pressure",
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Points at which the tables of laws are fitted.
 
-/// 1 MPa.
+/// Unit of the pressures below: 1 MPa in Pa.
 const P: f64 = 1e6;
 /// Displacement, m, dense about the static position.
 pub const STROKE_M: &[f64] = &[

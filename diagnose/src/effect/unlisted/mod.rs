@@ -27,3 +27,6 @@ mod words;
 
 pub use nameless::Unlisted;
 pub use strut_laws::table;
+
+#[cfg(test)]
+pub use strut_laws::candidates as candidates_of_struts;

@@ -1,4 +1,4 @@
-//! The effect whose id says that the vocabulary has no name for it.
+//! The effect `unlisted`: a law that has no name in the vocabulary.
 
 use oleo_plant_sim::strut::{Equation, StrutModel, TermId};
 
@@ -19,11 +19,11 @@ impl Effect for Unlisted {
     }
 
     fn name(&self) -> &'static str {
-        "physics without a name in the vocabulary"
+        "a law without a name in the vocabulary"
     }
 
     fn meaning(&self) -> &'static str {
-        "the law was fitted to the recordings"
+        "the law is a table that was fitted to the recordings"
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
@@ -37,7 +37,7 @@ impl Effect for Unlisted {
     fn called(&self, kind: SpecimenKind, label: &str) -> String {
         // The labels of tables say what they relate.
         if label.contains(" over ") {
-            format!("a {label}, which has no name in the vocabulary,")
+            format!("a law without a name in the vocabulary ({label})")
         } else {
             self.named(kind, label).to_owned()
         }
@@ -88,7 +88,7 @@ impl ActsOn<Strut> for Unlisted {
     fn experiment(&self) -> Experiment {
         Experiment {
             record: "triangles of 20 and 80 mm, each at 5 mm/s and at 0.5 m/s, in all four states of valves 1 and 3, valve 2 open",
-            shows: "follows the quantity of its table, whatever else is changed",
+            shows: "depends on the quantity of its table, whatever else is changed",
         }
     }
 }

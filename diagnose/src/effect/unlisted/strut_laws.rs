@@ -1,4 +1,4 @@
-//! Which laws are tried on a strut: place x dependence x form, as data.
+//! The laws that are tried on a strut, as a table of place, dependence and form.
 //!
 //! A new row is a new law to search for; a new dependence or place is one of plant-sim's ([`LawArgument`], [`LawPlace`]).
 
@@ -17,15 +17,15 @@ use crate::vocabulary::{Branch, EffectId, Site};
 struct Law {
     /// What it relates, for people: "force over speed".
     label: &'static str,
-    /// Where it is reported.
+    /// Place at which the law is reported.
     site: Site,
     /// Where it acts in the model.
     place: LawPlace,
-    /// What it depends on.
+    /// Quantity on which the law depends.
     depends_on: LawArgument,
     /// How its table comes from fitted numbers.
     form: &'static dyn Form,
-    /// Points of its table.
+    /// Values of the argument at which the table has points.
     knots: &'static [f64],
     /// Size of one fitted number that would be visible.
     visible: f64,

@@ -8,13 +8,13 @@ use crate::vocabulary::{Branch, Site};
 /// Points of a concealed table: many, and not those that the search uses.
 const POINTS: usize = 61;
 
-/// A law to conceal.
+/// A law that a self-test conceals.
 struct Law {
     /// Where it should be reported.
     site: Site,
     /// Where it acts in the model.
     place: LawPlace,
-    /// What it depends on.
+    /// Quantity on which the law depends.
     depends_on: LawArgument,
     /// Largest argument of its table.
     end: f64,

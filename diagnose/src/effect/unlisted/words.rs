@@ -2,7 +2,7 @@
 
 use oleo_plant_sim::strut::Equation;
 
-/// Words of a law.
+/// The texts of a law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NamelessLaw {
     /// The label of its candidates.

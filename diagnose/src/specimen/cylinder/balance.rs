@@ -52,7 +52,7 @@ pub fn remarks(model: &CylinderModel, recording: &Recording, speed: &[f64]) -> V
         let rest = beyond(&|k| speed[k].abs() < REST * fastest)
             .map_or(String::new(), |rest| format!(", {rest:+.2} N at rest"));
         out.push(format!(
-            "{}: force_N less the pressures on their areas is {inward:+.2} N (median) moving in, {outward:+.2} N moving out{rest}; \
+            "{}: the median of force_N minus the pressure forces is {inward:+.2} N moving in and {outward:+.2} N moving out{rest}; \
              half the difference is {half:.2} N at a mean pressing force of {mean:.0} N{growth}",
             recording.name
         ));

@@ -4,9 +4,10 @@
 mod balance;
 mod calibration;
 
+use oleo_plant_sim::model_file::InvalidValue;
 use oleo_plant_sim::specimen::{CylinderModel, SmoothedMotion, smooth_motion};
 
-use super::channel::{Channel, StateSeries, stated};
+use super::channel::{Channel, StateSeries};
 use super::contract::{BelievedModel, Specimen};
 use super::drawing::Drawing;
 use super::hypothesis::Hypothesis;
@@ -18,8 +19,6 @@ use crate::recording::{ColumnKind, ColumnSpec, GapPolicy, Recording};
 use crate::vocabulary::SpecimenKind;
 use crate::vocabulary::{Column, EffectId, Place, Site, State};
 
-/// Noise assumed where the model file states none, as a fraction of the force range.
-const DEFAULT_NOISE_FRACTION: f64 = 1e-3;
 /// Half window over which the motion is smoothed, in samples.
 const SMOOTHING_SAMPLES: f64 = 5.0;
 
@@ -39,6 +38,10 @@ impl BelievedModel for CylinderModel {
         specs
     }
 
+    fn check_noise(&self) -> Result<(), InvalidValue> {
+        self.check_noise_is_complete()
+    }
+
     fn gap_policy(&self) -> GapPolicy {
         GapPolicy::Keep
     }
@@ -48,16 +51,14 @@ impl BelievedModel for CylinderModel {
             .map(|r| smooth_motion(&r.time_s, &r.columns[0], SMOOTHING_SAMPLES * r.interval_s()))
             .collect();
         let excitation = excitation::Cylinder::of(&self, &recordings, &motions);
-        let noise = stated(&self.noise, Column::FORCE.as_str()).unwrap_or(DEFAULT_NOISE_FRACTION * excitation.force_n);
+        let channel =
+            Channel::of(Column::FORCE, &self.noise).map_err(|invalid| DiagnoseError::Model(invalid.to_string()))?;
         Ok(Box::new(SingleOutputSpecimen {
             calibration: calibration::parameters(&self, &excitation),
             candidates: candidates(&self, &excitation),
             kind: Cylinder { model: *self, motions },
             recordings,
-            channel: Channel {
-                column: Column::FORCE,
-                noise,
-            },
+            channel,
         }))
     }
 }

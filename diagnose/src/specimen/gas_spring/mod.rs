@@ -3,9 +3,10 @@
 
 mod calibration;
 
+use oleo_plant_sim::model_file::InvalidValue;
 use oleo_plant_sim::specimen::{GasSpringModel, smooth_motion};
 
-use super::channel::{Channel, StateSeries, stated};
+use super::channel::{Channel, StateSeries};
 use super::contract::{BelievedModel, Specimen};
 use super::drawing::Drawing;
 use super::hypothesis::Hypothesis;
@@ -18,8 +19,6 @@ use crate::recording::{ColumnKind, ColumnSpec, GapPolicy, Recording};
 use crate::vocabulary::SpecimenKind;
 use crate::vocabulary::{Column, EffectId, Place, Site, State};
 
-/// Noise assumed where the model file states none: a tenth of a psi, the resolution of common gauges.
-const DEFAULT_NOISE_PA: f64 = 690.0;
 /// Half window over which the motion is smoothed for its speed, in samples.
 const SMOOTHING_SAMPLES: f64 = 5.0;
 
@@ -38,24 +37,26 @@ impl BelievedModel for GasSpringModel {
         ]
     }
 
+    fn check_noise(&self) -> Result<(), InvalidValue> {
+        self.check_noise_is_complete()
+    }
+
     fn gap_policy(&self) -> GapPolicy {
         GapPolicy::Cut
     }
 
     fn with_recordings(self: Box<Self>, recordings: Vec<Recording>) -> Result<Box<dyn Specimen>, DiagnoseError> {
-        let noise = stated(&self.noise, PRESSURE.as_str()).unwrap_or(DEFAULT_NOISE_PA);
-        let clocks: Vec<Option<Clock>> = recordings.iter().map(|r| clock(&self, r, noise)).collect();
+        let channel =
+            Channel::of(PRESSURE, &self.noise).map_err(|invalid| DiagnoseError::Model(invalid.to_string()))?;
+        let clocks: Vec<Option<Clock>> = recordings.iter().map(|r| clock(&self, r, channel.noise)).collect();
         let read: Vec<Clock> = clocks.iter().copied().flatten().collect();
-        let excitation = excitation::GasSpring::of(&recordings, noise, read);
+        let excitation = excitation::GasSpring::of(&recordings, channel.noise, read);
         Ok(Box::new(SingleOutputSpecimen {
             calibration: calibration::parameters(&self, &recordings),
             candidates: candidates(&self, &excitation),
             kind: GasSpring { model: *self, clocks },
             recordings,
-            channel: Channel {
-                column: PRESSURE,
-                noise,
-            },
+            channel,
         }))
     }
 }
@@ -74,9 +75,9 @@ fn clock(model: &GasSpringModel, recording: &Recording, noise_pa: f64) -> Option
 fn remark(recording: &Recording, clock: &Clock) -> String {
     let [low, middle, high] = clock.delay_s;
     let verdict = if clock.is_late(recording.interval_s()) {
-        "no gas does that: the clocks of the two columns differ"
+        "no gas can cause this, so the clocks of the two columns differ"
     } else {
-        "one clock, as far as the corners tell"
+        "as far as the corners show, the two columns have one clock"
     };
     format!(
         "{}: at {} corners of the motion p_Pa follows displacement_m after {middle:.2} s ({low:.2} to {high:.2} s), \

@@ -3,14 +3,13 @@
 use oleo_plant_sim::strut::{COLUMNS, StrutModel};
 
 use crate::parameter::Parameter;
-use crate::specimen::channel::stated;
 
 /// What a calibration parameter changes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Calibration {
     /// Static gas volume of accumulator 1 or 2 (counted from 0), relative.
     GasVolume(usize),
-    /// Static pressure, relative.
+    /// Static pressure, as a relative deviation.
     StaticPressure,
     /// Oil volume of the main chamber, relative.
     OilVolume,
@@ -20,7 +19,7 @@ pub enum Calibration {
     BulkModulus,
     /// Thermal time constant of accumulator 1 or 2 (counted from 0), relative.
     TimeConstant(usize),
-    /// Ambient temperature, K.
+    /// Ambient temperature, as a deviation in K.
     Temperature,
     /// Offset of `COLUMNS[i]`, in the unit of the column.
     Offset(usize),
@@ -62,7 +61,7 @@ impl Calibration {
 /// Everything that the model states a tolerance for.
 #[must_use]
 pub fn of(model: &StrutModel) -> (Vec<Calibration>, Vec<Parameter>) {
-    let tolerance = |key: &str| stated(&model.tolerance, key);
+    let tolerance = |key: &str| model.tolerance.get(key).copied().filter(|size| *size > 0.0);
     let mut out = Vec::new();
     let mut add = |what: Calibration, key: String, tolerance: Option<f64>| {
         if let Some(t) = tolerance {

@@ -1,4 +1,4 @@
-//! The strut as a drawing.
+//! The drawing of the strut.
 
 use oleo_interface::Valve;
 

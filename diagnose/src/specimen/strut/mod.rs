@@ -9,6 +9,7 @@ mod relations;
 use std::sync::OnceLock;
 
 use oleo_interface::{StrutValves, Valve};
+use oleo_plant_sim::model_file::InvalidValue;
 use oleo_plant_sim::strut::{COLUMNS, Inputs, StrutModel, record_column, replay};
 use rayon::prelude::*;
 
@@ -17,7 +18,7 @@ pub use channels::{CHANNELS, columns};
 use channels::{FORCE, P1, P2, P3, P4};
 use relations::Measured;
 
-use super::channel::{Channel, Series, StateSeries, stated};
+use super::channel::{Channel, Series, StateSeries};
 use super::contract::{BelievedModel, Specimen};
 use super::hypothesis::Hypothesis;
 use super::relation::MeasuredRelation;
@@ -28,9 +29,6 @@ use crate::parameter::Parameter;
 use crate::recording::{ColumnSpec, GapPolicy, Recording};
 use crate::vocabulary::SpecimenKind;
 use crate::vocabulary::{Branch, Column, EffectId, Place, Site, State};
-
-/// Noise assumed where the model file states none.
-const DEFAULT_NOISE: [f64; 5] = [12.0, 4e3, 4e3, 4e3, 4e3];
 
 /// A strut with its recordings.
 pub struct TwoStageStrut {
@@ -49,18 +47,14 @@ impl TwoStageStrut {
     /// Puts model and recordings together.
     ///
     /// # Errors
-    /// A model whose numbers are impossible.
+    /// A model whose numbers are impossible, or that states no noise for a channel.
     pub fn new(model: StrutModel, recordings: Vec<Recording>) -> Result<Self, String> {
-        let noise = |column: &str, otherwise: f64| stated(&model.noise, column).unwrap_or(otherwise);
         let channels: Vec<Channel> = CHANNELS
             .iter()
-            .zip(DEFAULT_NOISE)
-            .map(|(c, n)| Channel {
-                column: Column::known(c),
-                noise: noise(c, n),
-            })
-            .collect();
-        let displacement_noise = noise("displacement_m", 0.0);
+            .map(|c| Channel::of(Column::known(c), &model.noise))
+            .collect::<Result<_, _>>()
+            .map_err(|invalid| invalid.to_string())?;
+        let displacement_noise = model.noise.get("displacement_m").copied().unwrap_or(0.0);
         let inputs: Vec<Inputs> = recordings
             .iter()
             .map(|r| {
@@ -146,6 +140,10 @@ impl BelievedModel for StrutModel {
         columns()
     }
 
+    fn check_noise(&self) -> Result<(), InvalidValue> {
+        self.check_noise_is_complete()
+    }
+
     fn gap_policy(&self) -> GapPolicy {
         GapPolicy::Cut
     }
@@ -183,7 +181,7 @@ impl Specimen for TwoStageStrut {
         if series.iter().all(|s| s.iter().all(|v| v.is_finite())) {
             Ok(series)
         } else {
-            Err("the model ran to values that are not numbers".to_owned())
+            Err("the simulation diverged to values that are not numbers".to_owned())
         }
     }
 

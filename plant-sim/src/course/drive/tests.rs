@@ -22,6 +22,7 @@ fn severe() -> Manoeuvre {
         kind: LaneChange::Severe,
         speed_m_s: SPEED_M_S,
         entry_m: 40.0,
+        duration_s: None,
     }
 }
 

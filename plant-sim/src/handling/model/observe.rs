@@ -55,7 +55,8 @@ impl<E: SuspensionElement> HandlingModel<E> {
             yaw_rad,
             pitch_rad,
             roll_rad,
-            rates_rad_s: [self.angular.x, self.angular.y, self.angular.z],
+            rates_rad_s: self.angular.into(),
+            angular_acceleration_rad_s2: self.acceleration.angular.into(),
             speed_m_s: along,
             foot_lateral_m_s: foot_velocity.y * cos - foot_velocity.x * sin,
             longitudinal_acceleration_m_s2: acceleration.x * cos + acceleration.y * sin,
@@ -69,7 +70,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
         }
     }
 
-    /// The four wheels.
+    /// Load, position and motion of the four wheels.
     pub fn wheels(&self) -> Corners<WheelState> {
         self.wheels
     }
@@ -107,11 +108,6 @@ impl<E: SuspensionElement> HandlingModel<E> {
     /// The four suspension elements.
     pub fn elements(&self) -> &Corners<E> {
         &self.elements
-    }
-
-    /// Twist of the body's front half against its rear half, rad.
-    pub fn twist_rad(&self) -> f64 {
-        self.twist
     }
 
     /// What an accelerometer at a place of the body reads; the place in body axes (ahead, left, up) from its centre of mass, m.

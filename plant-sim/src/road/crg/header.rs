@@ -1,4 +1,4 @@
-//! The text part of an OpenCRG file: what the channels are and where the grid lies.
+//! Reads the header of an OpenCRG file: which channels it has and where the grid is.
 
 use super::super::RoadError;
 
@@ -7,9 +7,9 @@ use super::super::RoadError;
 pub(super) enum Format {
     /// Text, this many characters a number.
     Text(usize),
-    /// Big-endian binary, f32.
+    /// Big-endian binary numbers of 32 bits.
     Real,
-    /// Big-endian binary, f64.
+    /// Big-endian binary numbers of 64 bits.
     Double,
 }
 
@@ -17,7 +17,7 @@ pub(super) enum Format {
 #[derive(Debug)]
 pub(super) struct Header {
     pub(super) format: Format,
-    /// Numbers a row.
+    /// Number of values in each row.
     pub(super) channels: usize,
     /// Channel of each long section, right to left.
     pub(super) columns: Vec<usize>,
@@ -52,7 +52,7 @@ struct Draft {
 /// Most rows that are accepted: a corrupt header must not exhaust the memory.
 const MAX_ROWS: f64 = 1e8;
 
-/// Reads the header.
+/// Reads the header of an OpenCRG file.
 pub(super) fn parse(bytes: &[u8], path: &str) -> Result<Header, RoadError> {
     let mut draft = Draft::default();
     let mut section = String::new();

@@ -1,4 +1,4 @@
-//! How far the solver trusts a change of a drop.
+//! Limits the change of a pressure drop in one iteration of the solver.
 
 /// A longer change of a drop is not trusted, Pa. Near vacuum the chamber is soft on one side and hard on the other; an
 /// unbounded step leaps the gap.

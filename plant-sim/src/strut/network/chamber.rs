@@ -1,4 +1,4 @@
-//! The main chamber: what volume it takes up when its pressure changes.
+//! The main chamber: the volume that it takes up when its pressure changes.
 //!
 //! Oil, undissolved air, the mount and an unmodelled compliance take up volume. Oil and air are counted in one of two
 //! ways ([`OilCount`]), so the chamber's volume has two parts: one that is held (a function of pressure and displacement,
@@ -13,7 +13,7 @@ use crate::strut::terms::{ChamberLaws, EntrainedAir, OilCount, held_at_static_de
 /// The main chamber as the network sees it.
 #[derive(Debug, Clone)]
 pub(in crate::strut) struct Chamber {
-    /// Piston area, m2.
+    /// Area of the piston, m2.
     pub area_m2: f64,
     /// Oil volume at displacement zero, m3.
     pub oil_volume_m3: f64,

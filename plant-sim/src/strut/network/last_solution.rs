@@ -1,4 +1,4 @@
-//! The solution of the stage before, from which the start of the next one is predicted.
+//! The solution of the previous stage, from which the start value of the next one is predicted.
 
 use super::bounded::bounded;
 use crate::strut::gas::Departure;

@@ -1,4 +1,4 @@
-//! The network as it is built from a model: what does not change from step to step.
+//! The network as it is built from a model: everything that does not change from step to step.
 
 use super::chamber::Chamber;
 use super::path::Path;
@@ -10,7 +10,7 @@ use crate::strut::terms::{LawPlace, throttle};
 /// Main chamber, two paths, and valve 3 between the second path and its accumulator.
 #[derive(Debug, Clone)]
 pub(in crate::strut) struct Network {
-    /// The main chamber.
+    /// The main chamber of the strut.
     pub chamber: Chamber,
     /// Paths 1 and 2.
     pub(super) paths: [Path; 2],

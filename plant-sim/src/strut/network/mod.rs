@@ -1,4 +1,4 @@
-//! The hydraulic network and its solver: what pressures and flows there are at the end of one implicit stage.
+//! The hydraulic network and its solver, which computes pressures and flows at the end of one implicit stage.
 //!
 //! ```text
 //!                 path 1: pack 1 || bypass valve 1 || leaks      line 1      accumulator 1

@@ -1,4 +1,4 @@
-//! One path of oil: pack, bypass valve and leaks in parallel, then the line, then the accumulator.
+//! A path of oil: damper pack, bypass valve and leaks in parallel, then the line, then the accumulator.
 
 use oleo_interface::Absolute;
 

@@ -1,4 +1,4 @@
-//! How much noise alone can leave of a fit.
+//! The chi-square limit: how large a residual of a fit can be because of noise alone.
 
 /// A fit passes unless noise alone would do worse once in ten thousand times: this quantile of the normal distribution.
 const TEST_QUANTILE: f64 = 3.7;

@@ -1,4 +1,4 @@
-//! Stretches without motion, and how moves begin and end at them.
+//! Finds the stretches without motion, and how strokes begin and end at them.
 
 use super::chi_square::largest_chi_square;
 use super::samples::Samples;

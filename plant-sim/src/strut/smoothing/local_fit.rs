@@ -1,4 +1,4 @@
-//! Polynomials over a neighbourhood of a sample, and how wide the neighbourhood may be.
+//! Fits polynomials over the neighbourhood of a sample, and decides how wide the neighbourhood may be.
 
 use super::chi_square::largest_chi_square;
 

@@ -1,4 +1,4 @@
-//! The displacement of a recording as an input: its noise taken off, its corners kept.
+//! Smoothing of a recorded displacement that is used as an input: it removes the noise and keeps the corners.
 //!
 //! Displacement is measured too. Differentiated as it is, 5 um of noise at 500 Hz is 3.5 mm/s, which a damper turns into
 //! 10 to 25 kPa: three to six times the pressure sensors' noise. A low-pass would round the corners of sawtooth and

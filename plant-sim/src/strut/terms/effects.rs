@@ -74,7 +74,7 @@ pub struct Effects {
     /// Buffers at the ends of travel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bump_stop: Option<BumpStop>,
-    /// Soft mounting.
+    /// The mount yields elastically under the strut force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mount_compliance: Option<MountCompliance>,
     /// Dampers that weaken as they warm.

@@ -1,4 +1,4 @@
-//! An equation as a reader meets it on a page.
+//! An equation and its source as they are shown on a page.
 
 /// The equation of a term and where it comes from.
 ///

@@ -59,7 +59,7 @@ pub enum TermId {
     Valve3Leakage,
     /// Buffers at the ends of travel.
     BumpStop,
-    /// Soft mounting.
+    /// The mount yields elastically under the strut force.
     MountCompliance,
     /// Dampers that weaken as they warm.
     DampingFade,

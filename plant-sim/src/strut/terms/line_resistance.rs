@@ -47,7 +47,7 @@ impl LineResistance {
 /// The line of one path; without resistance by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LaminarLine {
-    /// Resistance, Pa s/m3.
+    /// Hydraulic resistance of the line, Pa s/m3.
     pub resistance_pa_s_m3: f64,
 }
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::model_file::{Checked, Limit, Range};
 
-/// Valve 3 leaks.
+/// Leakage through the closed valve 3.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Valve3Leakage {

@@ -1,4 +1,4 @@
-//! What every form of a law says of itself.
+//! The trait of a form: how a law is described by a few fitted parameters.
 
 use crate::parameter::Parameter;
 
@@ -7,7 +7,7 @@ const MOST: f64 = 1e4;
 
 /// Points of a table and what is known of the law there.
 pub struct Grid {
-    /// Values of the argument.
+    /// Values of the argument at which the table has points.
     pub knots: &'static [f64],
     /// Value of the argument at rest, where a law changes nothing.
     pub at_rest: f64,
@@ -16,7 +16,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Largest fitted number.
+    /// Largest value that a fitted number may have.
     #[must_use]
     pub fn most(&self) -> f64 {
         MOST * self.visible
@@ -25,7 +25,7 @@ impl Grid {
 
 /// How a table comes from fitted numbers.
 pub trait Form: Sync {
-    /// The numbers to fit.
+    /// The parameters that are fitted.
     fn parameters(&self, grid: &Grid) -> Vec<Parameter>;
 
     /// Starting points beside "not there": laws that bend far from straight are also tried where they show.

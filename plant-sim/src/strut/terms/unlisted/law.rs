@@ -28,7 +28,7 @@ use crate::strut::characteristic::Characteristic;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct UnlistedLaw {
-    /// Where it acts.
+    /// Place where the law acts.
     pub place: LawPlace,
     /// What it depends on.
     pub depends_on: LawArgument,

@@ -1,9 +1,12 @@
 //! `report.html` of a run: the outcome first, then road, body, struts, controller and bus, on one time axis.
 
+mod course;
+mod time;
+
 use oleo_controller::Mode;
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Axle, Corner, PressurePoint, Side, Valve};
-use oleo_report::{Axis, Bars, Cell, Column, Curves, Page, Style, Table, Verdict, significant};
+use oleo_report::{Axis, Bars, Cell, Column, Page, Style, Table, Verdict, significant};
 use strum::VariantArray;
 
 use crate::metrics::Metrics;
@@ -11,11 +14,8 @@ use crate::output::Summary;
 use crate::record::status_messages;
 use crate::run::Outcome;
 use crate::scenario::Scenario;
-use crate::scenario::fault::{Fault, FaultKind};
-use crate::sync::Role;
-
-/// Figures with this link zoom their time axes together.
-const LINK: &str = "time";
+pub use course::{Path, map};
+use time::Time;
 
 /// The page of a run. `command` is the command line that makes it again.
 pub fn page(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summary: &Summary, command: &str) -> Page {
@@ -25,14 +25,22 @@ pub fn page(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summary: 
         "Road",
         &format!("{} at {} km/h", scenario.road, significant(scenario.speed_m_s * 3.6, 3)),
     );
+    if let (Some(settings), Some(course)) = (&scenario.course, &summary.course) {
+        page.fact("Manoeuvre", settings.kind.title());
+        page.fact("Driver", course.driver);
+        if course.side_slope_percent != 0.0 {
+            page.fact("Side slope", &format!("{} %", course.side_slope_percent));
+        }
+    }
+    page.fact("Load", summary.load);
     page.fact("Strategy", summary.strategy);
     page.fact("Bus, clock", &format!("{}, {}", summary.bus, summary.clock));
     page.fact("Seed", &scenario.seed.to_string());
     let failed = summary.checks.iter().filter(|check| !check.passed).count();
     let (verdict, sentence) = match (failed, summary.checks.len()) {
         (0, 0) => (Verdict::Attention, "The scenario has no checks.".to_owned()),
-        (0, all) => (Verdict::Pass, format!("All {all} checks met.")),
-        (failed, all) => (Verdict::Fail, format!("{failed} of {all} checks not met.")),
+        (0, all) => (Verdict::Pass, format!("All {all} checks are met.")),
+        (failed, all) => (Verdict::Fail, format!("{failed} of {all} checks are not met.")),
     };
     page.verdict(verdict, &sentence);
     page.outcome(outcome_table(summary));
@@ -41,6 +49,7 @@ pub fn page(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summary: 
     }
     let time = Time::of(scenario, outcome);
     road(&mut page, outcome, &time);
+    course::section(&mut page, outcome, &time);
     body(&mut page, outcome, &time);
     struts(&mut page, outcome, &time);
     controller(&mut page, outcome, metrics, summary, &time);
@@ -59,21 +68,50 @@ pub fn outcome_table(summary: &Summary) -> Table {
     row("real time factor", significant(summary.real_time_factor, 3), "");
     row("command hash", summary.command_hash.clone(), "");
     row(
-        "weighted RMS, driver (BS 6841)",
+        "vertical weighted RMS, driver (BS 6841)",
         significant(summary.weighted_rms_driver_m_s2, 3),
         "m/s2",
     );
     row(
-        "weighted RMS, left rear",
+        "vertical weighted RMS, left rear passenger",
         significant(summary.weighted_rms_rear_left_m_s2, 3),
         "m/s2",
     );
     row(
-        "vibration dose, driver",
+        "vertical vibration dose, driver",
         significant(summary.vdv_driver_m_s1_75, 3),
-        "m/s1.75",
+        "m/s^1.75",
     );
     row("largest roll", significant(summary.max_roll_deg, 3), "degrees");
+    if let Some(course) = &summary.course {
+        let known = |value: Option<f64>| value.map_or("never".to_owned(), |value| significant(value, 3));
+        row("manoeuvre", course.ending.unwrap_or("stopped").to_owned(), "");
+        row(
+            "largest lateral acceleration",
+            significant(course.max_lateral_m_s2, 3),
+            "m/s2",
+        );
+        if let Some(deviation_m) = course.max_path_deviation_m {
+            row("largest path deviation", significant(deviation_m, 3), "m");
+        }
+        if let Some(margin_m) = course.cone_margin_m {
+            row("least room to the cones (negative: hit)", significant(margin_m, 3), "m");
+        }
+        row("handling decided after 0.5 m/s2", known(course.decision_s), "s");
+        for (quantity, value) in [
+            ("weighted RMS, driver, before", course.weighted_rms_driver_before_m_s2),
+            ("weighted RMS, driver, after", course.weighted_rms_driver_after_m_s2),
+        ] {
+            if value.is_some() {
+                row(quantity, known(value), "m/s2");
+            }
+        }
+    }
+    row(
+        "handling mode reported anew",
+        summary.handling_entries.to_string(),
+        "times",
+    );
     row(
         "valve switches",
         summary.valve_switches.iter().sum::<u64>().to_string(),
@@ -91,7 +129,7 @@ pub fn outcome_table(summary: &Summary) -> Table {
         ("fault detected after", summary.ticks_to_detect),
         ("mode safe after", summary.ticks_to_safe),
         ("valves closed after", summary.ticks_to_closed),
-        ("normal again after its end", summary.ticks_to_recover),
+        ("mode normal again after the fault ended", summary.ticks_to_recover),
     ];
     for (quantity, ticks) in answers {
         if let Some(ticks) = ticks {
@@ -99,12 +137,12 @@ pub fn outcome_table(summary: &Summary) -> Table {
         }
     }
     if let Some(tick) = summary.controller_lost_at_tick {
-        row("controller given up in tick", tick.to_string(), "");
+        row("controller counted as lost in tick", tick.to_string(), "");
     }
     for node in &summary.lateness {
         let late = &node.lateness;
         row(
-            &format!("{} late, median / p99 / worst", node.node),
+            &format!("{} lateness, median / 99 % / largest", node.node),
             format!("{} / {} / {}", late.p50_us, late.p99_us, late.max_us),
             "us",
         );
@@ -126,52 +164,6 @@ pub fn check_table(summary: &Summary) -> Table {
     table
 }
 
-/// The common time axis, and the faults to be marked on it.
-struct Time<'a> {
-    s: Vec<f64>,
-    faults: &'a [Fault],
-}
-
-impl<'a> Time<'a> {
-    fn of(scenario: &'a Scenario, outcome: &Outcome) -> Self {
-        let s = (0..outcome.plant.recording.samples.len())
-            .map(|tick| tick as f64 * TICK_S)
-            .collect();
-        Self {
-            s,
-            faults: &scenario.faults,
-        }
-    }
-
-    fn curves(&self, title: &str) -> Curves {
-        let mut curves = Curves::new(title, Axis::new("Time", "s"));
-        curves.link(LINK);
-        curves
-    }
-
-    /// Marks the faults in the panel that was added last.
-    fn mark(&self, curves: &mut Curves) {
-        let end_s = self.s.last().copied().unwrap_or(0.0);
-        for fault in self.faults {
-            let (from_s, until_s) = (
-                f64::from(fault.from_tick) * TICK_S,
-                f64::from(fault.until_tick) * TICK_S,
-            );
-            curves.region(from_s, until_s.min(end_s), fault_label(fault));
-        }
-    }
-}
-
-fn fault_label(fault: &Fault) -> &'static str {
-    match fault.kind {
-        FaultKind::Message { .. } => "messages disturbed",
-        FaultKind::NodeKilled(Role::Plant) => "plant silent",
-        FaultKind::NodeKilled(Role::Controller) => "controller silent",
-        FaultKind::Sensor { .. } => "sensor fault",
-        FaultKind::SolenoidStuck { .. } => "solenoid stuck",
-    }
-}
-
 fn road(page: &mut Page, outcome: &Outcome, time: &Time) {
     let samples = &outcome.plant.recording.samples;
     let mut curves = time.curves("Road under the front wheels");
@@ -180,7 +172,7 @@ fn road(page: &mut Page, outcome: &Outcome, time: &Time) {
         let corner = Axle::Front.corner(side);
         let height: Vec<f64> = samples
             .iter()
-            .map(|sample| 1e3 * sample.wheel[corner].road_height_m)
+            .map(|sample| 1e3 * sample.motion.wheel[corner].road_height_m)
             .collect();
         curves.line(side.key(), &time.s, &height);
     }
@@ -196,12 +188,14 @@ fn body(page: &mut Page, outcome: &Outcome, time: &Time) {
         curves.panel(axis).line(name, &time.s, &values);
         time.mark(&mut curves);
     };
-    panel(Axis::new("Heave", "mm"), "heave", &|i| 1e3 * samples[i].body.heave_m);
+    panel(Axis::new("Heave", "mm"), "heave", &|i| {
+        1e3 * samples[i].motion.body.heave_m
+    });
     panel(Axis::new("Roll", "degrees"), "roll", &|i| {
-        samples[i].body.roll_rad.to_degrees()
+        samples[i].motion.body.roll_rad.to_degrees()
     });
     panel(Axis::new("Pitch", "degrees"), "pitch", &|i| {
-        samples[i].body.pitch_rad.to_degrees()
+        samples[i].motion.body.pitch_rad.to_degrees()
     });
     page.section("Body motion")
         .text("Heave is positive upwards, roll with the left side up, and pitch with the nose down.")
@@ -222,8 +216,8 @@ fn body(page: &mut Page, outcome: &Outcome, time: &Time) {
 fn struts(page: &mut Page, outcome: &Outcome, time: &Time) {
     let samples = &outcome.plant.recording.samples;
     page.section("Struts").text(
-        "Compression is positive, and pressures are gauge pressures. Valves 1 and 2 bypass the dampers: open, they give low damping. Valve 3 \
-         connects the 0.4 l accumulator: open, it gives the soft spring.",
+        "Compression is positive, and pressures are gauge pressures. Valves 1 and 2 bypass the dampers; when they are open, the \
+         damping is low. Valve 3 connects the 0.4 l accumulator; when it is open, the spring is soft.",
     );
     for corner in Corner::ALL {
         let column = |value: &dyn Fn(usize) -> f64| (0..samples.len()).map(value).collect::<Vec<f64>>();
@@ -264,7 +258,7 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
         .iter()
         .map(|account| account.map_or(f64::NAN, |(mode, _)| f64::from(mode.raw())))
         .collect();
-    let mut curves = time.curves("Mode machine and strategy");
+    let mut curves = time.curves("Mode and strategy");
     let names = Mode::VARIANTS.iter().map(|mode| (f64::from(mode.raw()), mode.name()));
     curves.panel(Axis::new("Mode", "").ticks(names).range(-0.4, 4.4));
     curves.series(Style::Step, "mode", &time.s, &mode);
@@ -275,7 +269,7 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
         status.iter().map(|(_, message)| value(message)).collect()
     };
     curves.panel(Axis::new("Running RMS", "m/s2"));
-    curves.line("lateral surrogate", &status_s, &of(&|m| m.lateral_rms_m_s2.into()));
+    curves.line("lateral, estimated", &status_s, &of(&|m| m.lateral_rms_m_s2.into()));
     curves.line("vertical", &status_s, &of(&|m| m.vertical_rms_m_s2.into()));
     curves.panel(
         Axis::new("Strategy", "")
@@ -288,8 +282,14 @@ fn controller(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &S
         &status_s,
         &of(&|m| f64::from(u8::from(m.handling))),
     );
+    curves.series(
+        Style::Step,
+        "roll-over guard",
+        &status_s,
+        &of(&|m| f64::from(u8::from(m.rollover_guard))),
+    );
     page.section("Controller")
-        .text("This is what the controller's own frames say, before any injected fault.")
+        .text("The values are taken from the frames that the controller sent, before any injected fault changed them.")
         .figure(curves);
 
     let mut table = Table::new([
@@ -331,16 +331,18 @@ fn bus(page: &mut Page, outcome: &Outcome, metrics: &Metrics, summary: &Summary)
     for (name, count) in [
         ("messages on the wire, both directions", summary.frames_sent),
         ("lost by the bus itself", summary.bus_frames_lost),
-        ("of third parties, ignored", summary.foreign_frames),
-        ("failed their end-to-end check, both ends", summary.e2e_errors),
+        ("of other nodes, ignored", summary.foreign_frames),
+        ("failed the end-to-end check in either node", summary.e2e_errors),
         ("injected: dropped", injected.dropped),
         ("injected: corrupted", injected.corrupted),
         ("injected: delayed", injected.delayed),
         ("injected: duplicated", injected.duplicated),
-        ("plant's end: thrown away by the kernel", counters.receive_lost),
-        ("plant's end: not sent, queue full", counters.send_lost),
-        ("plant's end: waits for a full queue", counters.back_offs),
-        ("plant's end: unreadable", counters.unreadable),
+        ("injected: replaced by an old one", injected.replayed),
+        ("injected: forged", injected.forged),
+        ("plant node: dropped by the kernel", counters.receive_lost),
+        ("plant node: not sent because the queue was full", counters.send_lost),
+        ("plant node: waits for a full queue", counters.back_offs),
+        ("plant node: unreadable", counters.unreadable),
     ] {
         table.row([name.to_owned(), count.to_string()]);
     }

@@ -1,25 +1,29 @@
-//! From a recording to figures: ride measures, extremes, and the number of ticks that the answer to a fault took.
+//! Computes the figures of a run from its record: ride measures, extremes, and reaction times to faults in ticks.
 //!
 //! Everything here is computed from what the run left in memory. So it costs the loop nothing, and it is the same for every bus.
+
+mod course;
 
 use oleo_controller::can::bus_load;
 use oleo_controller::{FaultCode, Mode};
 use oleo_interface::tick::TICK_US;
 use oleo_interface::{Corners, StrutValves};
+use oleo_plant_sim::course::Ending;
 use oleo_plant_sim::measures::{RideMeasures, RideMeter};
 
 use crate::bit_timing::{WireModel, trace_bits};
-use crate::record::{Sample, controller_account};
+use crate::record::{Sample, StrategyReport, controller_account, strategy_reports};
 use crate::run::Outcome;
 use crate::scenario::Scenario;
 use crate::scenario::check::{Figure, Metric};
+pub use course::CourseFigures;
 
 /// Figures of a run, and what they were computed from.
 #[derive(Debug)]
 pub struct Metrics {
     /// Number of ticks that were run.
     pub ticks: u32,
-    /// Number of ticks of the scenario that were not run.
+    /// Number of ticks of the scenario that were not run, although the course was not completed.
     pub ticks_missing: u32,
     /// Ride measures at the driver's and at the left rear passenger's seat.
     pub seats: [RideMeasures; 2],
@@ -33,6 +37,12 @@ pub struct Metrics {
     pub e2e_errors: u64,
     /// Mode and first cause in each tick, as the controller's frames say.
     pub account: Vec<Option<(Mode, FaultCode)>>,
+    /// What the controller had last reported of its strategy, in each tick.
+    pub strategy: Vec<StrategyReport>,
+    /// Number of times that the controller reported handling mode anew.
+    pub handling_entries: u64,
+    /// Figures of the manoeuvre; `None` where the ride model drove.
+    pub course: Option<CourseFigures>,
     /// The traced frames on a wire of 500 kbit/s and of 1 Mbit/s.
     pub wires: [WireModel; 2],
     extremes: Extremes,
@@ -71,12 +81,32 @@ impl Metrics {
             RideMeter::new(plant.recording.step_s),
             RideMeter::new(plant.recording.step_s),
         ];
-        for felt in &plant.recording.seat_acceleration_m_s2 {
-            meters.iter_mut().zip(felt).for_each(|(meter, a)| meter.add(*a));
+        let settling = (scenario.score_from_s / plant.recording.step_s).round() as usize;
+        for (step, felt) in plant.recording.seat_acceleration_m_s2.iter().enumerate() {
+            for (meter, a) in meters.iter_mut().zip(felt) {
+                if step < settling {
+                    meter.settle(*a);
+                } else {
+                    meter.add(*a);
+                }
+            }
         }
+        let strategy = strategy_reports(&plant.trace, samples.len());
         Self {
             ticks,
-            ticks_missing: scenario.ticks.saturating_sub(ticks),
+            ticks_missing: match plant.ending {
+                Some(Ending::Completed) => 0,
+                _ => scenario.ticks.saturating_sub(ticks),
+            },
+            handling_entries: entries(strategy.iter().map(|report| report.handling)),
+            course: CourseFigures::of(
+                &plant.recording,
+                plant.ending,
+                &account,
+                &strategy,
+                scenario.score_from_s,
+            ),
+            strategy,
             seats: meters.each_ref().map(RideMeter::measures),
             valve_switches: plant.recording.valve_switches(),
             frames_lost: plant.bus_frames_lost + plant.injected.dropped,
@@ -120,6 +150,17 @@ impl Metrics {
                     .values()
                     .sum(),
             ),
+            Metric::HandlingEntries => count(self.handling_entries),
+            Metric::MaxLateral => self.of_course(|course| Some(course.max_lateral_m_s2)),
+            Metric::MaxPathDeviation => self.of_course(|course| course.max_path_deviation_m),
+            Metric::ConeMargin => self.of_course(|course| course.cone_margin_m),
+            Metric::Decision => self.of_course(|course| course.decision_s),
+            Metric::RideBefore => self.of_course(|course| course.ride_before_m_s2.map(|[driver, _]| driver)),
+            Metric::RideAfter => self.of_course(|course| course.ride_after_m_s2.map(|[driver, _]| driver)),
+            Metric::Ending => {
+                let ending = self.course.as_ref().and_then(|course| course.ending);
+                ending.map_or(Figure::Never, |ending| Figure::Word(ending.word()))
+            }
             Metric::FramesLost => count(self.frames_lost),
             Metric::BusFramesLost => count(self.bus_frames_lost),
             Metric::E2eErrors => count(self.e2e_errors),
@@ -151,6 +192,11 @@ impl Metrics {
         }
     }
 
+    /// A figure of the manoeuvre.
+    fn of_course(&self, of: impl FnOnce(&CourseFigures) -> Option<f64>) -> Figure {
+        self.course.as_ref().and_then(of).map_or(Figure::Never, Figure::Number)
+    }
+
     /// The most restricted mode after the first start-up. The order of the modes is that of their restriction.
     fn worst_mode(&self) -> &'static str {
         let modes = self
@@ -164,10 +210,18 @@ impl Metrics {
     }
 }
 
+/// How often a state was entered, from not being in it.
+fn entries(states: impl Iterator<Item = bool>) -> u64 {
+    let mut before = false;
+    states
+        .filter(|now| !std::mem::replace(&mut before, *now) && *now)
+        .count() as u64
+}
+
 impl Extremes {
     fn of(samples: &[Sample]) -> Self {
         samples.iter().fold(Self::default(), |mut most, sample| {
-            let body = &sample.body;
+            let body = &sample.motion.body;
             most.heave_m = most.heave_m.max(body.heave_m.abs());
             most.roll_rad = most.roll_rad.max(body.roll_rad.abs());
             most.pitch_rad = most.pitch_rad.max(body.pitch_rad.abs());
@@ -176,7 +230,7 @@ impl Extremes {
                 most.rebound_m = most.rebound_m.max(-displacement_m);
                 most.pressure_pa = strut.pressure_pa.iter().fold(most.pressure_pa, |p, q| p.max(*q));
             }
-            most.lifted_ticks += u64::from(sample.wheel.values().any(|wheel| wheel.force_n <= 0.0));
+            most.lifted_ticks += u64::from(sample.motion.wheel.values().any(|wheel| wheel.load_n <= 0.0));
             most
         })
     }
@@ -212,22 +266,23 @@ impl Answer {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::{Motion, Wheel};
     use oleo_controller::ValveCommand;
     use oleo_plant_sim::strut::StrutOutput;
-    use oleo_plant_sim::vehicle::{BodyMotion, WheelMotion};
 
     fn sample(word: u16) -> Sample {
         Sample {
-            station_m: 0.0,
-            body: BodyMotion::default(),
+            motion: Motion {
+                wheel: Corners::splat(Wheel {
+                    load_n: 1.0,
+                    ..Wheel::default()
+                }),
+                ..Motion::default()
+            },
             displacement_m: Corners::from_array([0.01, -0.02, 0.0, 0.0]),
             strut: Corners::splat(StrutOutput {
                 force_n: 0.0,
                 pressure_pa: [4e6; 4],
-            }),
-            wheel: Corners::splat(WheelMotion {
-                force_n: 1.0,
-                ..WheelMotion::default()
             }),
             command: ValveCommand::from_word(word),
             energised: ValveCommand::from_word(word),
@@ -258,6 +313,12 @@ mod tests {
             (never.detect, never.safe, never.closed, never.recover),
             (None, None, None, None)
         );
+    }
+
+    #[test]
+    fn entries_by_hand() {
+        assert_eq!(entries([].into_iter()), 0);
+        assert_eq!(entries([true, true, false, true].into_iter()), 2);
     }
 
     #[test]

@@ -1,0 +1,70 @@
+//! What the files of a scenario say of its vehicle: body, axles, steering, struts.
+
+use oleo_controller::VehicleDescription;
+use oleo_interface::{Corners, StrutValves};
+use oleo_plant_sim::handling::HandlingParameters;
+use oleo_plant_sim::strut::{Strut, StrutModel};
+use oleo_plant_sim::vehicle::VehicleParameters;
+
+use super::error::RunError;
+use crate::description::describe;
+use crate::scenario::Scenario;
+use crate::scenario::file::DEFENDER;
+
+/// Parameters of a vehicle that carries nothing.
+pub struct Parameters {
+    /// Body, axles, tyres.
+    pub vehicle: VehicleParameters,
+    /// Steering, links, driver.
+    pub handling: HandlingParameters,
+    /// The struts, charged for some load.
+    strut: StrutModel,
+}
+
+impl Parameters {
+    /// Reads the files that a scenario names.
+    ///
+    /// # Errors
+    /// A file is missing or wrong.
+    pub fn read(scenario: &Scenario) -> Result<Self, RunError> {
+        let text = |path: &str| {
+            std::fs::read_to_string(path).map_err(|source| RunError::Unreadable {
+                path: path.into(),
+                source,
+            })
+        };
+        Ok(Self {
+            vehicle: match scenario.vehicle.as_str() {
+                DEFENDER => VehicleParameters::defender110(),
+                path => VehicleParameters::from_toml(&text(path)?, path)?,
+            },
+            handling: match scenario.handling.as_str() {
+                DEFENDER => HandlingParameters::defender110(),
+                path => HandlingParameters::from_toml(&text(path)?, path)?,
+            },
+            strut: match scenario.strut.as_str() {
+                DEFENDER => StrutModel::defender110(1.0),
+                path => StrutModel::from_toml(&text(path)?, path)?,
+            },
+        })
+    }
+
+    /// What the controller knows of the vehicle.
+    pub fn description(&self) -> VehicleDescription {
+        describe(&self.vehicle, &self.handling, &self.strut)
+    }
+
+    /// Four struts at rest, each charged for the load (N) that it carries, as in a workshop; all valves closed.
+    ///
+    /// # Errors
+    /// A strut that cannot be charged for its load.
+    pub fn struts(&self, load_n: Corners<f64>) -> Result<Corners<Strut>, RunError> {
+        let strut = |load_n: f64| {
+            let mut model = self.strut.clone();
+            model.cylinder.static_pressure_pa = load_n / model.piston_area_m2();
+            Strut::at_rest(&model, StrutValves::default())
+        };
+        let [a, b, c, d] = load_n.into_array();
+        Ok(Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]))
+    }
+}

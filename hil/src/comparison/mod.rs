@@ -24,6 +24,6 @@ pub use compare::{CompareError, Results, compare, settings};
 pub use drive::{ComparisonError, beginning_s, drive};
 pub use figures::Figures;
 pub use plan::{Extent, Group, groups};
-pub use scores::{Goal, Means, Row, Scores, VALVE_LIFE_CHANGES, scores};
+pub use scores::{Goal, Means, Row, Scores, VALVE_LIFE_CHANGES, mean_ratio, scores};
 pub use sensors::Sensors;
 pub use setting::Setting;

@@ -99,6 +99,14 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     sum / count
 }
 
+/// Geometric mean over rows of a setting's figure over another one's.
+pub fn mean_ratio(rows: &[Row], setting: usize, reference: usize) -> f64 {
+    let ratios = rows
+        .iter()
+        .map(|row| row.by_setting[setting] / row.by_setting[reference]);
+    libm::exp(mean(ratios.map(libm::log)))
+}
+
 /// The worst of some values and where it was.
 #[derive(Clone, Debug, Default)]
 struct Worst {

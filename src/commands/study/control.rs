@@ -199,15 +199,6 @@ fn goals_table(scores: &Scores) -> Table {
     table
 }
 
-/// Geometric mean over the rows of a setting's figure over another one's.
-fn mean_ratio(rows: &[Row], place: usize, reference: usize) -> f64 {
-    let sum: f64 = rows
-        .iter()
-        .map(|row| libm::log(row.by_setting[place] / row.by_setting[reference]))
-        .sum();
-    libm::exp(sum / rows.len() as f64)
-}
-
 fn write(out: &mut OutputDirectory, comparison: &Comparison, own: &Scores, tables: &[Table; 3]) -> Result<(), Failure> {
     let Comparison {
         groups,
@@ -278,8 +269,8 @@ fn page(comparison: &Comparison, own: &Scores, [ride, roll, goals]: &[Table; 3])
         let panel = figure.panel(Axis::new("Peak roll over all valves closed", ""));
         for (number, setting) in settings.iter().enumerate() {
             let point = (
-                mean_ratio(&means.ride, number, soft),
-                mean_ratio(&flat_and_c, number, stiff),
+                comparison::mean_ratio(&means.ride, number, soft),
+                comparison::mean_ratio(&flat_and_c, number, stiff),
             );
             panel.series(Style::Points, &setting.name(), &[point.0], &[point.1]);
         }

@@ -2,7 +2,9 @@
 
 mod control;
 mod drive;
+mod drives;
 mod optimise;
+mod robust;
 mod sweep;
 
 use std::process::ExitCode;
@@ -12,8 +14,8 @@ use crate::failure::Failure;
 /// Compare or optimise gas volumes and damper characteristics for ride and handling, or compare the controller with fixed settings.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  oleo study sweep --check --out study\n  oleo study optimise --ride 1 --roll 0 --out study\n  oleo study control --out control\n\n\
-                  Every finished run is stored in DIR/runs.csv (sweep and optimise) or DIR/drives.csv (control), and runs that are \
+    after_help = "Examples:\n  oleo study sweep --check --out study\n  oleo study optimise --ride 1 --roll 0 --out study\n  oleo study control --out control\n  oleo study robust --vehicles 1000 --out robust\n\n\
+                  Every finished run is stored in DIR/runs.csv (sweep and optimise) or DIR/drives.csv (control and robust), and runs that are \
                   found there are used. An interrupted command resumes when it is repeated with the same DIR."
 )]
 pub struct Args {
@@ -26,6 +28,7 @@ enum Study {
     Sweep(sweep::Args),
     Optimise(optimise::Args),
     Control(control::Args),
+    Robust(robust::Args),
 }
 
 /// Runs the command.
@@ -34,5 +37,6 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         Study::Sweep(args) => sweep::run(&args),
         Study::Optimise(args) => optimise::run(&args),
         Study::Control(args) => control::run(&args),
+        Study::Robust(args) => robust::run(&args),
     }
 }

@@ -76,22 +76,10 @@ pub fn compare(
             }));
         }
     }
-    let base = format!("{MODEL_VERSION}|{bench:?}");
     let mut figures = jobs
         .par_iter()
         .map(|(g, case, setting)| {
-            let key = Records::key(&format!("{base}|{case:?}|{setting:?}"));
-            let known = records.get(&key).and_then(|record| figures_of(record.iter().skip(3)));
-            let figures = match known {
-                Some(figures) => figures,
-                None if stop() => return Err(CompareError::Interrupted),
-                None => {
-                    let figures = drive(bench, case, setting).map_err(wrap(&groups[*g]))?;
-                    let what = [groups[*g].name.clone(), setting.name()];
-                    records.add(&key, what.into_iter().chain(fields_of(&figures)))?;
-                    figures
-                }
-            };
+            let figures = run_once(bench, &groups[*g].name, case, setting, records, &stop)?;
             done();
             Ok(figures)
         })
@@ -107,6 +95,31 @@ pub fn compare(
                 .collect()
         })
         .collect())
+}
+
+/// One drive, from the records or driven now and recorded.
+pub(super) fn run_once(
+    bench: &Bench,
+    name: &str,
+    case: &DriveCase,
+    setting: &Setting,
+    records: &Records,
+    stop: &impl Fn() -> bool,
+) -> Result<Figures, CompareError> {
+    let key = Records::key(&format!("{MODEL_VERSION}|{bench:?}|{case:?}|{setting:?}"));
+    if let Some(figures) = records.get(&key).and_then(|record| figures_of(record.iter().skip(3))) {
+        return Ok(figures);
+    }
+    if stop() {
+        return Err(CompareError::Interrupted);
+    }
+    let figures = drive(bench, case, setting).map_err(|error| CompareError::Drive {
+        name: name.into(),
+        error,
+    })?;
+    let what = [name.to_owned(), setting.name()];
+    records.add(&key, what.into_iter().chain(fields_of(&figures)))?;
+    Ok(figures)
 }
 
 /// Figures as fields of a record. Every float is written so that it is read back to the bit.

@@ -1,7 +1,6 @@
 //! `oleo study control`: the controller against every fixed setting, the vehicle as sold and an oracle.
 
 use std::io::Write as _;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use oleo_controller::Strategy;
@@ -13,18 +12,14 @@ use oleo_report::interrupt::Graceful;
 use oleo_report::{Axis, Cell, Column, Curves, OutputDirectory, Page, Progress, Style, Table, Verdict};
 use serde_json::json;
 
-use crate::commands::parameter_files::parameters;
+use super::drives::{Drives, controlled};
 use crate::failure::Failure;
 
 /// Compare the controller with every fixed valve setting, the vehicle as sold and an oracle, for ride and for roll
 #[derive(clap::Args)]
 pub struct Args {
-    /// Vehicle parameters; without it the built-in defender110
-    #[arg(long, value_name = "VEHICLE.toml")]
-    vehicle: Option<PathBuf>,
-    /// Handling parameters; without it the built-in defender110
-    #[arg(long, value_name = "HANDLING.toml")]
-    handling: Option<PathBuf>,
+    #[command(flatten)]
+    drives: Drives,
     /// Number of seeds of roads and sensors, 1 to 1000
     #[arg(long, value_name = "N", default_value_t = 8)]
     seeds: u64,
@@ -37,12 +32,6 @@ pub struct Args {
     /// Exit with status 1 if a goal is not met
     #[arg(long)]
     check: bool,
-    /// Number of threads [default: all cores]
-    #[arg(long, value_name = "N")]
-    threads: Option<usize>,
-    /// Folder for CSV data, summary.json, report.html and the finished drives; without it only the tables are printed
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
 }
 
 /// Strategies that are compared. The first is the one that is scored.
@@ -71,9 +60,8 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
             args.duration_s
         )));
     }
-    let (vehicle, handling) = parameters(args.vehicle.as_ref(), args.handling.as_ref())?;
-    let bench = Bench::new(vehicle, handling);
-    let (records, out) = results(args)?;
+    let bench = args.drives.bench()?;
+    let (records, out) = args.drives.results()?;
     let comparison = comparison(args, &bench, &records)?;
     let [own, ..] = &comparison.scores[..] else {
         return Err(Failure::new("the comparison has no controller"));
@@ -94,30 +82,11 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     })
 }
 
-/// The finished drives and the staged results. Finished drives are kept in the folder itself, as they end.
-fn results(args: &Args) -> Result<(Records, Option<OutputDirectory>), Failure> {
-    let Some(out) = &args.out else {
-        return Ok((Records::in_memory(), None));
-    };
-    // Staged once to be told of a folder that cannot be, and again when it is there.
-    drop(OutputDirectory::stage(out)?);
-    std::fs::create_dir_all(out)
-        .map_err(|error| Failure::new(format!("{}: cannot make the folder: {error}", out.display())))?;
-    let mut staged = OutputDirectory::stage(out)?;
-    staged.keep(args.vehicle.iter().chain(&args.handling));
-    Ok((Records::open(&out.join("drives.csv"))?, Some(staged)))
-}
-
 fn comparison(args: &Args, bench: &Bench, records: &Records) -> Result<Comparison, Failure> {
-    let controller = |strategy: Strategy| {
-        let builder = oleo_controller::Builder {
-            strategy,
-            ..bench.controller()
-        };
-        let configuration = builder.build().map_err(|error| Failure::new(error.to_string()))?;
-        Ok(Setting::Controlled(strategy.name(), Box::new(configuration)))
-    };
-    let controllers: Vec<Setting> = STRATEGIES.into_iter().map(controller).collect::<Result<_, Failure>>()?;
+    let controllers: Vec<Setting> = STRATEGIES
+        .into_iter()
+        .map(|strategy| controlled(bench, strategy))
+        .collect::<Result<_, Failure>>()?;
     let settings = settings(controllers);
     let groups = groups(&Extent {
         seeds: args.seeds,
@@ -126,16 +95,11 @@ fn comparison(args: &Args, bench: &Bench, records: &Records) -> Result<Compariso
     });
     let drives: usize = groups.iter().map(|group| group.cases.len() * settings.len()).sum();
     let progress = Progress::new("study control", drives as u64);
-    let threads = args.threads.unwrap_or(0);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .map_err(|error| Failure::new(format!("--threads {threads}: {error}")))?;
     let results = {
         // The first Ctrl-C lets the drives in hand end and keeps them.
         let graceful = Graceful::begin();
         let (progress, graceful, groups, settings) = (&progress, &graceful, &groups, &settings);
-        pool.install(move || {
+        args.drives.on_threads(move || {
             compare(
                 bench,
                 groups,
@@ -144,7 +108,7 @@ fn comparison(args: &Args, bench: &Bench, records: &Records) -> Result<Compariso
                 || progress.add(1),
                 || graceful.requested(),
             )
-        })?
+        })??
     };
     drop(progress);
     let means = Means::of(&groups, &results);

@@ -107,7 +107,8 @@ impl Decide for RoadAndCornering {
         } else {
             ValveCommand::from_corners(Corners::splat(StrutValves::new(!state.very_rough, true, true)))
         };
-        let urgency = if rollover_guard || corners {
+        // At once, whatever lean that traps; only where wheels leave the ground a lean passes by itself within the patience.
+        let urgency = if rollover_guard || (corners && !state.very_rough) {
             Urgency::Emergency
         } else if corners {
             Urgency::Handling

@@ -34,6 +34,9 @@ const SLOWER_IN_BENDS: f32 = 4.0;
 /// Largest value that enters the own running mean square, over it: the beginning of a bend must not raise the bound ahead of itself.
 /// A Gaussian error exceeds the root of this once in 70 values.
 const LARGEST_OVER_OWN: f32 = 6.0;
+/// How fast the square of the own multiple grows with the fourth power of the witness over the lift-off value: where wheels leave the
+/// ground, peaks are higher over their RMS.
+const HEAVIER_TAILS: f32 = 0.125;
 /// Least value that enters as it is, over the square of the witness's bound: from zero the mean must be able to grow.
 const LARGEST_OVER_WITNESS: f32 = 0.25;
 
@@ -200,11 +203,13 @@ impl State {
             c.witness.step(&mut band.witness, witness);
         }
         let [Band { witness: quick, .. }, _] = self.bands;
-        let witness_2 = witness_2 * (1.0 + c.per_lift_off_2 * quick);
+        let lift_off = c.per_lift_off_2 * quick;
+        let witness_2 = witness_2 * (1.0 + lift_off);
+        let heavier_tails = 1.0 + HEAVIER_TAILS * lift_off * lift_off;
         let (mut certain, mut quiet) = (false, true);
         for ((band, square), own_2) in self.bands.iter_mut().zip(squares).zip(c.own_2) {
             let by_witness = witness_2 * band.witness;
-            let bound = at_least(by_witness, at_least(own_2 * band.own, c.floor_2));
+            let bound = at_least(by_witness, at_least(own_2 * heavier_tails * band.own, c.floor_2));
             certain |= square > bound;
             quiet &= square < c.release_2 * bound;
             let largest = at_least(LARGEST_OVER_OWN * band.own, LARGEST_OVER_WITNESS * by_witness);

@@ -235,3 +235,77 @@ fn the_optimiser_shares_finished_runs_and_does_not_depend_on_threads() {
         std::fs::read(folder.path().join("one").join("runs.csv")).expect("finished runs")
     );
 }
+
+/// The comparison of the controller, small: its summary has what is promised, a second run only reads, and the threads do not matter.
+#[test]
+fn the_control_study_scores_resumes_and_does_not_depend_on_threads() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let study = |out: &str, threads: &str| {
+        let small = ["study", "control", "--quick", "--seeds", "1", "--duration-s", "5"];
+        let run = oleo(
+            folder.path(),
+            &[&small[..], &["--threads", threads, "--out", out]].concat(),
+        );
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        summary(&folder.path().join(out))
+    };
+    let first = study("a", "2");
+    for key in [
+        "ride_ratio_to_soft",
+        "ride_ratio_to_best_fixed",
+        "roll_ratio_to_stiff",
+        "roll_ratio_to_baseline",
+        "decision_s",
+        "false_entries_per_km",
+    ] {
+        assert!(first[key].is_f64(), "{key}: {}", first[key]);
+    }
+    // Stiff on a flat road, and never worse than the vehicle as sold.
+    assert!(first["roll_ratio_to_stiff"].as_f64() < Some(1.01));
+    assert!(first["roll_ratio_to_baseline"].as_f64() < Some(1.0));
+    let drives = || std::fs::read_to_string(folder.path().join("a/drives.csv")).expect("finished drives");
+    let lines = drives().lines().count();
+    assert_eq!(study("a", "1"), first);
+    assert_eq!(drives().lines().count(), lines, "a second run drives nothing");
+    assert_eq!(study("b", "1"), first);
+}
+
+#[test]
+fn the_robustness_study_draws_the_same_vehicle_alone_and_among_others() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let vehicles = |out: &str, first: &str, count: &str| {
+        let run = oleo(
+            folder.path(),
+            &["study", "robust", "--first", first, "--vehicles", count, "--out", out],
+        );
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        let file = std::fs::read_to_string(folder.path().join(out).join("vehicles.csv")).expect("vehicles");
+        file.lines().skip(1).map(str::to_owned).collect::<Vec<_>>()
+    };
+    let two = vehicles("two", "3", "2");
+    assert_eq!(two.len(), 2);
+    assert_eq!(vehicles("one", "4", "1"), two[1..]);
+}
+
+#[test]
+fn studies_of_the_controller_refuse_what_cannot_be() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (arguments, expected) in [
+        (
+            &["study", "control", "--seeds", "0"][..],
+            "--seeds 0: give a number from 1 to 1000",
+        ),
+        (
+            &["study", "control", "--duration-s", "NaN"],
+            "--duration-s NaN: give a value from 5 to 600",
+        ),
+        (
+            &["study", "robust", "--vehicles", "0"],
+            "--vehicles 0: give a number from 1 to 100000",
+        ),
+    ] {
+        let run = oleo(folder.path(), arguments);
+        assert_eq!(run.status.code(), Some(2), "{arguments:?}");
+        assert_eq!(text(&run.stderr).trim_end(), format!("error: {expected}"));
+    }
+}

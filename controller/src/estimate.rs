@@ -9,13 +9,12 @@
 //!   heave       z''     = g (sum F / sum W - 1)
 //!   roll        phi''   = g (sum y (F - W) - k_f phi_f - k_r phi_r) / (sum W  i_x^2)
 //!   pitch       theta'' = g (- sum x (F - W)) / (sum W  i_y^2)
-//!   lateral     a_y     = g (- sum y F + k_f phi_f + k_r phi_r) / (sum W  h) - g phi, two lags at 1 Hz, bias removed
 //!   corner      z_i''   = z'' + y_i phi'' - x_i theta''
 //! ```
 //!
-//! Source: Newton and Euler for the sprung mass at small angles. The line for `a_y` is the moment balance about the roll axis at
-//! low frequency, where `J_x phi''` vanishes. Signs: x forward, y left, z up; roll is positive with the right side down, pitch
-//! with the nose down. So a left turn, in which `a_y` is positive, rolls the body in the positive direction.
+//! Source: Newton and Euler for the sprung mass at small angles. The lateral acceleration is [`crate::lateral`]'s. Signs: x forward,
+//! y left, z up; roll is positive with the right side down, pitch with the nose down. So a left turn, in which the lateral
+//! acceleration is positive, rolls the body in the positive direction.
 //!
 //! Limits: a side slope looks like cornering, as it does to an accelerometer. Forces that do not pass through the oil are not in
 //! p1: seal friction, links, bushes and stops. `phi` lacks the roll of the axles on the tyres. Figures are in
@@ -25,16 +24,14 @@ use oleo_interface::tick::TICKS_PER_SECOND;
 use oleo_interface::{Axles, Corners};
 
 use crate::filter::{Derivative, DerivativeState, LeakyIntegrator, LowPass, at_least};
+use crate::lateral::{self, Lateral};
 use crate::plausibility::Trusted;
 use crate::range::{ConfigurationError, within};
 use crate::vehicle::VehicleDescription;
+use crate::wheelbase;
 
 /// Standard gravity, m/s2 (ISO 80000-3).
 pub const GRAVITY_M_S2: f32 = 9.806_65;
-
-/// Largest lateral offset that is learnt as uneven load or sensor bias, m/s2. The bound keeps a long bend from being learnt as a
-/// bias.
-const MAX_BIAS_M_S2: f32 = 0.5;
 
 /// Corner frequency of the filter that differentiates the strut displacement, Hz. It is high enough for everything that valves of
 /// 40 to 90 ms can follow, and low enough for the 0.01 mm steps of the displacement signal (`vehicle.md`: 15 to 20 Hz).
@@ -54,7 +51,7 @@ const _: () = assert!(
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
-    /// Corner frequency of the lateral surrogate's two lags, Hz, 0.1 to 5: below the body's roll resonance.
+    /// Corner frequency of the low-pass of the lateral acceleration, Hz, 0.1 to 5.
     pub lateral_corner_hz: f32,
     /// Time constant of the running mean squares, s, 0.1 to 20.
     pub running_rms_s: f32,
@@ -63,7 +60,7 @@ pub struct Tuning {
 impl Default for Tuning {
     fn default() -> Self {
         Self {
-            lateral_corner_hz: 1.0, // vehicle.md: 0.5 to 1 Hz
+            lateral_corner_hz: 1.8, // measured: docs/controller.md
             running_rms_s: 1.0,     // recalled: Els, about 1 s
         }
     }
@@ -91,8 +88,8 @@ pub struct Parameters {
     per_pitch_gyration_2: f32,
     strut_speed: Derivative,
     static_load: LowPass,
-    lateral: LowPass,
-    lateral_bias: LowPass,
+    lateral: lateral::Parameters,
+    wheelbase: wheelbase::Parameters,
     running: LowPass,
     body_velocity: LeakyIntegrator,
 }
@@ -114,8 +111,11 @@ impl Parameters {
             per_pitch_gyration_2: 1.0 / square(vehicle.pitch_gyration_m),
             strut_speed: Derivative::from_corner_hz(SPEED_CORNER_HZ),
             static_load: LowPass::from_time_constant_s(20.0),
-            lateral: LowPass::from_corner_hz(tuning.lateral_corner_hz),
-            lateral_bias: LowPass::from_time_constant_s(30.0),
+            lateral: lateral::Parameters::new(
+                tuning.lateral_corner_hz,
+                square(vehicle.roll_gyration_m) / vehicle.roll_arm_m,
+            ),
+            wheelbase: wheelbase::Parameters::new(),
             running: LowPass::from_time_constant_s(tuning.running_rms_s),
             body_velocity: LeakyIntegrator::from_corner_hz(0.2),
         }
@@ -142,9 +142,9 @@ pub struct Estimate {
     pub roll_acceleration_rad_s2: f32,
     /// Pitch acceleration of the body, rad/s2.
     pub pitch_acceleration_rad_s2: f32,
-    /// Surrogate of the lateral acceleration, m/s2, to the left positive.
-    pub lateral_acceleration_m_s2: f32,
-    /// Running mean square of the lateral surrogate, m2/s4.
+    /// Lateral acceleration, low-passed, and what the road alone adds to it.
+    pub lateral: Lateral,
+    /// Running mean square of the lateral acceleration, m2/s4.
     pub lateral_mean_square: f32,
     /// Running mean square of the vertical acceleration, m2/s4.
     pub vertical_mean_square: f32,
@@ -173,7 +173,9 @@ impl Estimate {
             + self.roll_rate_rad_s
             + self.lateral_mean_square
             + self.vertical_mean_square
-            + self.lateral_acceleration_m_s2;
+            + self.lateral.acceleration_m_s2.quick
+            + self.lateral.acceleration_m_s2.slow
+            + self.lateral.witness_m_s2.slow;
         (corners + body).is_finite()
     }
 }
@@ -200,8 +202,8 @@ pub struct State {
     speed: Corners<DerivativeState>,
     static_load_n: Corners<f32>,
     velocity: Corners<f32>,
-    lateral: [f32; 2],
-    lateral_bias: f32,
+    lateral: lateral::State,
+    wheelbase: wheelbase::State,
     lateral_mean_square: f32,
     vertical_mean_square: f32,
     started: bool,
@@ -241,11 +243,10 @@ impl State {
         let pitch = per_mass * c.per_pitch_gyration_2 * (b * (f2 + f3 - w2 - w3) - a * (f0 + f1 - w0 - w1));
 
         let lateral_raw = per_mass * c.per_roll_arm * (bars_n_m - left_up_n_m) - GRAVITY_M_S2 * relative.roll_rad;
-        let [lag1, lag2] = &mut self.lateral;
-        let lagged = c.lateral.step(lag2, c.lateral.step(lag1, lateral_raw));
-        c.lateral_bias
-            .step(&mut self.lateral_bias, lagged.clamp(-MAX_BIAS_M_S2, MAX_BIAS_M_S2));
-        let lateral = lagged - self.lateral_bias;
+        let Axles { front, rear } = relative.axle_roll_rad;
+        let delay = self.wheelbase.step(&c.wheelbase, strut_speed_m_s);
+        let lateral = self.lateral.step(&c.lateral, lateral_raw, front, rear, delay);
+        let lateral_square = lateral.acceleration_m_s2.quick * lateral.acceleration_m_s2.quick;
 
         let corner_acceleration_m_s2 = Corners::from_array([
             vertical + hf * roll - a * pitch,
@@ -265,8 +266,8 @@ impl State {
             vertical_acceleration_m_s2: vertical,
             roll_acceleration_rad_s2: roll,
             pitch_acceleration_rad_s2: pitch,
-            lateral_acceleration_m_s2: lateral,
-            lateral_mean_square: c.running.step(&mut self.lateral_mean_square, lateral * lateral),
+            lateral,
+            lateral_mean_square: c.running.step(&mut self.lateral_mean_square, lateral_square),
             vertical_mean_square: c.running.step(&mut self.vertical_mean_square, vertical * vertical),
             corner_acceleration_m_s2,
             corner_velocity_m_s: self.velocity,
@@ -281,7 +282,7 @@ impl State {
     pub(crate) fn damaged() -> Self {
         Self {
             started: true,
-            lateral_bias: f32::NAN,
+            lateral: lateral::State::damaged(),
             ..Self::default()
         }
     }

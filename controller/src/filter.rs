@@ -1,4 +1,4 @@
-//! First-order sections from which all filters here are built.
+//! Sections of first and second order from which all filters here are built.
 //!
 //! Coefficients are computed once, from physical units, when the configuration is built; a tick then only multiplies and
 //! adds. All sections are exact at steady state and unconditionally stable (0 < alpha < 1).
@@ -35,6 +35,64 @@ impl LowPass {
 /// Cortex-M4F, this takes three instructions.
 pub fn at_least(value: f32, least: f32) -> f32 {
     if value > least { value } else { least }
+}
+
+/// Low-pass of second order for two inputs, of which the second is differentiated twice on its way.
+///
+/// ```text
+///   y = H x + s^2 H u,   H = w^2 / (s^2 + 2 zeta w s + w^2)
+/// ```
+///
+/// Two states serve both inputs, because both share the denominator (transposed direct form). The discrete form is the bilinear
+/// one, which keeps the two inputs in phase: the estimate of lateral acceleration is a small difference of both. Noise of `u` is
+/// amplified by no more than `w^2`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SecondOrder {
+    /// Of `x`, now; twice that of the last tick, and once that of the one before.
+    input: f32,
+    /// Of `u`, now; less twice that of the last tick, and once that of the one before.
+    twice_differentiated: f32,
+    /// Of the output one and two ticks ago.
+    back: [f32; 2],
+}
+
+/// State of [`SecondOrder`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SecondOrderState([f32; 2]);
+
+impl SecondOrder {
+    /// With a natural frequency, Hz, above 0 and below half the tick's rate, and a damping ratio, above 0.
+    pub fn new(natural_hz: f32, damping_ratio: f32) -> Self {
+        let natural = 2.0 * core::f32::consts::PI * natural_hz;
+        let (rate, damping) = (2.0 / TICK_S, 2.0 * damping_ratio * natural);
+        let (natural_2, rate_2) = (natural * natural, rate * rate);
+        let per = 1.0 / (rate_2 + damping * rate + natural_2);
+        Self {
+            input: natural_2 * per,
+            twice_differentiated: natural_2 * rate_2 * per,
+            back: [
+                2.0 * (natural_2 - rate_2) * per,
+                (rate_2 - damping * rate + natural_2) * per,
+            ],
+        }
+    }
+
+    /// The state in which `x` and `u` have been constant for ever.
+    pub fn at_rest(&self, x: f32, u: f32) -> SecondOrderState {
+        let [_, last_but_one] = self.back;
+        let first = (1.0 - self.input) * x - self.twice_differentiated * u;
+        let second = (self.input - last_but_one) * x + self.twice_differentiated * u;
+        SecondOrderState([first, second])
+    }
+
+    /// One tick; returns the output `y` for the inputs `x` and `u`.
+    pub fn step(&self, state: &mut SecondOrderState, x: f32, u: f32) -> f32 {
+        let ([last, last_but_one], [first, second]) = (self.back, state.0);
+        let (x, u) = (self.input * x, self.twice_differentiated * u);
+        let output = x + u + first;
+        state.0 = [2.0 * (x - u) - last * output + second, x + u - last_but_one * output];
+        output
+    }
 }
 
 /// Derivative behind two first-order lags of the same corner frequency. A plain difference would turn each 0.01 mm step of
@@ -128,6 +186,26 @@ mod tests {
     fn low_pass_is_3_db_down_at_its_corner() {
         let (filter, mut state) = (LowPass::from_corner_hz(1.0), 0.0);
         assert!((gain(1.0, |x| filter.step(&mut state, x)) - core::f32::consts::FRAC_1_SQRT_2).abs() < 0.02);
+    }
+
+    #[test]
+    fn second_order_passes_one_input_and_differentiates_the_other_twice() {
+        // At its natural frequency the gain of H is 1 / (2 zeta), and the second derivative multiplies it by w^2.
+        let filter = SecondOrder::new(1.5, 0.7);
+        let omega_2 = (2.0 * core::f32::consts::PI * 1.5) * (2.0 * core::f32::consts::PI * 1.5);
+        let mut state = filter.at_rest(0.0, 0.0);
+        assert!((gain(1.5, |x| filter.step(&mut state, x, 0.0)) * 1.4 - 1.0).abs() < 0.03);
+        let mut state = filter.at_rest(0.0, 0.0);
+        assert!((gain(1.5, |u| filter.step(&mut state, 0.0, u)) * 1.4 / omega_2 - 1.0).abs() < 0.03);
+        // Far below its corner it is the second derivative itself.
+        let mut state = filter.at_rest(0.0, 0.0);
+        let slow_2 = omega_2 / 100.0;
+        assert!((gain(0.15, |u| filter.step(&mut state, 0.0, u)) / slow_2 - 1.0).abs() < 0.02);
+        // At rest nothing moves, but for the rounding of the large second input.
+        let mut state = filter.at_rest(3.0, -0.4);
+        for _ in 0..100 {
+            assert!((filter.step(&mut state, 3.0, -0.4) - 3.0).abs() < 5e-3);
+        }
     }
 
     #[test]

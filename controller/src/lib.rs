@@ -32,6 +32,7 @@ pub mod estimate;
 pub mod failsafe;
 mod filter;
 mod freshness;
+pub mod lateral;
 mod node;
 mod output_stage;
 mod plant_end;
@@ -49,6 +50,7 @@ mod tick;
 mod timing;
 mod valves;
 mod vehicle;
+mod wheelbase;
 
 pub use configuration::{Builder, Configuration, Tuning};
 pub use estimate::Estimate;

@@ -87,9 +87,9 @@ pub struct Outputs {
 /// // Readings are believed after 12 ticks, and the mode is normal after 20 healthy ones.
 /// let modes: [Mode; 31] = core::array::from_fn(|_| tick(&configuration, &mut state, &inputs).mode);
 /// assert_eq!((modes[29], modes[30]), (Mode::StartUp, Mode::Normal));
-/// // At rest the ride is soft: all valves open once their springs have rested for half a second.
+/// // On a smooth road the vehicle is stiff: all valves stay closed.
 /// let outputs = core::iter::repeat_with(|| tick(&configuration, &mut state, &inputs)).nth(100);
-/// assert_eq!(outputs.map(|outputs| outputs.command), Some(ValveCommand::SOFT));
+/// assert_eq!(outputs.map(|outputs| outputs.command), Some(ValveCommand::SAFE));
 /// ```
 pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     let context = plausibility::Context {

@@ -33,15 +33,15 @@ pub struct VehicleDescription {
 impl Default for VehicleDescription {
     fn default() -> Self {
         Self {
-            piston_area_m2: 1.963_495_4e-3,                   // computed from the report: bore 50 mm
-            gas_volume_1_m3: 1.0e-4,                          // report
-            gas_volume_2_m3: 4.0e-4,                          // report
-            strut_spacing_m: Axles::splat(1.0),               // assumed, as the vehicle preset
+            piston_area_m2: 1.963_495_4e-3,            // computed from the report: bore 50 mm
+            gas_volume_1_m3: 1.0e-4,                   // report
+            gas_volume_2_m3: 4.0e-4,                   // report
+            strut_spacing_m: Axles::splat(1.0),        // assumed, as the vehicle preset
             axle_distance_m: Axles::new(1.389, 1.405), // from the preset: wheelbase 2.794 m, axle loads less axle masses
-            roll_arm_m: 0.45,                          // assumed: body's centre of gravity 0.85 m, roll axis 0.40 m
-            anti_roll_stiffness_n_m_rad: Axles::splat(8.0e3), // assumed, as the vehicle preset
-            roll_gyration_m: 0.661,                    // preset: sqrt(700 / 1600)
-            pitch_gyration_m: 1.25,                    // preset: sqrt(2500 / 1600)
+            roll_arm_m: 0.294, // preset: body's centre of gravity at 0.853 m, roll axis at 0.56 m below it
+            anti_roll_stiffness_n_m_rad: Axles::new(0.0, 8.0e3), // preset: one bar, at the rear
+            roll_gyration_m: 0.661, // preset: sqrt(700 / 1600)
+            pitch_gyration_m: 1.25, // preset: sqrt(2500 / 1600)
         }
     }
 }

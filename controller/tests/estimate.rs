@@ -126,7 +126,7 @@ fn steady_cornering() {
     }
     let mut lateral = 0.0f32;
     for _ in 0..200 {
-        lateral = state.step(&c.estimate, &turn).lateral_acceleration_m_s2;
+        lateral = state.step(&c.estimate, &turn).lateral.acceleration_m_s2.quick;
     }
     near("lateral", lateral, a_y, 0.2); // after 1 s: bias learning and static load have taken a little
 }

@@ -111,3 +111,14 @@ fn ride_handling() {
         assert_eq!(soft(3900), 0b100_100_100_100, "{name}: soft again");
     }
 }
+
+#[test]
+fn road_and_cornering() {
+    let words = check("road-and-cornering", Strategy::RoadAndCornering, DamperPolicy::Karnopp);
+    assert_eq!(
+        words[1500] & 0b100_100_100_100,
+        0b100_100_100_100,
+        "soft on the rough road"
+    );
+    assert_eq!(words[2100], 0, "stiff in the lane change");
+}

@@ -9,26 +9,6 @@ use oleo_plant_sim::handling::HandlingParameters;
 use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::vehicle::VehicleParameters;
 
-/// The description that a controller is built with: [`describe`], and for the built-in vehicle the description that is built into
-/// the controller.
-pub fn known_to_controller(
-    vehicle: &VehicleParameters,
-    handling: &HandlingParameters,
-    strut: &StrutModel,
-) -> VehicleDescription {
-    let described = describe(vehicle, handling, strut);
-    let is_built_in = *vehicle == VehicleParameters::defender110() && *handling == HandlingParameters::defender110();
-    if !is_built_in {
-        return described;
-    }
-    VehicleDescription {
-        piston_area_m2: described.piston_area_m2,
-        gas_volume_1_m3: described.gas_volume_1_m3,
-        gas_volume_2_m3: described.gas_volume_2_m3,
-        ..VehicleDescription::default()
-    }
-}
-
 /// The description of an unladen vehicle on four struts of one model.
 pub fn describe(vehicle: &VehicleParameters, handling: &HandlingParameters, strut: &StrutModel) -> VehicleDescription {
     let ahead_m = vehicle.body_cg_behind_front_axle_m();
@@ -89,21 +69,29 @@ mod tests {
         assert_ne!(of(&vehicle), of(&Load::Laden.at_ride_height(&vehicle)));
     }
 
-    /// Oil and gas of the built-in strut are those that the controller has built in, so the built-in vehicle is described by it whole.
+    /// The controller's own default is this vehicle, in the digits that a data sheet gives.
     #[test]
-    fn the_built_in_vehicle_is_built_into_the_controller() {
-        let (vehicle, handling) = (VehicleParameters::defender110(), HandlingParameters::defender110());
-        let strut = StrutModel::defender110(4000.0);
-        assert_eq!(
-            known_to_controller(&vehicle, &handling, &strut),
-            VehicleDescription::default()
-        );
-        let mut other = vehicle.clone();
-        other.layout.wheelbase_m += 0.1;
-        assert_eq!(
-            known_to_controller(&other, &handling, &strut),
-            describe(&other, &handling, &strut)
-        );
+    fn the_controllers_default_is_the_built_in_vehicle() {
+        let (described, built_in) = (of(&VehicleParameters::defender110()), VehicleDescription::default());
+        let numbers = |d: VehicleDescription| {
+            let axles =
+                [d.strut_spacing_m, d.axle_distance_m, d.anti_roll_stiffness_n_m_rad].map(|a| [a.front, a.rear]);
+            let others = [
+                d.piston_area_m2,
+                d.gas_volume_1_m3,
+                d.gas_volume_2_m3,
+                d.roll_arm_m,
+                d.roll_gyration_m,
+                d.pitch_gyration_m,
+            ];
+            axles.concat().into_iter().chain(others)
+        };
+        for (described, built_in) in numbers(described).zip(numbers(built_in)) {
+            assert!(
+                (described - built_in).abs() <= 2e-3 * described.abs(),
+                "{described} {built_in}"
+            );
+        }
     }
 
     #[test]

@@ -23,6 +23,7 @@ pub mod bit_timing;
 pub mod bus;
 pub mod candump;
 pub mod clock;
+pub mod comparison;
 pub mod controller_node;
 pub mod description;
 pub mod frame;

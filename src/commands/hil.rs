@@ -24,7 +24,7 @@ use crate::failure::Failure;
 
 /// Drive the vehicle with controller and plant communicating only through CAN frames.
 ///
-/// Without arguments the vehicle drives for 20 s over Belgian block at 60 km/h with the ride/handling strategy. Both nodes run in
+/// Without arguments the vehicle drives for 20 s over Belgian block at 60 km/h with the default strategy. Both nodes run in
 /// this process, as fast as the machine allows.
 #[derive(clap::Args)]
 #[command(after_help = "\

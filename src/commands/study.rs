@@ -1,19 +1,22 @@
-//! `oleo study`: which springs and dampers suit the ride, and which suit the handling (report 3.2).
+//! `oleo study`: which springs and dampers suit the ride, which suit the handling (report 3.2), and what the controller gains.
 
+mod control;
 mod drive;
+mod drives;
 mod optimise;
+mod robust;
 mod sweep;
 
 use std::process::ExitCode;
 
 use crate::failure::Failure;
 
-/// Compare or optimise gas volumes and damper characteristics for ride and handling.
+/// Compare or optimise gas volumes and damper characteristics for ride and handling, or compare the controller with fixed settings.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  oleo study sweep --check --out study\n  oleo study optimise --ride 1 --roll 0 --out study\n\n\
-                  Both commands store every finished run in DIR/runs.csv and use the runs that they find there. An interrupted \
-                  command resumes when it is repeated with the same DIR."
+    after_help = "Examples:\n  oleo study sweep --check --out study\n  oleo study optimise --ride 1 --roll 0 --out study\n  oleo study control --out control\n  oleo study robust --vehicles 1000 --out robust\n\n\
+                  Every finished run is stored in DIR/runs.csv (sweep and optimise) or DIR/drives.csv (control and robust), and runs that are \
+                  found there are used. An interrupted command resumes when it is repeated with the same DIR."
 )]
 pub struct Args {
     #[command(subcommand)]
@@ -24,6 +27,8 @@ pub struct Args {
 enum Study {
     Sweep(sweep::Args),
     Optimise(optimise::Args),
+    Control(control::Args),
+    Robust(robust::Args),
 }
 
 /// Runs the command.
@@ -31,5 +36,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     match args.study {
         Study::Sweep(args) => sweep::run(&args),
         Study::Optimise(args) => optimise::run(&args),
+        Study::Control(args) => control::run(&args),
+        Study::Robust(args) => robust::run(&args),
     }
 }

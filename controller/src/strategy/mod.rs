@@ -17,6 +17,7 @@ mod demand;
 mod fixed;
 pub mod parts;
 pub mod ride_handling;
+pub mod road_and_cornering;
 
 use strum::{EnumString, IntoStaticStr, VariantArray, VariantNames};
 
@@ -132,8 +133,10 @@ strategies! {
     /// All valves closed, for comparison.
     AlwaysStiff, always_stiff: fixed::AlwaysStiff;
     /// Ride mode or handling mode by running RMS, with a roll-over guard.
-    #[default]
     RideHandling, ride_handling: ride_handling::RideHandling;
+    /// Stiff on a smooth road and as soon as the vehicle corners; low damping by the road else.
+    #[default]
+    RoadAndCornering, road_and_cornering: road_and_cornering::RoadAndCornering;
 }
 
 #[cfg(test)]

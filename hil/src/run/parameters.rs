@@ -7,7 +7,7 @@ use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::VehicleParameters;
 
 use super::error::RunError;
-use crate::description::known_to_controller;
+use crate::description::describe;
 use crate::scenario::Scenario;
 use crate::scenario::file::DEFENDER;
 
@@ -51,7 +51,7 @@ impl Parameters {
 
     /// What the controller knows of the vehicle.
     pub fn description(&self) -> VehicleDescription {
-        known_to_controller(&self.vehicle, &self.handling, &self.strut)
+        describe(&self.vehicle, &self.handling, &self.strut)
     }
 
     /// Four struts at rest, each charged for the load (N) that it carries, as in a workshop; all valves closed.

@@ -74,7 +74,7 @@ mod tests {
             );
         }
         let default = named("belgian").unwrap();
-        assert_eq!((default.ticks, default.strategy.name()), (4000, "ride-handling"));
+        assert_eq!((default.ticks, default.strategy.name()), (4000, "road-and-cornering"));
         assert!((default.speed_m_s - 60.0 / 3.6).abs() < 1e-12);
     }
 

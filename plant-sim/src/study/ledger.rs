@@ -1,37 +1,18 @@
-//! What has been run already: one line of CSV a run, appended as it ends, so that a study that was interrupted goes on where
-//! it stopped and an optimiser can use what a sweep has found.
+//! What the sweep and the optimiser have run already, so that an optimiser can use what a sweep has found.
 //!
-//! A line's key is a hash (FNV-1a, 64 bit) of everything the result depends on: vehicle and handling parameters,
-//! conditions, case, and [`MODEL_VERSION`]. Another parameter, another key: old lines are never mistaken for new ones. A line
-//! that an interruption cut short is skipped and its run made again.
+//! A record depends on vehicle and handling parameters, conditions, case, and [`MODEL_VERSION`].
 
-use std::collections::BTreeMap;
-use std::fs::{File, OpenOptions};
-use std::hash::Hasher as _;
-use std::io::{Read as _, Write as _};
-use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
-
-use csv::StringRecord;
-use fnv::FnvHasher;
+use std::path::Path;
 
 use super::case::{Bench, Case, Handling, Ride};
+use super::records::{Records, RecordsError};
 
 /// Raised with every change of the models that changes results.
 const MODEL_VERSION: u32 = 4;
 
-/// A ledger that cannot be read or written.
-#[derive(Debug, thiserror::Error)]
-#[error("{}: {problem}: give another --out folder, or empty this one", path.display())]
-pub struct LedgerError {
-    path: PathBuf,
-    problem: std::io::Error,
-}
-
-/// Results by key, and the file they are appended to.
+/// Results of rides and of lane changes.
 pub struct Ledger {
-    known: BTreeMap<String, StringRecord>,
-    file: Option<(PathBuf, Mutex<File>)>,
+    records: Records,
     base: String,
 }
 
@@ -39,8 +20,7 @@ impl Ledger {
     /// A ledger that forgets.
     pub fn in_memory(bench: &Bench) -> Self {
         Self {
-            known: BTreeMap::new(),
-            file: None,
+            records: Records::in_memory(),
             base: base(bench),
         }
     }
@@ -49,50 +29,21 @@ impl Ledger {
     ///
     /// # Errors
     /// The file cannot be read or written.
-    pub fn open(path: &Path, bench: &Bench) -> Result<Self, LedgerError> {
-        let wrap = |problem| LedgerError {
-            path: path.to_owned(),
-            problem,
-        };
-        let mut text = String::new();
-        let mut file = OpenOptions::new()
-            .read(true)
-            .append(true)
-            .create(true)
-            .open(path)
-            .map_err(wrap)?;
-        file.read_to_string(&mut text).map_err(wrap)?;
-        // Only what ends with a line break was written to its end.
-        let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .from_reader(whole.as_bytes());
-        let mut known = BTreeMap::new();
-        for record in reader.records().flatten() {
-            if let Some(key) = record.get(0) {
-                known.insert(key.to_owned(), record);
-            }
-        }
-        // A line cut short by an interruption must not swallow the next one.
-        if !text.is_empty() && !text.ends_with('\n') {
-            file.write_all(b"\n").map_err(wrap)?;
-        }
+    pub fn open(path: &Path, bench: &Bench) -> Result<Self, RecordsError> {
         Ok(Self {
-            known,
-            file: Some((path.to_owned(), Mutex::new(file))),
+            records: Records::open(path)?,
             base: base(bench),
         })
     }
 
     /// Runs known so far.
     pub fn len(&self) -> usize {
-        self.known.len()
+        self.records.len()
     }
 
     /// Whether no run is stored.
     pub fn is_empty(&self) -> bool {
-        self.known.is_empty()
+        self.records.is_empty()
     }
 
     fn key(&self, kind: &str, case: &Case) -> String {
@@ -100,9 +51,7 @@ impl Ledger {
         for value in case.numbers() {
             text.push_str(&format!("|{:016x}", value.to_bits()));
         }
-        let mut hash = FnvHasher::default();
-        hash.write(text.as_bytes());
-        format!("{:016x}", hash.finish())
+        Records::key(&text)
     }
 
     /// A ride result, if known.
@@ -132,7 +81,7 @@ impl Ledger {
 
     /// The last five fields of a line, if the line is known and whole.
     fn fields(&self, kind: &str, case: &Case) -> Option<[f64; 5]> {
-        let line = self.known.get(&self.key(kind, case))?;
+        let line = self.records.get(&self.key(kind, case))?;
         let fields: Vec<f64> = line
             .iter()
             .skip(FIELDS - 5)
@@ -145,7 +94,7 @@ impl Ledger {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn add_ride(&self, case: &Case, ride: &Ride) -> Result<(), LedgerError> {
+    pub fn add_ride(&self, case: &Case, ride: &Ride) -> Result<(), RecordsError> {
         let flag = f64::from(u8::from(ride.completed));
         self.add(
             "ride",
@@ -164,7 +113,7 @@ impl Ledger {
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn add_handling(&self, case: &Case, handling: &Handling) -> Result<(), LedgerError> {
+    pub fn add_handling(&self, case: &Case, handling: &Handling) -> Result<(), RecordsError> {
         let flag = |b: bool| f64::from(u8::from(b));
         self.add(
             "handling",
@@ -179,20 +128,10 @@ impl Ledger {
         )
     }
 
-    fn add(&self, kind: &str, case: &Case, values: [f64; 5]) -> Result<(), LedgerError> {
-        let Some((path, file)) = &self.file else { return Ok(()) };
-        let wrap = |problem| LedgerError {
-            path: path.clone(),
-            problem,
-        };
-        let mut line = csv::Writer::from_writer(Vec::new());
+    fn add(&self, kind: &str, case: &Case, values: [f64; 5]) -> Result<(), RecordsError> {
         let numbers = case.numbers().into_iter().chain(values).map(|value| value.to_string());
-        line.write_record([self.key(kind, case), kind.to_owned()].into_iter().chain(numbers))
-            .map_err(|error| wrap(error.into()))?;
-        let line = line.into_inner().map_err(|error| wrap(error.into_error()))?;
-        // One write a line: whole lines only, whatever the thread.
-        let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
-        file.write_all(&line).map_err(wrap)
+        self.records
+            .add(&self.key(kind, case), std::iter::once(kind.to_owned()).chain(numbers))
     }
 }
 

@@ -12,11 +12,13 @@ mod element;
 mod findings;
 mod ledger;
 mod optimise;
+mod records;
 mod sweep;
 
 pub use case::{Bench, Case, Conditions, Handling, Ride, StudyError};
 pub use element::GasElement;
 pub use findings::{Finding, findings};
-pub use ledger::{Ledger, LedgerError};
+pub use ledger::Ledger;
 pub use optimise::{Objective, Optimum, Visit, Weights, optimise};
+pub use records::{Records, RecordsError};
 pub use sweep::{DAMPER_FACTORS, GAS_VOLUMES_M3, Surface, SweepError, sweep};

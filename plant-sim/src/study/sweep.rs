@@ -6,7 +6,8 @@
 use rayon::prelude::*;
 
 use super::case::{Bench, Case, Handling, Ride, StudyError};
-use super::ledger::{Ledger, LedgerError};
+use super::ledger::Ledger;
+use super::records::RecordsError;
 
 /// Ten static gas volumes from 0.01 to 3.0 l, about evenly spaced in logarithm, the report's 0.1 and 0.5 l among them; m3.
 pub const GAS_VOLUMES_M3: [f64; 10] = [1e-5, 2e-5, 4e-5, 7e-5, 1e-4, 2e-4, 5e-4, 9e-4, 1.6e-3, 3e-3];
@@ -27,7 +28,7 @@ pub enum SweepError {
     },
     /// The ledger cannot be written.
     #[error(transparent)]
-    Ledger(#[from] LedgerError),
+    Ledger(#[from] RecordsError),
     /// The caller asked to stop.
     #[error("the study was stopped before its end; run the same command again to resume it")]
     Stopped,

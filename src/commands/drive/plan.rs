@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use oleo_controller::VehicleDescription;
-use oleo_hil::description::known_to_controller;
+use oleo_hil::description::describe;
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::course::{Course, Drive, Run, Sample, Signals, Track};
@@ -79,7 +79,7 @@ impl Plan {
         let celsius = args.gas_temperature_c.unwrap_or(CHARGED_AT_C);
         within("--gas-temperature-c", celsius, -60.0, 120.0)?;
         let load = args.course.load.unwrap_or_default();
-        let described = known_to_controller(&vehicle, &handling, &StrutModel::defender110(1.0));
+        let described = describe(&vehicle, &handling, &StrutModel::defender110(1.0));
         let levelled = load.at_ride_height(&vehicle);
         let struts = levelled
             .static_strut_load_n()

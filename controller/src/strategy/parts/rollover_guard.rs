@@ -62,9 +62,9 @@ impl State {
     pub fn step(&mut self, tuning: &Tuning, estimate: &Estimate) -> bool {
         let ahead = estimate.roll_rad + HORIZON_S * estimate.roll_rate_rad_s;
         let outward = if ahead < 0.0 {
-            -estimate.lateral_acceleration_m_s2
+            -estimate.lateral.acceleration_m_s2.slow
         } else {
-            estimate.lateral_acceleration_m_s2
+            estimate.lateral.acceleration_m_s2.slow
         };
         if ahead.abs() > tuning.roll_rad.begin && outward > tuning.lateral_m_s2 {
             self.hold = RELEASE_TICKS;
@@ -78,14 +78,18 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lateral::{Bands, Lateral};
 
     #[test]
     fn needs_roll_and_cornering_to_the_same_side_and_lets_go_later() {
         let tuning = Tuning::default();
-        let at = |roll_rad, roll_rate_rad_s, lateral_acceleration_m_s2| Estimate {
+        let at = |roll_rad, roll_rate_rad_s, quick| Estimate {
             roll_rad,
             roll_rate_rad_s,
-            lateral_acceleration_m_s2,
+            lateral: Lateral {
+                acceleration_m_s2: Bands { quick, slow: quick },
+                ..Lateral::default()
+            },
             ..Estimate::default()
         };
         for (sign, roll, rate, lateral, active) in [

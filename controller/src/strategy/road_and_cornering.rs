@@ -1,0 +1,147 @@
+//! Stiff on a smooth road, soft on a rough one, stiff again as soon as the vehicle corners.
+//!
+//! | | springs | dampers |
+//! |---|---|---|
+//! | smooth road, or cornering | stiff | high |
+//! | rough road | soft | low |
+//! | very rough road | soft | damper 1 high, damper 2 low |
+//!
+//! On a smooth road nothing has to be decided in time, because the vehicle is stiff already. On a rough one it becomes stiff as
+//! soon as the lateral acceleration stands out of what the road does ([`super::parts::cornering`]), and at once: a lean that the closing
+//! springs trap is smaller than the one that a later closing would find. How rough the road is is told by the running RMS of the
+//! body's vertical acceleration, which is not judged while the vehicle corners. Which damper level is best on which road is measured in
+//! `docs/controller.md`.
+
+use oleo_interface::{Corners, StrutValves};
+
+use super::demand::{Decide, Demand, Urgency};
+use super::parts::{cornering, rollover_guard};
+use crate::estimate::Estimate;
+use crate::plausibility::Trusted;
+use crate::range::{ConfigurationError, Hysteresis};
+use crate::timing::ticks;
+use crate::valves::ValveCommand;
+use crate::vehicle::VehicleDescription;
+
+/// Shortest time that the road counts as rough, or as smooth.
+const ROAD_DWELL_TICKS: u16 = ticks(1_000);
+
+/// Thresholds. See [`strategy::Tuning`](super::Tuning) for an example.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// When the vehicle corners.
+    pub cornering: cornering::Tuning,
+    /// Running RMS of the vertical acceleration at which a smooth road begins to count as rough (`begin`) and at which a rough
+    /// one begins to count as smooth (`end`), m/s2, 0.01 to 10. The first is felt with stiff springs, the second with soft.
+    pub rough_m_s2: Hysteresis,
+    /// Running RMS of the vertical acceleration at which damper 1 begins to be high (`begin`), and low again (`end`), m/s2,
+    /// 0.01 to 20.
+    pub very_rough_m_s2: Hysteresis,
+    /// When the roll-over guard acts.
+    pub rollover_guard: rollover_guard::Tuning,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self {
+            cornering: cornering::Tuning::default(),
+            rough_m_s2: Hysteresis { begin: 0.25, end: 0.06 },
+            very_rough_m_s2: Hysteresis { begin: 1.3, end: 1.0 },
+            rollover_guard: rollover_guard::Tuning::default(),
+        }
+    }
+}
+
+/// Parameters of the strategy. See [`Decide`] for an example of a strategy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RoadAndCornering {
+    cornering: cornering::Parameters,
+    rough_2: Hysteresis,
+    very_rough_2: Hysteresis,
+    guard: rollover_guard::Tuning,
+}
+
+/// What the strategy remembers. See [`strategy::State`](super::State) for an example.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct State {
+    cornering: cornering::State,
+    rough: bool,
+    very_rough: bool,
+    /// Ticks before the road may be judged again.
+    dwell: u16,
+    guard: rollover_guard::State,
+}
+
+impl Decide for RoadAndCornering {
+    type Tuning = Tuning;
+    type State = State;
+
+    fn check(tuning: &Tuning) -> Result<(), ConfigurationError> {
+        tuning.cornering.check()?;
+        tuning
+            .rough_m_s2
+            .check("tuning.strategy.road_and_cornering.rough_m_s2", 0.01, 10.0)?;
+        tuning
+            .very_rough_m_s2
+            .check("tuning.strategy.road_and_cornering.very_rough_m_s2", 0.01, 20.0)?;
+        tuning.rollover_guard.check()
+    }
+
+    fn new(_: &VehicleDescription, tuning: &Tuning) -> Self {
+        Self {
+            cornering: cornering::Parameters::new(&tuning.cornering),
+            rough_2: tuning.rough_m_s2.squared(),
+            very_rough_2: tuning.very_rough_m_s2.squared(),
+            guard: tuning.rollover_guard,
+        }
+    }
+
+    fn step(&self, state: &mut State, estimate: &Estimate, _: &Trusted) -> Demand {
+        let rollover_guard = state.guard.step(&self.guard, estimate);
+        let corners = state.cornering.step(&self.cornering, estimate);
+        if !corners {
+            self.judge_road(state, estimate.vertical_mean_square);
+        }
+        let valves = if corners || rollover_guard || !state.rough {
+            ValveCommand::SAFE
+        } else {
+            ValveCommand::from_corners(Corners::splat(StrutValves::new(!state.very_rough, true, true)))
+        };
+        // At once, whatever lean that traps; only where wheels leave the ground a lean passes by itself within the patience.
+        let urgency = if rollover_guard || (corners && !state.very_rough) {
+            Urgency::Emergency
+        } else if corners {
+            Urgency::Handling
+        } else {
+            Urgency::Comfort
+        };
+        Demand {
+            valves,
+            urgency,
+            handling: corners,
+            rollover_guard,
+        }
+    }
+}
+
+impl RoadAndCornering {
+    /// Whether the road is rough or very rough, by what the body feels of it.
+    fn judge_road(&self, state: &mut State, vertical_mean_square: f32) {
+        state.dwell = state.dwell.saturating_sub(1);
+        let changes = if state.rough {
+            vertical_mean_square < self.rough_2.end
+        } else {
+            vertical_mean_square > self.rough_2.begin
+        };
+        if changes && state.dwell == 0 {
+            state.rough = !state.rough;
+            state.dwell = ROAD_DWELL_TICKS;
+        }
+        let bound = if state.very_rough {
+            self.very_rough_2.end
+        } else {
+            self.very_rough_2.begin
+        };
+        state.very_rough = vertical_mean_square > bound;
+    }
+}

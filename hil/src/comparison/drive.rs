@@ -1,0 +1,151 @@
+//! One setting on one drive.
+
+use std::sync::Arc;
+
+use oleo_controller::{State, ValveCommand, tick};
+use oleo_interface::tick::TICK_S;
+use oleo_interface::{Corners, StrutValves};
+use oleo_plant_sim::course::{Course, Drive, NotFinite};
+use oleo_plant_sim::handling::HandlingModel;
+use oleo_plant_sim::measures::SeatMeter;
+use oleo_plant_sim::road::{self, Road, RoadError};
+use oleo_plant_sim::strut::{Strut, StrutModel};
+use oleo_plant_sim::vehicle::suspension::{CoilElement, StrutElement, SuspensionElement};
+use oleo_plant_sim::vehicle::{RideError, Seats};
+
+use super::bench::Bench;
+use super::case::DriveCase;
+use super::figures::{Figures, Instant, SCORED_FROM_S, Watch};
+use super::sensors::Sensors;
+use super::setting::Setting;
+
+/// A drive that could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ComparisonError {
+    /// Vehicle and springs do not fit.
+    #[error(transparent)]
+    Vehicle(#[from] RideError),
+    /// A strut cannot be charged for its load.
+    #[error("strut {0}")]
+    Strut(#[from] oleo_plant_sim::model_file::InvalidValue),
+    /// The model left the real numbers.
+    #[error(transparent)]
+    NotFinite(#[from] NotFinite),
+    /// No road.
+    #[error(transparent)]
+    Road(#[from] RoadError),
+}
+
+/// True lateral acceleration at which a manoeuvre counts as begun, m/s2.
+const BEGUN_M_S2: f64 = 0.5;
+
+/// Drives a case with a setting.
+///
+/// # Errors
+/// A road that is not there, or a vehicle that its springs do not carry.
+pub fn drive(bench: &Bench, case: &DriveCase, setting: &Setting) -> Result<Figures, ComparisonError> {
+    let track = case.manoeuvre.track(case.driver, bench.vehicle.layout.width_m);
+    let road = road::from_name_or_path(&case.road, case.manoeuvre.length_m(&track), case.seed)?;
+    let course = Course {
+        manoeuvre: case.manoeuvre,
+        driver: case.driver,
+        road: Arc::clone(&road) as Arc<dyn Road>,
+    };
+    let (vehicle, handling) = (&bench.vehicle, &bench.handling);
+    match setting {
+        Setting::AsSold => {
+            let elements = CoilElement::of_vehicle(vehicle);
+            let drive = Drive::begin(&course, vehicle, handling, elements)?;
+            follow(drive, case, |_| (Corners::default(), ValveCommand::SAFE, false))
+        }
+        Setting::Fixed(open) => {
+            let command = ValveCommand::from_corners(Corners::splat(*open));
+            let drive = Drive::begin(&course, vehicle, handling, struts(bench, *open)?)?;
+            follow(drive, case, |_| (command.corners(), command, false))
+        }
+        Setting::Oracle { before, delay_s } => {
+            let drive = Drive::begin(&course, vehicle, handling, struts(bench, *before)?)?;
+            let decided_tick = case
+                .begins_s
+                .map_or(u64::MAX, |begins| ((begins + delay_s) / TICK_S).round() as u64);
+            let (before, mut ticks) = (ValveCommand::from_corners(Corners::splat(*before)), 0);
+            follow(drive, case, |_| {
+                let corners = ticks >= decided_tick;
+                ticks += 1;
+                let command = if corners { ValveCommand::SAFE } else { before };
+                (command.corners(), command, corners)
+            })
+        }
+        Setting::Controlled(_, configuration) => {
+            let drive = Drive::begin(&course, vehicle, handling, struts(bench, StrutValves::splat(false))?)?;
+            let (mut state, mut sensors) = (State::new(), Sensors::new(bench, case.seed));
+            follow(drive, case, |model| {
+                let inputs = sensors.read(model.strut_displacement_m(), model.strut_output());
+                let outputs = tick(configuration, &mut state, &inputs);
+                (outputs.command.corners(), outputs.command, outputs.handling)
+            })
+        }
+    }
+}
+
+/// The bench's four struts at rest.
+fn struts(bench: &Bench, open: StrutValves<bool>) -> Result<Corners<StrutElement>, ComparisonError> {
+    let strut = |model: &StrutModel| Strut::at_rest(model, open).map(StrutElement::new);
+    let [a, b, c, d] = bench.struts.each_ref().into_array();
+    Ok(Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]))
+}
+
+/// Drives to the end and keeps the figures.
+fn follow<E: SuspensionElement>(
+    mut drive: Drive<E>,
+    case: &DriveCase,
+    mut decide: impl FnMut(&HandlingModel<E>) -> (Corners<E::Signal>, ValveCommand, bool),
+) -> Result<Figures, ComparisonError> {
+    let speed_m_s = case.manoeuvre.initial_speed_m_s();
+    let mut watch = Watch::new(case.begins_s);
+    let step_s = drive.model().step_s();
+    let mut meters = Seats::from_fn(|_| SeatMeter::new(step_s, SCORED_FROM_S));
+    let places = drive.seat_places_m();
+    loop {
+        let (signals, command, handling) = decide(drive.model());
+        let motion = drive.model().motion();
+        watch.tick(&Instant {
+            roll_rad: motion.roll_rad,
+            command,
+            handling,
+        });
+        if let Some(ending) = drive.ending() {
+            let felt = meters.map(|meter| meter.measures().vertical.weighted_rms_m_s2);
+            return Ok(watch.figures(ending, 0.5 * (felt.driver + felt.passenger), speed_m_s));
+        }
+        drive.tick(signals, |model| {
+            meters.driver.add(model.acceleration_at(places.driver));
+            meters.passenger.add(model.acceleration_at(places.passenger));
+        })?;
+    }
+}
+
+/// When a manoeuvre begins, s: the first time that the same manoeuvre on a flat road, with all valves closed, asks for more than
+/// 0.5 m/s2. On a rough road the road itself makes that much, so it cannot be seen there. `None` for a drive straight ahead.
+///
+/// # Errors
+/// A vehicle that its springs do not carry.
+pub fn beginning_s(bench: &Bench, case: &DriveCase) -> Result<Option<f64>, ComparisonError> {
+    if case.is_straight() {
+        return Ok(None);
+    }
+    let course = Course {
+        manoeuvre: case.manoeuvre,
+        driver: case.driver,
+        road: Arc::new(road::Flat),
+    };
+    let closed = StrutValves::splat(false);
+    let mut drive = Drive::begin(&course, &bench.vehicle, &bench.handling, struts(bench, closed)?)?;
+    while drive.ending().is_none() {
+        if drive.model().motion().lateral_acceleration_m_s2.abs() > BEGUN_M_S2 {
+            return Ok(Some(f64::from(drive.ticks()) * TICK_S));
+        }
+        drive.tick(Corners::splat(closed), |_| {})?;
+    }
+    Ok(None)
+}

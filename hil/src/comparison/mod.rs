@@ -1,0 +1,31 @@
+//! Settings of one suspension compared on the same drives, without a bus between.
+//!
+//! ```text
+//!   Plan: groups of drive cases (road, speed, manoeuvre, seed) --+
+//!   Setting (as sold, fixed valves, oracle, controlled) ---------+--> drive --> Figures --> Means --> Scores
+//!   Bench (vehicle, handling, struts, sensors) ------------------+
+//! ```
+//!
+//! The controller gets what its sensors would say: true values with the sensors' errors, in the steps of the CAN signals.
+
+mod bench;
+mod case;
+mod compare;
+mod drive;
+mod figures;
+mod plan;
+mod robust;
+mod scores;
+mod sensors;
+mod setting;
+
+pub use bench::Bench;
+pub use case::DriveCase;
+pub use compare::{CompareError, Results, compare, settings};
+pub use drive::{ComparisonError, beginning_s, drive};
+pub use figures::Figures;
+pub use plan::{Extent, Group, groups};
+pub use robust::{DRIVES, VariedResult, robust};
+pub use scores::{Goal, Means, Row, Scores, VALVE_LIFE_CHANGES, mean_ratio, scores};
+pub use sensors::Sensors;
+pub use setting::Setting;

@@ -1,0 +1,264 @@
+//! `oleo study control`: the controller against every fixed setting, the vehicle as sold and an oracle.
+
+use std::io::Write as _;
+use std::process::ExitCode;
+
+use oleo_controller::Strategy;
+use oleo_hil::comparison::{
+    self, Bench, Extent, Group, Means, Row, Scores, Setting, compare, groups, scores, settings,
+};
+use oleo_plant_sim::study::Records;
+use oleo_report::interrupt::Graceful;
+use oleo_report::{Axis, Cell, Column, Curves, OutputDirectory, Page, Progress, Style, Table, Verdict};
+use serde_json::json;
+
+use super::drives::{Drives, controlled};
+use crate::failure::Failure;
+
+/// Compare the controller with every fixed valve setting, the vehicle as sold and an oracle, for ride and for roll
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    drives: Drives,
+    /// Number of seeds of roads and sensors, 1 to 1000
+    #[arg(long, value_name = "N", default_value_t = 8)]
+    seeds: u64,
+    /// Duration of a drive straight ahead, s, 5 to 600; the first 3 s are not scored
+    #[arg(long, value_name = "S", default_value_t = 20.0, allow_negative_numbers = true)]
+    duration_s: f64,
+    /// Class C and Belgian block at one speed, and two manoeuvres: a first look
+    #[arg(long)]
+    quick: bool,
+    /// Exit with status 1 if a goal is not met
+    #[arg(long)]
+    check: bool,
+}
+
+/// Strategies that are compared. The first is the one that is scored.
+const STRATEGIES: [Strategy; 2] = [Strategy::RoadAndCornering, Strategy::RideHandling];
+
+/// What was compared, and the result.
+struct Comparison {
+    groups: Vec<Group>,
+    settings: Vec<Setting>,
+    means: Means,
+    /// For each of [`STRATEGIES`].
+    scores: Vec<Scores>,
+}
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode, Failure> {
+    if !(1..=1000).contains(&args.seeds) {
+        return Err(Failure::new(format!(
+            "--seeds {}: give a number from 1 to 1000",
+            args.seeds
+        )));
+    }
+    if !(5.0..=600.0).contains(&args.duration_s) {
+        return Err(Failure::new(format!(
+            "--duration-s {}: give a value from 5 to 600",
+            args.duration_s
+        )));
+    }
+    let bench = args.drives.bench()?;
+    let (records, out) = args.drives.results()?;
+    let comparison = comparison(args, &bench, &records)?;
+    let [own, ..] = &comparison.scores[..] else {
+        return Err(Failure::new("the comparison has no controller"));
+    };
+    let tables = [ride_table(&comparison), roll_table(&comparison), goals_table(own)];
+    let met = own.goals.iter().all(|goal| goal.met);
+    if let Some(mut out) = out {
+        write(&mut out, &comparison, own, &tables)?;
+        out.commit()?;
+    }
+    let text: Vec<String> = tables.iter().map(ToString::to_string).collect();
+    // A closed standard output (`| head`) is no failure of the study.
+    let _ = std::io::stdout().write_all(text.join("\n").as_bytes());
+    Ok(if args.check && !met {
+        ExitCode::FAILURE
+    } else {
+        ExitCode::SUCCESS
+    })
+}
+
+fn comparison(args: &Args, bench: &Bench, records: &Records) -> Result<Comparison, Failure> {
+    let controllers: Vec<Setting> = STRATEGIES
+        .into_iter()
+        .map(|strategy| controlled(bench, strategy))
+        .collect::<Result<_, Failure>>()?;
+    let settings = settings(controllers);
+    let groups = groups(&Extent {
+        seeds: args.seeds,
+        straight_s: args.duration_s,
+        quick: args.quick,
+    });
+    let drives: usize = groups.iter().map(|group| group.cases.len() * settings.len()).sum();
+    let progress = Progress::new("study control", drives as u64);
+    let results = {
+        // The first Ctrl-C lets the drives in hand end and keeps them.
+        let graceful = Graceful::begin();
+        let (progress, graceful, groups, settings) = (&progress, &graceful, &groups, &settings);
+        args.drives.on_threads(move || {
+            compare(
+                bench,
+                groups,
+                settings,
+                records,
+                || progress.add(1),
+                || graceful.requested(),
+            )
+        })??
+    };
+    drop(progress);
+    let means = Means::of(&groups, &results);
+    let first = settings.len() - STRATEGIES.len();
+    let scores = (first..settings.len())
+        .filter_map(|place| scores(&groups, &settings, &results, &means, place))
+        .collect();
+    Ok(Comparison {
+        groups,
+        settings,
+        means,
+        scores,
+    })
+}
+
+/// One line a group, one column a setting.
+fn table(title: &str, rows: &[Row], settings: &[Setting], digits: usize) -> Table {
+    let names = settings.iter().map(|setting| Column::number(&setting.name()));
+    let mut table = Table::new([Column::text(title)].into_iter().chain(names));
+    for row in rows {
+        let cells = row.by_setting.iter().map(|value| format!("{value:.digits$}"));
+        table.row([row.group.clone()].into_iter().chain(cells));
+    }
+    table
+}
+
+fn ride_table(comparison: &Comparison) -> Table {
+    table("Weighted RMS, m/s2", &comparison.means.ride, &comparison.settings, 3)
+}
+
+fn roll_table(comparison: &Comparison) -> Table {
+    table("Peak roll, degrees", &comparison.means.roll, &comparison.settings, 2)
+}
+
+fn goals_table(scores: &Scores) -> Table {
+    let mut table = Table::new([
+        Column::text("Goal"),
+        Column::number("Limit"),
+        Column::number("Worst"),
+        Column::text("Where"),
+        Column::text("Met"),
+    ]);
+    for goal in &scores.goals {
+        table.row([
+            Cell::from(goal.goal.as_str()),
+            format!("{:.2}", goal.limit).into(),
+            format!("{:.2}", goal.value).into(),
+            goal.at.as_str().into(),
+            Cell::check(goal.met),
+        ]);
+    }
+    table
+}
+
+fn write(out: &mut OutputDirectory, comparison: &Comparison, own: &Scores, tables: &[Table; 3]) -> Result<(), Failure> {
+    let Comparison {
+        groups,
+        settings,
+        means,
+        scores,
+    } = comparison;
+    let by_strategy: serde_json::Map<String, serde_json::Value> = STRATEGIES
+        .iter()
+        .zip(scores)
+        .map(|(strategy, scores)| (strategy.name().to_owned(), json!(scores)))
+        .collect();
+    out.json(
+        "summary.json",
+        &json!({
+            "strategy": STRATEGIES[0].name(),
+            "ride_ratio_to_soft": own.ride_ratio_to_soft,
+            "ride_ratio_to_best_fixed": own.ride_ratio_to_best_fixed,
+            "roll_ratio_to_stiff": own.roll_ratio_to_stiff,
+            "roll_ratio_to_baseline": own.roll_ratio_to_baseline,
+            "decision_s": own.decision_s,
+            "false_entries_per_km": own.false_entries_per_km,
+            "valve_changes_per_km": own.valve_changes_per_km,
+            "valve_life_changes": comparison::VALVE_LIFE_CHANGES,
+            "valve_life_km": own.valve_life_km,
+            "seeds": groups.iter().map(|group| group.cases.len()).max(),
+            "settings": settings.iter().map(Setting::name).collect::<Vec<_>>(),
+            "means": means,
+            "strategies": by_strategy,
+        }),
+    )?;
+    out.page(&page(comparison, own, tables))?;
+    Ok(())
+}
+
+fn page(comparison: &Comparison, own: &Scores, [ride, roll, goals]: &[Table; 3]) -> Page {
+    let Comparison { settings, means, .. } = comparison;
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut page = Page::new("Control study", &format!("oleo {}", arguments.join(" ")));
+    let unmet: Vec<String> = own
+        .goals
+        .iter()
+        .filter(|goal| !goal.met)
+        .map(|goal| format!("{}: {:.2}, limit {:.2}, {}", goal.goal, goal.value, goal.limit, goal.at))
+        .collect();
+    let met = own.goals.len() - unmet.len();
+    let counted = format!("{met} of {} goals are met.", own.goals.len());
+    if unmet.is_empty() {
+        page.verdict(Verdict::Pass, &counted);
+    } else {
+        page.verdict(Verdict::Attention, &format!("{counted} Not met: {}.", unmet.join("; ")));
+    }
+    page.outcome(goals.clone());
+
+    let place = |wanted: &Setting| settings.iter().position(|setting| setting == wanted);
+    if let (Some(soft), Some(stiff)) = (place(&Setting::SOFT), place(&Setting::STIFF)) {
+        let flat_and_c: Vec<Row> = means
+            .roll
+            .iter()
+            .filter(|row| ["flat", "iso-c"].contains(&row.road))
+            .cloned()
+            .collect();
+        let mut figure = Curves::new("Ride against roll", Axis::new("Weighted RMS over all valves open", ""));
+        figure.caption(
+            "One point for each setting: the geometric means over the drives straight ahead, and over the manoeuvres on a flat road and on \
+             class C. Lower left is better. A fixed setting lies on the arc from soft to stiff; the oracle knows when a manoeuvre begins.",
+        );
+        let panel = figure.panel(Axis::new("Peak roll over all valves closed", ""));
+        for (number, setting) in settings.iter().enumerate() {
+            let point = (
+                comparison::mean_ratio(&means.ride, number, soft),
+                comparison::mean_ratio(&flat_and_c, number, stiff),
+            );
+            panel.series(Style::Points, &setting.name(), &[point.0], &[point.1]);
+        }
+        page.section("Ride against roll").figure(figure);
+    }
+    let section = page.section("Ride, straight ahead");
+    section.text(
+        "Vertical acceleration at the seats, BS 6841 weighting, mean of driver and passenger, from the third second.",
+    );
+    section.table(ride.clone());
+    let section = page.section("Roll in manoeuvres");
+    section.text("Largest roll of the body from the third second; 90 degrees stand for a vehicle that rolled over.");
+    section.table(roll.clone());
+    let mut valves = Table::new([
+        Column::text("Valve"),
+        Column::number("Changes of one valve per km"),
+        Column::number("Life, km"),
+    ]);
+    for (number, changes) in (1..=3).zip(own.valve_changes_per_km) {
+        let life_km = comparison::VALVE_LIFE_CHANGES / changes;
+        valves.row([format!("{number}"), format!("{changes:.1}"), format!("{life_km:.0}")]);
+    }
+    let section = page.section("Valves");
+    section.text("Changes of the valves' signals straight ahead on rough roads, and the distance to 10 million changes (an assumed life).");
+    section.table(valves);
+    page
+}

@@ -1,0 +1,70 @@
+//! What the studies of the controller share: the vehicle, the threads, and where finished drives are kept.
+
+use std::path::PathBuf;
+
+use oleo_controller::Strategy;
+use oleo_hil::comparison::{Bench, Setting};
+use oleo_plant_sim::study::Records;
+use oleo_report::OutputDirectory;
+
+use crate::commands::parameter_files::parameters;
+use crate::failure::Failure;
+
+/// The vehicle, the threads and the folder.
+#[derive(clap::Args)]
+pub struct Drives {
+    /// File of vehicle parameters [default: the built-in defender110]
+    #[arg(long, value_name = "VEHICLE.toml")]
+    vehicle: Option<PathBuf>,
+    /// File of handling parameters [default: the built-in defender110]
+    #[arg(long, value_name = "HANDLING.toml")]
+    handling: Option<PathBuf>,
+    /// Number of threads [default: all cores]
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Folder to which the results and the finished drives (drives.csv) are written; without it only the tables are printed
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+impl Drives {
+    /// The vehicle on the built-in struts.
+    pub fn bench(&self) -> Result<Bench, Failure> {
+        let (vehicle, handling) = parameters(self.vehicle.as_ref(), self.handling.as_ref())?;
+        Ok(Bench::new(vehicle, handling))
+    }
+
+    /// Runs `work` on the threads asked for.
+    pub fn on_threads<T: Send>(&self, work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
+        let threads = self.threads.unwrap_or(0);
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .map_err(|error| Failure::new(format!("--threads {threads}: {error}")))?;
+        Ok(pool.install(work))
+    }
+
+    /// The finished drives and the staged results. Finished drives are kept in the folder itself, as they end.
+    pub fn results(&self) -> Result<(Records, Option<OutputDirectory>), Failure> {
+        let Some(out) = &self.out else {
+            return Ok((Records::in_memory(), None));
+        };
+        // Staged once to be told of a folder that cannot be, and again when it is there.
+        drop(OutputDirectory::stage(out)?);
+        std::fs::create_dir_all(out)
+            .map_err(|error| Failure::new(format!("{}: cannot make the folder: {error}", out.display())))?;
+        let mut staged = OutputDirectory::stage(out)?;
+        staged.keep(self.vehicle.iter().chain(&self.handling));
+        Ok((Records::open(&out.join("drives.csv"))?, Some(staged)))
+    }
+}
+
+/// The controller of a vehicle with a strategy.
+pub fn controlled(bench: &Bench, strategy: Strategy) -> Result<Setting, Failure> {
+    let builder = oleo_controller::Builder {
+        strategy,
+        ..bench.controller()
+    };
+    let configuration = builder.build().map_err(|error| Failure::new(error.to_string()))?;
+    Ok(Setting::Controlled(strategy.name(), Box::new(configuration)))
+}

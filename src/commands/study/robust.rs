@@ -1,0 +1,210 @@
+//! `oleo study robust`: random vehicles under the controller of the nominal one.
+
+use std::io::Write as _;
+use std::process::ExitCode;
+
+use oleo_controller::Strategy;
+use oleo_hil::comparison::{DRIVES, VariedResult, robust};
+use oleo_report::interrupt::Graceful;
+use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Progress, Style, Table, Verdict};
+use serde_json::json;
+
+use super::drives::{Drives, controlled};
+use crate::failure::Failure;
+
+/// Drive random vehicles (load, inertia, tyres, gas, friction, valves, sensors, a weak strut) with the controller of the nominal one
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    drives: Drives,
+    /// Number of vehicles, 1 to 100000
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    vehicles: u64,
+    /// Number of the first vehicle; with --vehicles 1 a single vehicle is driven again
+    #[arg(long, value_name = "K", default_value_t = 0)]
+    first: u64,
+    /// Exit with status 1 if a vehicle rolls over that stands with all valves closed
+    #[arg(long)]
+    check: bool,
+}
+
+/// One of the distributions.
+struct Distribution {
+    name: &'static str,
+    key: &'static str,
+    of: fn(&VariedResult) -> f64,
+}
+
+const DISTRIBUTIONS: [Distribution; 3] = [
+    Distribution {
+        name: "weighted RMS on class C over all valves open",
+        key: "ride_ratio_to_soft",
+        of: |result| result.ride_ratio_to_soft,
+    },
+    Distribution {
+        name: "peak roll in the lane change on a flat road over all valves closed",
+        key: "roll_ratio_to_stiff",
+        of: |result| result.roll_ratio_to_stiff,
+    },
+    Distribution {
+        name: "the same on class C",
+        key: "roll_ratio_to_stiff_rough",
+        of: |result| result.roll_ratio_to_stiff_rough,
+    },
+];
+
+/// Runs the command.
+pub fn run(args: &Args) -> Result<ExitCode, Failure> {
+    if !(1..=100_000).contains(&args.vehicles) {
+        return Err(Failure::new(format!(
+            "--vehicles {}: give a number from 1 to 100000",
+            args.vehicles
+        )));
+    }
+    let nominal = args.drives.bench()?;
+    let setting = controlled(&nominal, Strategy::default())?;
+    let (records, out) = args.drives.results()?;
+    let progress = Progress::new("study robust", DRIVES * args.vehicles);
+    let results = {
+        // The first Ctrl-C lets the drives in hand end and keeps them.
+        let graceful = Graceful::begin();
+        let (nominal, setting, records, progress, graceful) = (&nominal, &setting, &records, &progress, &graceful);
+        let vehicles = (args.first, args.vehicles);
+        args.drives.on_threads(move || {
+            robust(
+                nominal,
+                setting,
+                vehicles,
+                records,
+                || progress.add(1),
+                || graceful.requested(),
+            )
+        })??
+    };
+    drop(progress);
+    let over: Vec<u64> = results
+        .iter()
+        .filter(|result| result.rolls_over)
+        .map(|result| result.case)
+        .collect();
+    let table = table(&results);
+    if let Some(mut out) = out {
+        write(&mut out, &results, &over, &table)?;
+        out.commit()?;
+    }
+    let text = format!("{table}{}\n", verdict(results.len(), &over));
+    // A closed standard output (`| head`) is no failure of the study.
+    let _ = std::io::stdout().write_all(text.as_bytes());
+    let failed = args.check && !over.is_empty();
+    Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+fn verdict(vehicles: usize, over: &[u64]) -> String {
+    match over {
+        [] => format!("None of {vehicles} vehicles rolls over that stands with all valves closed."),
+        some => {
+            let numbers: Vec<String> = some.iter().map(u64::to_string).collect();
+            format!(
+                "{} of {vehicles} vehicles roll over that stand with all valves closed: numbers {}.",
+                some.len(),
+                numbers.join(", ")
+            )
+        }
+    }
+}
+
+/// The values of a distribution in rising order with the numbers of their vehicles; those that are no numbers are left out.
+fn sorted(results: &[VariedResult], distribution: &Distribution) -> Vec<(f64, u64)> {
+    let mut values: Vec<(f64, u64)> = results
+        .iter()
+        .map(|result| ((distribution.of)(result), result.case))
+        .filter(|(value, _)| value.is_finite())
+        .collect();
+    values.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    values
+}
+
+/// The value below which a part of the vehicles lies: the nearest rank.
+fn quantile(values: &[(f64, u64)], part: f64) -> f64 {
+    let rank = (part * values.len() as f64).ceil().max(1.0) as usize;
+    values.get(rank - 1).map_or(f64::NAN, |(value, _)| *value)
+}
+
+fn table(results: &[VariedResult]) -> Table {
+    let mut table = Table::new([
+        Column::text("Ratio"),
+        Column::number("Median"),
+        Column::number("95 %"),
+        Column::number("Worst"),
+        Column::number("Vehicle"),
+    ]);
+    for distribution in &DISTRIBUTIONS {
+        let values = sorted(results, distribution);
+        let (worst, case) = values.last().copied().unwrap_or((f64::NAN, 0));
+        table.row([
+            distribution.name.to_owned(),
+            format!("{:.2}", quantile(&values, 0.5)),
+            format!("{:.2}", quantile(&values, 0.95)),
+            format!("{worst:.2}"),
+            case.to_string(),
+        ]);
+    }
+    table
+}
+
+fn write(out: &mut OutputDirectory, results: &[VariedResult], over: &[u64], table: &Table) -> Result<(), Failure> {
+    let column = |of: &dyn Fn(&VariedResult) -> f64| results.iter().map(of).collect::<Vec<f64>>();
+    let case = column(&|result| result.case as f64);
+    let rolls_over = column(&|result| f64::from(u8::from(result.rolls_over)));
+    let [ride, flat, rough] = DISTRIBUTIONS.map(|distribution| (distribution.key, column(&distribution.of)));
+    out.csv(
+        "vehicles.csv",
+        &[
+            ("vehicle", &case),
+            (ride.0, &ride.1),
+            (flat.0, &flat.1),
+            (rough.0, &rough.1),
+            ("rolls_over", &rolls_over),
+        ],
+    )?;
+    let distributions: serde_json::Map<String, serde_json::Value> = DISTRIBUTIONS
+        .iter()
+        .map(|distribution| {
+            let values = sorted(results, distribution);
+            let (worst, vehicle) = values.last().copied().unwrap_or((f64::NAN, 0));
+            let figures = json!({
+                "median": quantile(&values, 0.5),
+                "quantile_95": quantile(&values, 0.95),
+                "worst": worst,
+                "worst_vehicle": vehicle,
+            });
+            (distribution.key.to_owned(), figures)
+        })
+        .collect();
+    out.json(
+        "summary.json",
+        &json!({
+            "vehicles": results.len(),
+            "rolled_over": over,
+            "distributions": distributions,
+        }),
+    )?;
+
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mut page = Page::new("Robustness study", &format!("oleo {}", arguments.join(" ")));
+    let kind = if over.is_empty() { Verdict::Pass } else { Verdict::Fail };
+    page.verdict(kind, &verdict(results.len(), over));
+    page.outcome(table.clone());
+    let mut figure = Curves::new("Distributions", Axis::new("Ratio", ""));
+    figure.caption("Fraction of the vehicles whose ratio is at most the value below. A ratio of 1 equals the soft setting for the ride, and the stiff one for the roll.");
+    let panel = figure.panel(Axis::new("Fraction of the vehicles", "").range(0.0, 1.0));
+    for distribution in &DISTRIBUTIONS {
+        let values = sorted(results, distribution);
+        let x: Vec<f64> = values.iter().map(|(value, _)| *value).collect();
+        let y: Vec<f64> = (1..=x.len()).map(|rank| rank as f64 / x.len() as f64).collect();
+        panel.series(Style::Step, distribution.name, &x, &y);
+    }
+    page.section("Distributions").figure(figure);
+    out.page(&page)?;
+    Ok(())
+}

@@ -20,8 +20,8 @@ use crate::filter::LowPass;
 const CORNER_HZ: f32 = 3.0;
 /// Ticks compared before a delay is chosen.
 const WINDOW_TICKS: u16 = 256;
-/// Delays that are looked for, ticks: 168 down to 17 km/h at a wheelbase of 2.8 m.
-const DELAYS: core::ops::RangeInclusive<u32> = 12..=120;
+/// Delays that are looked for, a bit each: 12 to 120 ticks, which are 168 down to 17 km/h at a wheelbase of 2.8 m.
+const DELAYS: u128 = (1 << 121) - (1 << 12);
 /// Least number of agreements, of two in each tick, that is more than chance: a fraction of 0.72.
 const LEAST_AGREEMENTS: u16 = 369;
 /// Windows without a clear answer after which the last one is forgotten.
@@ -81,7 +81,7 @@ impl State {
 
     /// Chooses the delay of greatest agreement.
     fn judge(&mut self) {
-        let mut best: u128 = DELAYS.fold(0, |mask, delay| mask | 1 << delay);
+        let mut best = DELAYS;
         let mut agreements = 0;
         for plane in self.planes.iter().rev() {
             let with = best & plane;

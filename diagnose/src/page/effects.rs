@@ -3,7 +3,7 @@
 use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
 use oleo_report::{Axis, Cell, Column, Curves, Page, Style, Table, significant};
 
-use super::{name, words};
+use super::words;
 use crate::campaign::Campaign;
 use crate::diagnosis::{Diagnosis, Effect};
 use crate::effect::{Candidate, of};
@@ -47,7 +47,7 @@ fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
         "{} {} ({}){}",
         words::sentence(named),
         words::at(&e.place),
-        name(e),
+        words::effect_name(e),
         known.equation_in(kind, &e.label).map_or_else(
             || ".".to_owned(),
             |equation| {

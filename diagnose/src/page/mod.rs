@@ -159,7 +159,7 @@ fn in_brief(kind: SpecimenKind, diagnosis: &Diagnosis) -> Table {
             .collect();
         let place = words::at(&e.place);
         table.row([
-            format!("{} ({})", of(e.id).named(kind, &e.label), name(e)),
+            format!("{} ({})", of(e.id).named(kind, &e.label), words::effect_name(e)),
             place.trim_start_matches("in ").trim_start_matches("at ").to_owned(),
             match points(e) {
                 Some(n) if !effects::has_readable_numbers(e) => {
@@ -180,14 +180,6 @@ fn in_brief(kind: SpecimenKind, diagnosis: &Diagnosis) -> Table {
 /// Number of points of a law that was fitted as a table.
 fn points(effect: &Effect) -> Option<usize> {
     effects::law(effect).map(|law| law.argument.len())
-}
-
-fn name(effect: &Effect) -> String {
-    if effect.label.is_empty() {
-        effect.id.to_string()
-    } else {
-        format!("{}: {}", effect.id, effect.label)
-    }
 }
 
 fn next(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
@@ -238,7 +230,7 @@ pub fn effects_table(diagnosis: &Diagnosis) -> Table {
             })
             .collect();
         table.row([
-            name(e),
+            words::effect_name(e),
             e.place.as_reported(),
             format!("{:.2}", e.confidence),
             match points(e) {

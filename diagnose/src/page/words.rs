@@ -2,7 +2,17 @@
 
 use oleo_interface::Valve;
 
+use crate::diagnosis::Effect;
 use crate::vocabulary::{Place, Site};
+
+/// The id of an effect in the vocabulary, with the name of its law if it is a law without a name.
+pub fn effect_name(effect: &Effect) -> String {
+    if effect.label.is_empty() {
+        effect.id.to_string()
+    } else {
+        format!("{}: {}", effect.id, effect.label)
+    }
+}
 
 /// A place as it follows the name of an effect: "in accumulator 1".
 #[must_use]

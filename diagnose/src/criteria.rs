@@ -70,7 +70,7 @@ pub struct Screening {
     /// Steps that every candidate gets, from each of its starts.
     pub first_steps: usize,
     /// Candidates are also started at sizes up to the largest possible where the noise ratio of the model so far is above
-    /// this. Below it nothing in the recordings is so large that a derivative at size zero would not show where it is.
+    /// this. Below it the derivative at size zero has shown where an effect is, in every simulated campaign so far.
     pub gross_noise_ratio: f64,
     /// Larger sizes are not tried once one costs this many times as much as none of the effect.
     pub size_overshoot: f64,
@@ -97,7 +97,7 @@ impl Default for Screening {
     fn default() -> Self {
         Self {
             first_steps: 1,
-            gross_noise_ratio: 2.0,
+            gross_noise_ratio: 10.0,
             size_overshoot: 1.5,
             sizes_refined: 2,
             size_contender: 3.0,

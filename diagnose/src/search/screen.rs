@@ -112,7 +112,7 @@ impl<'p, 'a> Screen<'p, 'a> {
             let known = description.absent_at(start).then_some(self.truths.as_slice());
             self.begin_at(candidate, start, known, &mut best)?;
         }
-        if description.is_unlisted() || !self.is_gross() {
+        if description.is_unlisted() || description.is_instrument_fault() || !self.is_gross() {
             return Ok(best);
         }
         let screening = &self.problem.criteria.screening;
@@ -163,7 +163,8 @@ impl<'p, 'a> Screen<'p, 'a> {
     /// Sizes of a candidate, the smallest first, with the cost of each, up to the first that is too large.
     fn costs_of(&self, candidate: usize, sizes: Vec<Vec<f64>>) -> Result<Vec<(f64, Vec<f64>)>, DiagnoseError> {
         let mut costs = Vec::new();
-        for values in sizes {
+        // One a decade is enough to step on from.
+        for values in sizes.into_iter().step_by(2) {
             let point = self.fit.point.with_effect(self.specimen(), candidate, &values);
             match self.cost_at(&point) {
                 Ok((cost, _)) if cost < self.problem.criteria.screening.size_overshoot * self.fit.cost => {

@@ -70,7 +70,8 @@ impl Freshness {
     /// The next challenge, which ends a tick.
     pub fn challenge(&mut self) -> u8 {
         self.now = self.now.wrapping_add(1);
-        // Xorshift (Marsaglia 2003), of which the highest byte is sent.
+        // Xorshift (Marsaglia 2003), of which the highest byte is sent. Three instructions; a crate of generators would
+        // bring none that is as small and free of panics.
         self.random ^= self.random << 13;
         self.random ^= self.random >> 17;
         self.random ^= self.random << 5;

@@ -17,7 +17,8 @@ use oleo_plant_sim::road::from_name_or_path;
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
 use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
 
 const FAULT_BEGINS: u32 = 10 * TICKS_PER_SECOND;
 const TICKS: u32 = 30 * TICKS_PER_SECOND;
@@ -55,9 +56,9 @@ struct Found {
     cause: FaultCode,
 }
 
-/// Noise of a sensor whose standard deviation is 1: the sum of twelve draws from 0 to 1 (Irwin and Hall), less its mean.
+/// Noise of a sensor whose standard deviation is 1.
 fn noise(random: &mut ChaCha8Rng) -> f32 {
-    (0..12).map(|_| random.next_u32() as f32 / 4_294_967_296.0).sum::<f32>() - 6.0
+    StandardNormal.sample(random)
 }
 
 fn run(drive: &Drive, fault: Fault) -> Result<Vec<Found>, Failure> {

@@ -228,6 +228,7 @@ mod tests {
 
     #[test]
     fn the_same_as_by_the_book() {
+        // The generator of `freshness`: this crate needs none from outside.
         let mut random = 0x2545_F491_u32;
         for _ in 0..2_000 {
             let wrong_of_8 = random % 5;

@@ -16,7 +16,7 @@
 //! the vehicle is doing (`docs/controller.md`).
 //!
 //! And most of that error can be taken out, once it is known how much later the rear axle meets what the front axle met
-//! ([`crate::wheelbase`]). With `w_f` and `w_r` the axles' roll on the road, the twist is `w_f - w_r`, and `w_r` is `w_f` of `D` ticks ago:
+//! (`wheelbase`). With `w_f` and `w_r` the axles' roll on the road, the twist is `w_f - w_r`, and `w_r` is `w_f` of `D` ticks ago:
 //!
 //! ```text
 //!   w_f(n) = (w_f - w_r)(n) + r w_f(n - D),   r = 0.92

@@ -59,109 +59,109 @@ macro_rules! coefficients {
 }
 
 coefficients! {
-    /// Fz0, N.
+    /// Nominal wheel load Fz0, N, above 0.
     nominal_load_n: LOAD_N "N",
     /// Factor on both friction coefficients (LMUX, LMUY): 1 dry asphalt.
     friction_scale: SCALE "",
-    /// Longitudinal: shape.
+    /// Shape factor Cx of the longitudinal force in pure slip.
     pcx1: POSITIVE "",
-    /// Friction at nominal load.
+    /// Longitudinal friction coefficient at nominal load.
     pdx1: POSITIVE "",
-    /// Change with load.
+    /// Change of the longitudinal friction coefficient with the relative load.
     pdx2: ANY "",
-    /// Curvature.
+    /// Curvature factor Ex of the longitudinal force.
     pex1: ANY "",
-    /// Curvature, load.
+    /// Change of Ex with the relative load.
     pex2: ANY "",
-    /// Curvature, load squared.
+    /// Change of Ex with the square of the relative load.
     pex3: ANY "",
-    /// Slip stiffness over load.
+    /// Longitudinal slip stiffness over load, at nominal load.
     pkx1: POSITIVE "",
-    /// Slip stiffness, load.
+    /// Change of the longitudinal slip stiffness with the relative load.
     pkx2: ANY "",
-    /// Slip stiffness, exponent.
+    /// Exponent of the longitudinal slip stiffness in the relative load.
     pkx3: ANY "",
-    /// Lateral: shape.
+    /// Shape factor Cy of the lateral force in pure slip.
     pcy1: POSITIVE "",
-    /// Friction at nominal load.
+    /// Lateral friction coefficient at nominal load.
     pdy1: POSITIVE "",
-    /// Change with load.
+    /// Change of the lateral friction coefficient with the relative load.
     pdy2: ANY "",
-    /// Change with camber squared.
+    /// Change of the lateral friction coefficient with the square of camber.
     pdy3: ANY "",
-    /// Curvature.
+    /// Curvature factor Ey of the lateral force.
     pey1: ANY "",
-    /// Curvature, load.
+    /// Change of Ey with the relative load.
     pey2: ANY "",
-    /// Curvature, camber.
+    /// Change of Ey with camber, by the sign of the slip angle.
     pey4: ANY "",
     /// Largest cornering stiffness over nominal load; negative in ISO-W axes.
     pky1: NEGATIVE "",
-    /// Load of that over nominal load.
+    /// Load at which the cornering stiffness is largest, over the nominal load.
     pky2: POSITIVE "",
-    /// Change with camber.
+    /// Change of the cornering stiffness with camber.
     pky3: ANY "",
-    /// Camber thrust: slip shift.
+    /// Shift of the slip angle with camber, part of the camber thrust.
     phy3: ANY "",
-    /// Camber thrust: force shift.
+    /// Shift of the lateral force with camber, part of the camber thrust.
     pvy3: ANY "",
-    /// Camber thrust: force shift, load.
+    /// Change of the shift of the lateral force with camber and the relative load.
     pvy4: ANY "",
-    /// Combined slip: slope of Fx.
+    /// Slope factor of the longitudinal force in combined slip.
     rbx1: ANY "",
-    /// Slope of Fx, kappa.
+    /// Change of that slope with the longitudinal slip.
     rbx2: ANY "",
-    /// Shape of Fx.
+    /// Shape factor of the longitudinal force in combined slip.
     rcx1: ANY "",
-    /// Curvature of Fx.
+    /// Curvature factor of the longitudinal force in combined slip.
     rex1: ANY "",
-    /// Curvature of Fx, load.
+    /// Change of that curvature with the relative load.
     rex2: ANY "",
-    /// Slope of Fy.
+    /// Slope factor of the lateral force in combined slip.
     rby1: ANY "",
-    /// Slope of Fy, alpha.
+    /// Change of that slope with the slip angle.
     rby2: ANY "",
-    /// Shape of Fy.
+    /// Shape factor of the lateral force in combined slip.
     rcy1: ANY "",
-    /// Curvature of Fy.
+    /// Curvature factor of the lateral force in combined slip.
     rey1: ANY "",
-    /// Curvature of Fy, load.
+    /// Change of that curvature with the relative load.
     rey2: ANY "",
-    /// Trail: slope.
+    /// Slope factor Bt of the pneumatic trail.
     qbz1: ANY "",
-    /// Slope, load.
+    /// Change of Bt with the relative load.
     qbz2: ANY "",
-    /// Slope, load squared.
+    /// Change of Bt with the square of the relative load.
     qbz3: ANY "",
-    /// Slope, absolute camber.
+    /// Change of Bt with the absolute value of camber.
     qbz5: ANY "",
-    /// Shape.
+    /// Shape factor Ct of the pneumatic trail.
     qcz1: ANY "",
-    /// Peak.
+    /// Peak of the pneumatic trail, over radius and relative load.
     qdz1: ANY "",
-    /// Peak, load.
+    /// Change of the peak of the trail with the relative load.
     qdz2: ANY "",
-    /// Peak, camber squared.
+    /// Change of the peak of the trail with the square of camber.
     qdz4: ANY "",
-    /// Curvature.
+    /// Curvature factor Et of the pneumatic trail.
     qez1: ANY "",
-    /// Curvature, load.
+    /// Change of Et with the relative load.
     qez2: ANY "",
-    /// Longitudinal relaxation.
+    /// Longitudinal relaxation length over radius, at nominal load.
     ptx1: POSITIVE "",
-    /// Longitudinal relaxation, load.
+    /// Change of the longitudinal relaxation length with the relative load.
     ptx2: ANY "",
-    /// Longitudinal relaxation, exponent.
+    /// Exponent of the longitudinal relaxation length in the relative load.
     ptx3: ANY "",
-    /// Lateral relaxation: largest over radius.
+    /// Largest lateral relaxation length, over radius.
     pty1: POSITIVE "",
-    /// Load of that over nominal load.
+    /// Load at which the lateral relaxation length is largest, over the nominal load.
     pty2: POSITIVE "",
-    /// Rolling resistance.
+    /// Rolling resistance over load.
     qsy1: ANY "",
-    /// Effective radius at low load.
+    /// How fast the effective rolling radius falls at low load.
     breff: ANY "",
-    /// Effective radius, peak.
+    /// Peak of the change of the effective rolling radius.
     dreff: ANY "",
     /// Effective radius at high load.
     freff: ANY "",

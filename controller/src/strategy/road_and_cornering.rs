@@ -108,7 +108,7 @@ impl Decide for RoadAndCornering {
             ValveCommand::from_corners(Corners::splat(StrutValves::new(!state.very_rough, true, true)))
         };
         // At once, whatever lean that traps; only where wheels leave the ground a lean passes by itself within the patience.
-        let urgency = if rollover_guard || (corners && !state.very_rough) {
+        let urgency = if rollover_guard || corners {
             Urgency::Emergency
         } else if corners {
             Urgency::Handling

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use oleo_controller::{State, ValveCommand, tick};
+use oleo_controller::{Builder, ConfigurationError, Estimate, State, Strategy, ValveCommand, tick};
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::course::{Course, Drive, NotFinite};
 use oleo_plant_sim::handling::HandlingModel;
 use oleo_plant_sim::measures::SeatMeter;
-use oleo_plant_sim::road::{self, Road, RoadError};
+use oleo_plant_sim::road::{self, RoadError};
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::suspension::{CoilElement, StrutElement, SuspensionElement};
 use oleo_plant_sim::vehicle::{RideError, Seats};
@@ -31,6 +31,9 @@ pub enum ComparisonError {
     /// The model left the real numbers.
     #[error(transparent)]
     NotFinite(#[from] NotFinite),
+    /// The vehicle cannot be described to the controller.
+    #[error(transparent)]
+    Configuration(#[from] ConfigurationError),
     /// No road.
     #[error(transparent)]
     Road(#[from] RoadError),
@@ -44,27 +47,18 @@ const BEGUN_M_S2: f64 = 0.5;
 /// # Errors
 /// A road that is not there, or a vehicle that its springs do not carry.
 pub fn drive(bench: &Bench, case: &DriveCase, setting: &Setting) -> Result<Figures, ComparisonError> {
-    let track = case.manoeuvre.track(case.driver, bench.vehicle.layout.width_m);
-    let road = road::from_name_or_path(&case.road, case.manoeuvre.length_m(&track), case.seed)?;
-    let course = Course {
-        manoeuvre: case.manoeuvre,
-        driver: case.driver,
-        road: Arc::clone(&road) as Arc<dyn Road>,
-    };
-    let (vehicle, handling) = (&bench.vehicle, &bench.handling);
     match setting {
         Setting::AsSold => {
-            let elements = CoilElement::of_vehicle(vehicle);
-            let drive = Drive::begin(&course, vehicle, handling, elements)?;
+            let drive = begin(bench, case, CoilElement::of_vehicle(&bench.vehicle))?;
             follow(drive, case, |_| (Corners::default(), ValveCommand::SAFE, false))
         }
         Setting::Fixed(open) => {
             let command = ValveCommand::from_corners(Corners::splat(*open));
-            let drive = Drive::begin(&course, vehicle, handling, struts(bench, *open)?)?;
+            let drive = begin(bench, case, struts(bench, *open)?)?;
             follow(drive, case, |_| (command.corners(), command, false))
         }
         Setting::Oracle { before, delay_s } => {
-            let drive = Drive::begin(&course, vehicle, handling, struts(bench, *before)?)?;
+            let drive = begin(bench, case, struts(bench, *before)?)?;
             let decided_tick = case
                 .begins_s
                 .map_or(u64::MAX, |begins| ((begins + delay_s) / TICK_S).round() as u64);
@@ -77,7 +71,7 @@ pub fn drive(bench: &Bench, case: &DriveCase, setting: &Setting) -> Result<Figur
             })
         }
         Setting::Controlled(_, configuration) => {
-            let drive = Drive::begin(&course, vehicle, handling, struts(bench, StrutValves::splat(false))?)?;
+            let drive = begin(bench, case, struts(bench, StrutValves::splat(false))?)?;
             let (mut state, mut sensors) = (State::new(), Sensors::new(bench, case.seed));
             follow(drive, case, |model| {
                 let inputs = sensors.read(model.strut_displacement_m(), model.strut_output());
@@ -88,11 +82,49 @@ pub fn drive(bench: &Bench, case: &DriveCase, setting: &Setting) -> Result<Figur
     }
 }
 
+/// What the controller estimates in each tick of a drive with all valves open, whatever it would decide: thresholds can be tried on it
+/// without another drive.
+///
+/// # Errors
+/// As of [`drive`].
+pub fn estimates(bench: &Bench, case: &DriveCase) -> Result<Vec<Estimate>, ComparisonError> {
+    let configuration = Builder {
+        strategy: Strategy::AlwaysSoft,
+        ..bench.controller()
+    };
+    let configuration = configuration.build()?;
+    let drive = begin(bench, case, struts(bench, StrutValves::splat(false))?)?;
+    let (mut state, mut sensors) = (State::new(), Sensors::new(bench, case.seed));
+    let mut estimates = Vec::new();
+    follow(drive, case, |model| {
+        let inputs = sensors.read(model.strut_displacement_m(), model.strut_output());
+        let outputs = tick(&configuration, &mut state, &inputs);
+        estimates.push(outputs.estimate);
+        (outputs.command.corners(), outputs.command, outputs.handling)
+    })?;
+    Ok(estimates)
+}
+
 /// The bench's four struts at rest.
 fn struts(bench: &Bench, open: StrutValves<bool>) -> Result<Corners<StrutElement>, ComparisonError> {
     let strut = |model: &StrutModel| Strut::at_rest(model, open).map(StrutElement::new);
     let [a, b, c, d] = bench.struts.each_ref().into_array();
     Ok(Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]))
+}
+
+/// A drive of the bench's vehicle on these springs, at its beginning.
+fn begin<E: SuspensionElement>(
+    bench: &Bench,
+    case: &DriveCase,
+    elements: Corners<E>,
+) -> Result<Drive<E>, ComparisonError> {
+    let track = case.manoeuvre.track(case.driver, bench.vehicle.layout.width_m);
+    let course = Course {
+        manoeuvre: case.manoeuvre,
+        driver: case.driver,
+        road: road::from_name_or_path(&case.road, case.manoeuvre.length_m(&track), case.seed)?,
+    };
+    Ok(Drive::begin(&course, &bench.vehicle, &bench.handling, elements)?)
 }
 
 /// Drives to the end and keeps the figures.

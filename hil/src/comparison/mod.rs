@@ -22,7 +22,7 @@ mod setting;
 pub use bench::Bench;
 pub use case::DriveCase;
 pub use compare::{CompareError, Results, compare, settings};
-pub use drive::{ComparisonError, beginning_s, drive};
+pub use drive::{ComparisonError, beginning_s, drive, estimates};
 pub use figures::Figures;
 pub use plan::{Extent, Group, groups};
 pub use robust::{DRIVES, VariedResult, robust};

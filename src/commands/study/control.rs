@@ -3,7 +3,7 @@
 use std::io::Write as _;
 use std::process::ExitCode;
 
-use oleo_controller::Strategy;
+use oleo_controller::{DamperPolicy, Strategy};
 use oleo_hil::comparison::{
     self, Bench, Extent, Group, Means, Row, Scores, Setting, compare, groups, scores, settings,
 };
@@ -34,15 +34,26 @@ pub struct Args {
     check: bool,
 }
 
-/// Strategies that are compared. The first is the one that is scored.
-const STRATEGIES: [Strategy; 2] = [Strategy::RoadAndCornering, Strategy::RideHandling];
+/// Controllers that are compared: name, strategy, and the damper policy of `ride-handling`. The first is the one that is scored.
+/// The other four decide as Els does, by running RMS; their dampers stay low, or follow a rule of the literature.
+const CONTROLLERS: [(&str, Strategy, DamperPolicy); 5] = [
+    ("road-and-cornering", Strategy::RoadAndCornering, DamperPolicy::Low),
+    ("ride-handling-low", Strategy::RideHandling, DamperPolicy::Low),
+    ("ride-handling-karnopp", Strategy::RideHandling, DamperPolicy::Karnopp),
+    (
+        "ride-handling-hoelscher-huang",
+        Strategy::RideHandling,
+        DamperPolicy::HoelscherHuang,
+    ),
+    ("ride-handling-sh-add", Strategy::RideHandling, DamperPolicy::ShAdd),
+];
 
 /// What was compared, and the result.
 struct Comparison {
     groups: Vec<Group>,
     settings: Vec<Setting>,
     means: Means,
-    /// For each of [`STRATEGIES`].
+    /// For each of [`CONTROLLERS`].
     scores: Vec<Scores>,
 }
 
@@ -83,9 +94,9 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
 }
 
 fn comparison(args: &Args, bench: &Bench, records: &Records) -> Result<Comparison, Failure> {
-    let controllers: Vec<Setting> = STRATEGIES
+    let controllers: Vec<Setting> = CONTROLLERS
         .into_iter()
-        .map(|strategy| controlled(bench, strategy))
+        .map(|(name, strategy, dampers)| controlled(bench, name, strategy, dampers))
         .collect::<Result<_, Failure>>()?;
     let settings = settings(controllers);
     let groups = groups(&Extent {
@@ -112,7 +123,7 @@ fn comparison(args: &Args, bench: &Bench, records: &Records) -> Result<Compariso
     };
     drop(progress);
     let means = Means::of(&groups, &results);
-    let first = settings.len() - STRATEGIES.len();
+    let first = settings.len() - CONTROLLERS.len();
     let scores = (first..settings.len())
         .filter_map(|place| scores(&groups, &settings, &results, &means, place))
         .collect();
@@ -170,15 +181,15 @@ fn write(out: &mut OutputDirectory, comparison: &Comparison, own: &Scores, table
         means,
         scores,
     } = comparison;
-    let by_strategy: serde_json::Map<String, serde_json::Value> = STRATEGIES
+    let by_controller: serde_json::Map<String, serde_json::Value> = CONTROLLERS
         .iter()
         .zip(scores)
-        .map(|(strategy, scores)| (strategy.name().to_owned(), json!(scores)))
+        .map(|((name, ..), scores)| ((*name).to_owned(), json!(scores)))
         .collect();
     out.json(
         "summary.json",
         &json!({
-            "strategy": STRATEGIES[0].name(),
+            "controller": CONTROLLERS[0].0,
             "ride_ratio_to_soft": own.ride_ratio_to_soft,
             "ride_ratio_to_best_fixed": own.ride_ratio_to_best_fixed,
             "roll_ratio_to_stiff": own.roll_ratio_to_stiff,
@@ -191,7 +202,7 @@ fn write(out: &mut OutputDirectory, comparison: &Comparison, own: &Scores, table
             "seeds": groups.iter().map(|group| group.cases.len()).max(),
             "settings": settings.iter().map(Setting::name).collect::<Vec<_>>(),
             "means": means,
-            "strategies": by_strategy,
+            "controllers": by_controller,
         }),
     )?;
     out.page(&page(comparison, own, tables))?;

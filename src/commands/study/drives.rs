@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use oleo_controller::Strategy;
+use oleo_controller::{DamperPolicy, Strategy};
 use oleo_hil::comparison::{Bench, Setting};
 use oleo_plant_sim::study::Records;
 use oleo_report::OutputDirectory;
@@ -59,12 +59,18 @@ impl Drives {
     }
 }
 
-/// The controller of a vehicle with a strategy.
-pub fn controlled(bench: &Bench, strategy: Strategy) -> Result<Setting, Failure> {
-    let builder = oleo_controller::Builder {
+/// The controller of a vehicle with a strategy. The damper policy is that of `ride-handling`, and nothing to the others.
+pub fn controlled(
+    bench: &Bench,
+    name: &'static str,
+    strategy: Strategy,
+    dampers: DamperPolicy,
+) -> Result<Setting, Failure> {
+    let mut builder = oleo_controller::Builder {
         strategy,
         ..bench.controller()
     };
+    builder.tuning.strategy.ride_handling.dampers.policy = dampers;
     let configuration = builder.build().map_err(|error| Failure::new(error.to_string()))?;
-    Ok(Setting::Controlled(strategy.name(), Box::new(configuration)))
+    Ok(Setting::Controlled(name, Box::new(configuration)))
 }

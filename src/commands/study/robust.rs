@@ -3,7 +3,7 @@
 use std::io::Write as _;
 use std::process::ExitCode;
 
-use oleo_controller::Strategy;
+use oleo_controller::{DamperPolicy, Strategy};
 use oleo_hil::comparison::{DRIVES, VariedResult, robust};
 use oleo_report::interrupt::Graceful;
 use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Progress, Style, Table, Verdict};
@@ -62,7 +62,12 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         )));
     }
     let nominal = args.drives.bench()?;
-    let setting = controlled(&nominal, Strategy::default())?;
+    let setting = controlled(
+        &nominal,
+        Strategy::default().name(),
+        Strategy::default(),
+        DamperPolicy::default(),
+    )?;
     let (records, out) = args.drives.results()?;
     let progress = Progress::new("study robust", DRIVES * args.vehicles);
     let results = {

@@ -75,7 +75,7 @@ pub struct Tuning {
 impl Default for Tuning {
     fn default() -> Self {
         Self {
-            floor_m_s2: 0.5,       // measured: docs/controller.md
+            floor_m_s2: 0.5,        // measured: docs/controller.md
             witness_multiple: 1.05, // found by an optimiser: docs/controller.md
             plain_witness_multiple: 3.9,
             lift_off_m_s2: 0.67,

@@ -172,7 +172,7 @@ fn column(channel: usize) -> Column {
 }
 
 fn candidate(index: usize) -> Candidate {
-    let amount = |key: &str| Parameter::linear(key, 0.0, 0.05, (-5.0, 5.0));
+    let amount = |key: &str| Parameter::departure(key, 0.05, (-5.0, 5.0));
     let positive = |key: &str| Parameter::amount(key, 0.05, 5.0);
     let (id, place, parameters): (EffectId, Place, Vec<Parameter>) = match index {
         CUBIC => (EffectId::MountCompliance, Site::Mount.into(), vec![amount("cubic")]),
@@ -198,7 +198,7 @@ fn candidate(index: usize) -> Candidate {
         GAIN => (
             EffectId::SensorGain,
             Site::Sensor(column(0)).into(),
-            vec![Parameter::linear("relative_error", 0.0, 0.01, (-0.6, 0.6)).on_instrument()],
+            vec![Parameter::departure("relative_error", 0.01, (-0.6, 0.6)).on_instrument()],
         ),
         TABLE => (
             EffectId::Unlisted,

@@ -26,7 +26,7 @@ pub struct Criteria {
 /// How hard a fit tries.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
-    /// Most Jacobians that are computed.
+    /// Most Jacobians that are computed. A fit that has not converged by then says so ([`crate::estimation::Fit`]).
     pub linearisations: usize,
     /// The fit ends when a step gains less than this fraction of the cost.
     pub tolerance: f64,
@@ -51,7 +51,7 @@ impl Default for Fitting {
     fn default() -> Self {
         Self {
             converged: Effort {
-                linearisations: 8,
+                linearisations: 40,
                 tolerance: 3e-5,
             },
             quick: Effort {
@@ -69,6 +69,17 @@ impl Default for Fitting {
 pub struct Screening {
     /// Steps that every candidate gets, from each of its starts.
     pub first_steps: usize,
+    /// Candidates are also started at sizes up to the largest possible where the noise ratio of the model so far is above
+    /// this. The bound limits the time of the search; what it costs below has not been measured.
+    pub gross_noise_ratio: f64,
+    /// Larger sizes are not tried once one costs this many times as much as none of the effect.
+    pub size_overshoot: f64,
+    /// How many of the starting sizes are stepped on from: those of lowest cost ...
+    pub sizes_refined: usize,
+    /// ... that cost less than none of the effect, and less than this many times what the start at size zero has reached.
+    pub size_contender: f64,
+    /// From how many starts of an effect a model is fitted again that is not complete when nothing can be added.
+    pub shapes_restarted: usize,
     /// Further steps that the promising ones get.
     pub more_steps: usize,
     /// How many candidates are promising: those of lowest cost after the first steps.
@@ -86,6 +97,11 @@ impl Default for Screening {
     fn default() -> Self {
         Self {
             first_steps: 1,
+            gross_noise_ratio: 10.0,
+            size_overshoot: 1.5,
+            sizes_refined: 2,
+            size_contender: 3.0,
+            shapes_restarted: 8,
             more_steps: 3,
             promising: 6,
             finalists: 3,

@@ -39,6 +39,8 @@ pub struct Parameter {
     pub prior: bool,
     /// Changes only what an instrument shows, so the physics need not be simulated again.
     pub instrument_only: bool,
+    /// The size of the effect: zero is "not there", and every larger value is more of it.
+    pub is_size: bool,
     /// Reported as this key, and inverted: a compliance is fitted (zero is "not there"), a stiffness is what people know.
     pub inverse_of: Option<&'static str>,
 }
@@ -58,6 +60,7 @@ impl Parameter {
             upper: TOLERANCE_BOUND * tolerance,
             prior: true,
             instrument_only: false,
+            is_size: false,
             inverse_of: None,
         }
     }
@@ -73,6 +76,7 @@ impl Parameter {
             upper: range.1,
             prior: false,
             instrument_only: false,
+            is_size: false,
             inverse_of: None,
         }
     }
@@ -89,7 +93,17 @@ impl Parameter {
     /// Free amount of something that is absent at zero. `visible` is an amount that would show.
     #[must_use]
     pub fn amount(key: impl Into<String>, visible: f64, most: f64) -> Self {
-        Self::linear(key, 0.0, visible, (0.0, most))
+        Self::departure(key, visible, (0.0, most))
+    }
+
+    /// Free departure, of either sign where the range has both, from what is believed; there is none at zero. `visible` is a
+    /// departure that would show.
+    #[must_use]
+    pub fn departure(key: impl Into<String>, visible: f64, range: (f64, f64)) -> Self {
+        Self {
+            is_size: true,
+            ..Self::linear(key, 0.0, visible, range)
+        }
     }
 
     /// The same, reported as its inverse.

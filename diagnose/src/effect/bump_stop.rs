@@ -63,7 +63,14 @@ impl ActsOn<Strut> for BumpStop {
             Parameter::amount("progression_N_m3", 1e8, 1e13),
         ];
         let at = |a: f64, b: f64| vec![a * high, b * low, 0.0, 0.0];
-        let starts = vec![at(0.7, 0.7), at(0.5, 1.1), at(1.1, 0.5), at(0.6, 0.95)];
+        let starts = vec![
+            at(0.7, 0.7),
+            at(0.5, 1.1),
+            at(1.1, 0.5),
+            at(0.6, 0.95),
+            at(0.9, 1.1),
+            at(1.1, 0.9),
+        ];
         vec![Candidate::new(self.id(), Site::EndStop, parameters).starting_at(starts)]
     }
 
@@ -90,7 +97,7 @@ impl Concealed for BumpStop {
     }
 
     fn amounts(&self, _variant: usize) -> Option<(f64, f64)> {
-        Some((100.0, 5e5))
+        Some((100.0, 5e6))
     }
 
     fn put_true(&self, model: &mut StrutModel, drawn: &Drawn, amount: f64) -> Vec<TrueNumber> {

@@ -94,10 +94,11 @@ impl Candidate {
             || (self.is_instrument_fault() && other.is_instrument_fault() && self.place == other.place)
     }
 
-    /// Whether these values leave the model unchanged, because an amount that starts at zero is zero.
+    /// True if these values leave the model as it is: the candidate has a size, and each number that is one is zero.
     #[must_use]
     pub fn absent_at(&self, values: &[f64]) -> bool {
-        (self.parameters.iter().zip(values)).any(|(p, v)| p.start == 0.0 && *v == 0.0)
+        let has_size = self.parameters.iter().any(|p| p.is_size);
+        has_size && (self.parameters.iter().zip(values)).all(|(p, v)| !p.is_size || *v == 0.0)
     }
 
     /// Id, place and label as one text, which is unique among the candidates.
@@ -118,5 +119,29 @@ impl Candidate {
         } else {
             format!("{} ({})", self.place, self.label)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_sizes_say_whether_an_effect_is_there() {
+        // A groove at displacement 0, and a stop without progression: both are there although a number of theirs is zero.
+        let groove = vec![
+            Parameter::amount("flow_coefficient", 1e-8, 1e-4),
+            Parameter::linear("position_m", 0.0, 0.004, (-0.09, 0.09)),
+        ];
+        let groove = Candidate::new(EffectId::Unlisted, Site::Unknown, groove);
+        assert!(groove.absent_at(&[0.0, 0.0]) && groove.absent_at(&[0.0, 0.03]) && !groove.absent_at(&[3e-7, 0.0]));
+        let stop = vec![
+            Parameter::amount("stiffness_N_m", 1e4, 1e8),
+            Parameter::amount("progression_N_m3", 1e8, 1e13),
+        ];
+        let stop = Candidate::new(EffectId::BumpStop, Site::EndStop, stop);
+        assert!(stop.absent_at(&[0.0, 0.0]) && !stop.absent_at(&[1e4, 0.0]) && !stop.absent_at(&[0.0, 1e8]));
+        let heat = vec![Parameter::log("time_constant_s", 5.0, (0.1, 100.0))];
+        assert!(!Candidate::new(EffectId::GasHeatTransfer, Site::Chamber, heat).absent_at(&[5.0]));
     }
 }

@@ -77,7 +77,7 @@ impl Concealed for DamperLeakage {
     }
 
     fn amounts(&self, _variant: usize) -> Option<(f64, f64)> {
-        Some((1e-11, 6e-7))
+        Some((1e-11, 1.5e-6))
     }
 
     fn put_true(&self, model: &mut StrutModel, drawn: &Drawn, amount: f64) -> Vec<TrueNumber> {

@@ -64,7 +64,7 @@ impl ActsOn<Strut> for EntrainedAir {
 
 impl Concealed for EntrainedAir {
     fn amounts(&self, _variant: usize) -> Option<(f64, f64)> {
-        Some((1e-6, 0.04))
+        Some((1e-6, 0.1))
     }
 
     fn put_true(&self, model: &mut StrutModel, drawn: &Drawn, amount: f64) -> Vec<TrueNumber> {

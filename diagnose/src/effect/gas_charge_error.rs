@@ -45,7 +45,7 @@ impl ActsOn<Strut> for GasChargeError {
         Branch::ALL
             .map(|branch| {
                 let i = branch.number();
-                let parameters = vec![Parameter::linear(format!("relative_error_{i}"), 0.0, 0.02, (-0.7, 2.0))];
+                let parameters = vec![Parameter::departure(format!("relative_error_{i}"), 0.02, (-0.7, 2.0))];
                 Candidate::new(self.id(), Site::Accumulator(branch), parameters)
             })
             .to_vec()
@@ -77,7 +77,7 @@ impl Concealed for GasChargeError {
     }
 
     fn amounts(&self, _variant: usize) -> Option<(f64, f64)> {
-        Some((1e-4, 0.3))
+        Some((1e-4, 0.5))
     }
 
     fn put_true(&self, model: &mut StrutModel, drawn: &Drawn, amount: f64) -> Vec<TrueNumber> {

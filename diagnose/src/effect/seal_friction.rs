@@ -92,7 +92,7 @@ impl ActsOn<Strut> for SealFriction {
 
 impl Concealed for SealFriction {
     fn amounts(&self, _variant: usize) -> Option<(f64, f64)> {
-        Some((0.3, 600.0))
+        Some((0.3, 3e3))
     }
 
     fn put_true(&self, model: &mut StrutModel, drawn: &Drawn, amount: f64) -> Vec<TrueNumber> {

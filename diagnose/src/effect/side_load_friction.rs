@@ -72,7 +72,7 @@ impl ActsOn<Strut> for SideLoadFriction {
 
 impl Concealed for SideLoadFriction {
     fn amounts(&self, _variant: usize) -> Option<(f64, f64)> {
-        Some((1e-5, 0.08))
+        Some((1e-5, 0.2))
     }
 
     fn put_true(&self, model: &mut StrutModel, _drawn: &Drawn, amount: f64) -> Vec<TrueNumber> {

@@ -13,6 +13,10 @@ use crate::vocabulary::{EffectId, Site};
 /// Time for which valve 3 must hold a pressure difference before a leak can be seen, s.
 const LEAST_HOLDING_S: f64 = 0.5;
 
+/// Largest leak over the flow coefficient of the open valve: one that does not close at all, with a margin for what is believed
+/// of the open one.
+const LARGEST_OVER_OPEN: f64 = 1.5;
+
 pub struct Valve3Leakage;
 
 impl Effect for Valve3Leakage {
@@ -49,7 +53,8 @@ impl ActsOn<Strut> for Valve3Leakage {
         let cannot = (excitation.valve3_holding_s < LEAST_HOLDING_S).then(|| {
             "valve 3 is never closed against a pressure difference; close it at 30 mm of jounce and hold 5 s".to_owned()
         });
-        let leak = Parameter::amount("flow_coefficient", 1e-10, 1e-6);
+        let most = LARGEST_OVER_OPEN * model.valve[Valve::Spring.index()].total_flow_coefficient();
+        let leak = Parameter::amount("flow_coefficient", 1e-10, most);
         vec![Candidate::new(self.id(), Site::Valve(Valve::Spring), vec![leak]).testable_unless(cannot)]
     }
 
@@ -69,7 +74,7 @@ impl ActsOn<Strut> for Valve3Leakage {
 
 impl Concealed for Valve3Leakage {
     fn amounts(&self, _variant: usize) -> Option<(f64, f64)> {
-        Some((1e-13, 5e-8))
+        Some((1e-13, 2e-6))
     }
 
     fn put_true(&self, model: &mut StrutModel, _drawn: &Drawn, amount: f64) -> Vec<TrueNumber> {

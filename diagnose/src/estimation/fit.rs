@@ -30,6 +30,8 @@ pub struct Fit {
     pub sensitivities: Option<Arc<Vec<Sensitivity>>>,
     /// True if the fit comes from screening: linear in the model's own parameters, and not converged.
     pub screened: bool,
+    /// False if the fit ended before its last step gained as little as was asked for.
+    pub converged: bool,
     /// The folds left out in turn, once somebody has asked ([`super::held_out`]).
     pub(super) held_out: Arc<OnceLock<HeldOut>>,
 }
@@ -61,6 +63,7 @@ impl Fit {
             ranges,
             sensitivities: None,
             screened: false,
+            converged: true,
             held_out: Arc::default(),
         }
     }

@@ -58,6 +58,7 @@ pub fn fit(problem: &LeastSquares<'_>, start: Point, effort: Effort) -> Result<F
     let mut normals = assemble(blocks, &sensitivities);
     let mut cost = total_cost(&normals) + point.prior_cost(specimen);
     let mut damping = DAMPING.0;
+    let mut converged = false;
     for round in 0..effort.linearisations {
         if round > 0 {
             sensitivities = evaluation.sensitivities(&point, &all, None)?;
@@ -105,11 +106,13 @@ pub fn fit(problem: &LeastSquares<'_>, start: Point, effort: Effort) -> Result<F
             }
         }
         if before_round - cost < TOLERANCES_PER_JACOBIAN * effort.tolerance * cost {
+            converged = true;
             break;
         }
     }
     Ok(Fit {
         sensitivities: Some(Arc::new(sensitivities)),
+        converged,
         ..Fit::new(point, normals, prior, cost, ranges)
     })
 }

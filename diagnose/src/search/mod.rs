@@ -20,11 +20,13 @@
 mod elimination;
 pub mod evidence;
 mod forward;
+mod restart;
 mod rivals;
 pub mod screen;
 mod select;
 mod selection;
 mod selector;
+mod sizes;
 
 pub use evidence::HeldOutGain;
 pub use screen::Screen;

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::sizes::starting_sizes;
 use crate::error::DiagnoseError;
 use crate::estimation::bounded_step::bounded_step;
 use crate::estimation::normal_equations::{extended, sum, total_cost};
@@ -106,20 +107,74 @@ impl<'p, 'a> Screen<'p, 'a> {
         let description = &self.specimen().candidates()[candidate];
         let own: Vec<f64> = description.parameters.iter().map(|p| p.start).collect();
         let mut best: Option<ScreenedCandidate> = None;
-        for start in std::iter::once(&own).chain(&description.starts) {
-            let point = self.fit.point.with_effect(self.specimen(), candidate, start);
+        let starts: Vec<&Vec<f64>> = std::iter::once(&own).chain(&description.starts).collect();
+        for start in &starts {
             let known = description.absent_at(start).then_some(self.truths.as_slice());
-            let begun = self.at(point, known).and_then(|mut begun| {
-                self.advance(&mut begun, self.problem.criteria.screening.first_steps)?;
-                Ok(begun)
-            });
-            match begun {
-                Ok(begun) if best.as_ref().is_none_or(|b| begun.cost < b.cost) => best = Some(begun),
-                Ok(_) | Err(DiagnoseError::Simulation { .. }) => {}
-                Err(other) => return Err(other),
+            self.begin_at(candidate, start, known, &mut best)?;
+        }
+        if description.is_unlisted() || description.is_instrument_fault() || !self.is_gross() {
+            return Ok(best);
+        }
+        let screening = &self.problem.criteria.screening;
+        let mut sizes = Vec::new();
+        for start in starts {
+            for direction in starting_sizes(description, start) {
+                sizes.extend(self.costs_of(candidate, direction)?);
+            }
+        }
+        sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (cost, values) in sizes.into_iter().take(screening.sizes_refined) {
+            let reached = best.as_ref().map_or(f64::INFINITY, |b| b.cost);
+            if cost < self.fit.cost && cost < screening.size_contender * reached {
+                self.begin_at(candidate, &values, None, &mut best)?;
             }
         }
         Ok(best)
+    }
+
+    /// The first steps of a candidate from a start, kept if they lead lower than `best`. A start that cannot be simulated is
+    /// passed over.
+    fn begin_at(
+        &self,
+        candidate: usize,
+        start: &[f64],
+        known: Option<&[Series]>,
+        best: &mut Option<ScreenedCandidate>,
+    ) -> Result<(), DiagnoseError> {
+        let point = self.fit.point.with_effect(self.specimen(), candidate, start);
+        let begun = self.at(point, known).and_then(|mut begun| {
+            self.advance(&mut begun, self.problem.criteria.screening.first_steps)?;
+            Ok(begun)
+        });
+        match begun {
+            Ok(begun) if best.as_ref().is_none_or(|b| begun.cost < b.cost) => *best = Some(begun),
+            Ok(_) | Err(DiagnoseError::Simulation { .. }) => {}
+            Err(other) => return Err(other),
+        }
+        Ok(())
+    }
+
+    /// True if the model so far is so far off that a derivative at size zero may not show where an effect is.
+    fn is_gross(&self) -> bool {
+        let ratio = self.problem.criteria.screening.gross_noise_ratio;
+        total_cost(&self.fit.normals) > ratio * ratio * self.problem.residuals() as f64
+    }
+
+    /// Sizes of a candidate, the smallest first, with the cost of each, up to the first that is too large.
+    fn costs_of(&self, candidate: usize, sizes: Vec<Vec<f64>>) -> Result<Vec<(f64, Vec<f64>)>, DiagnoseError> {
+        let mut costs = Vec::new();
+        // One a decade is enough to step on from.
+        for values in sizes.into_iter().step_by(2) {
+            let point = self.fit.point.with_effect(self.specimen(), candidate, &values);
+            match self.cost_at(&point) {
+                Ok((cost, _)) if cost < self.problem.criteria.screening.size_overshoot * self.fit.cost => {
+                    costs.push((cost, values));
+                }
+                Ok(_) | Err(DiagnoseError::Simulation { .. }) => break,
+                Err(other) => return Err(other),
+            }
+        }
+        Ok(costs)
     }
 
     /// True quantities at a point that differs from the model so far by a candidate only; `None` where they are those of the

@@ -61,7 +61,7 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
     Ok(Selection {
         calibrated_ratio: selector.held_out_ratio(&calibrated),
         improved_ratio,
-        incomplete: improved_ratio > selector.complete_up_to(&best),
+        incomplete: improved_ratio > selector.complete_up_to(&best) || !best.converged,
         effects: comparison.effects,
         calibrated,
         best,
@@ -105,6 +105,12 @@ fn grow(selector: &mut Selector<'_, '_>, calibrated: &Fit, progress: Progress<'_
         };
         if let Some(next) = next {
             best = next;
+            continue;
+        }
+        if selector.held_out_ratio(&best) > selector.complete_up_to(&best)
+            && let Some(better) = selector.restarted(&best)?
+        {
+            best = better;
             continue;
         }
         let reaches_noise = || {

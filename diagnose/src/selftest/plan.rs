@@ -8,7 +8,7 @@ use crate::effect::in_struts;
 use crate::vocabulary::EffectId;
 
 /// Sizes asked for, in units of noise (RMS over all channels and samples, after recalibration).
-pub const SIZES: [f64; 6] = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0];
+pub const SIZES: [f64; 8] = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0];
 /// Sizes with which terms are left out of the search: large enough that something must be said.
 const NAMELESS_SIZES: [f64; 2] = [3.0, 10.0];
 /// Complete models in a round, where false alarms are counted.
@@ -177,9 +177,9 @@ mod tests {
     }
 
     #[test]
-    fn six_rounds_hold_every_term_at_every_size() {
+    fn eight_rounds_hold_every_term_at_every_size() {
         let terms = in_struts();
-        let all = plan(6 * (terms.len() + COMPLETE_PER_ROUND + PAIRS_PER_ROUND), &[]).cases();
+        let all = plan(SIZES.len() * (terms.len() + COMPLETE_PER_ROUND + PAIRS_PER_ROUND), &[]).cases();
         for term in terms {
             for size in SIZES {
                 assert!(all.iter().any(|c| c.hidden == [(term, size)]), "{term} {size}");

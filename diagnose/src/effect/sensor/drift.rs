@@ -15,9 +15,8 @@ pub static DRIFT: Fault = Fault {
     symbols: &[("drift_m_s", "r"), ("drift_N_s", "r"), ("drift_Pa_s", "r")],
     parameter: Some(|reading| {
         let drift = reading.drift_per_s;
-        Parameter::linear(
+        Parameter::departure(
             format!("drift_{}_s", reading.column.unit()),
-            0.0,
             0.01 * drift,
             (-drift, drift),
         )

@@ -13,10 +13,10 @@ pub static GAIN: Fault = Fault {
     name: "a sensor with a wrong gain",
     meaning: "the reading differs from the true value x by the relative error e",
     symbols: &[("relative_error", "e")],
-    parameter: Some(|_| Parameter::linear("relative_error", 0.0, 0.01, (-0.6, 0.6))),
+    parameter: Some(|_| Parameter::departure("relative_error", 0.01, (-0.6, 0.6))),
     limited_by_clocks: |_| None,
     of_cylinder: OfCylinder::All,
-    amounts: |_| Some((1e-5, 0.2)),
+    amounts: |_| Some((1e-5, 0.5)),
     signed: true,
     with_valves: Experiment {
         record: "three levels 20 mm apart, each reached at 0.5 m/s and held for 5 s, all valves open, with a calibrated reference \

@@ -15,7 +15,7 @@ pub static SKEW: Fault = Fault {
     symbols: &[("delay_s", "s")],
     parameter: Some(|reading| {
         let short = reading.interval_s;
-        Parameter::linear("delay_s", 0.0, short, (-50.0 * short, 50.0 * short))
+        Parameter::departure("delay_s", short, (-50.0 * short, 50.0 * short))
     }),
     // A time skew is the great impostor of heat transfer over a whole stroke, but not at its corners: where those are sharp
     // enough to read the delay off, a skew may only be what they show.

@@ -70,7 +70,7 @@ impl ActsOn<Cylinder> for Laws {
     fn candidates(&self, _model: &CylinderModel, excitation: &excitation::Cylinder) -> Vec<Candidate> {
         let candidate = |law: &Law| {
             let most = excitation.force_n / (law.largest)(excitation);
-            let number = Parameter::linear(law.key, 0.0, 0.02 * most, (-most, most));
+            let number = Parameter::departure(law.key, 0.02 * most, (-most, most));
             Candidate::new(EffectId::Unlisted, Site::MainSeal, vec![number]).labelled(law.words.label)
         };
         LAWS.iter().map(candidate).collect()

@@ -48,7 +48,7 @@ impl ActsOn<GasSpring> for Laws {
         }
         if model.effects.gas_leak_rate_1_s.is_none() {
             let rate = 0.1 / excitation.extent.duration_s.max(1.0);
-            let lost = Parameter::linear("rate_1_s", 0.0, 0.1 * rate, (-10.0 * rate, 10.0 * rate));
+            let lost = Parameter::departure("rate_1_s", 0.1 * rate, (-10.0 * rate, 10.0 * rate));
             all.push(candidate(GAS_LOST, lost));
         }
         all

@@ -65,28 +65,50 @@ impl TwoStageStrut {
             })
             .collect();
         let noises = std::array::from_fn(|c| channels[c].noise);
-        let excitation = excitation::Strut::of(&recordings, &noises, displacement_noise);
         let (calibration, parameters) = calibration::of(&model);
-        let candidates = candidates(&model, &excitation);
-        let strut = Self {
+        let mut strut = Self {
             model,
             recordings,
             inputs,
             channels,
             calibration,
             parameters,
-            candidates,
+            candidates: vec![],
             jittered: OnceLock::new(),
         };
-        // A model that cannot even stand still is refused here, with the model's own words.
-        strut.simulate(
-            &Hypothesis {
-                calibration: vec![0.0; strut.parameters.len()],
-                effects: vec![],
-            },
-            0,
-        )?;
+        let excited = |recordings: &[Recording]| excitation::Strut::of(recordings, &noises, displacement_noise);
+        let believed = excited(&strut.as_believed()?);
+        let excitation = excitation::Strut::of_measured_or_believed(excited(&strut.recordings), &believed);
+        strut.candidates = candidates(&strut.model, &excitation);
         Ok(strut)
+    }
+
+    /// The recordings as the believed model would have them. A recording that it cannot simulate is left out.
+    ///
+    /// # Errors
+    /// A model that cannot simulate the first recording (that cannot even stand still), with the model's own words.
+    fn as_believed(&self) -> Result<Vec<Recording>, String> {
+        let believed = Hypothesis {
+            calibration: vec![0.0; self.parameters.len()],
+            effects: vec![],
+        };
+        let simulated: Vec<Result<Series, String>> = (0..self.recordings.len())
+            .into_par_iter()
+            .map(|r| self.simulate(&believed, r))
+            .collect();
+        let mut all = Vec::with_capacity(simulated.len());
+        for (k, (recording, simulated)) in self.recordings.iter().zip(simulated).enumerate() {
+            match simulated {
+                Ok(channels) => {
+                    let mut recording = recording.clone();
+                    recording.columns.splice(1..=channels.len(), channels);
+                    all.push(recording);
+                }
+                Err(why) if k == 0 => return Err(why),
+                Err(_) => {}
+            }
+        }
+        Ok(all)
     }
 
     /// Takes a term out of the search, to see what is said of it without its name (self-test).

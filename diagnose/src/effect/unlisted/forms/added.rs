@@ -9,7 +9,7 @@ pub struct Added;
 impl Form for Added {
     fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
         let most = grid.most();
-        rises::parameters(grid, |key| Parameter::linear(key, 0.0, grid.visible, (-most, most)))
+        rises::parameters(grid, |key| Parameter::departure(key, grid.visible, (-most, most)))
     }
 
     fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {

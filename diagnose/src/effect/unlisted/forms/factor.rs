@@ -14,7 +14,7 @@ impl Form for Factor {
         rises::parameters(grid, |key| Parameter {
             // A weak prior for no change keeps knots in order where no recording goes.
             prior: true,
-            ..Parameter::linear(format!("log_{key}"), 0.0, grid.visible, (-MOST, MOST))
+            ..Parameter::departure(format!("log_{key}"), grid.visible, (-MOST, MOST))
         })
     }
 

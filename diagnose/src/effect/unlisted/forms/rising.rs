@@ -8,9 +8,7 @@ pub struct Rising;
 
 impl Form for Rising {
     fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
-        rises::parameters(grid, |key| {
-            Parameter::linear(key, 0.0, grid.visible, (0.0, grid.most()))
-        })
+        rises::parameters(grid, |key| Parameter::amount(key, grid.visible, grid.most()))
     }
 
     fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {

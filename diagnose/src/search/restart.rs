@@ -1,0 +1,152 @@
+//! Starting again: a model that is not complete, and to which nothing can be added, may have ended in a local minimum.
+
+use super::selector::Selector;
+use super::sizes::starting_sizes;
+use crate::effect::Candidate;
+use crate::error::DiagnoseError;
+use crate::estimation::{Fit, Point, fit};
+
+/// Moves of one fitted number, in coordinates of order one.
+const MOVED: [f64; 6] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0];
+/// Numbers that differ by less, in coordinates of order one, are about the same.
+const SAME_SHAPE: f64 = 0.3;
+
+impl Selector<'_, '_> {
+    /// The model fitted again from other starts of one of its effects; `None` if no start ends lower by what an effect must
+    /// gain. Only effects with numbers besides their size are started again: of a size alone screening has tried all.
+    pub fn restarted(&mut self, best: &Fit) -> Result<Option<Fit>, DiagnoseError> {
+        let least = self
+            .criteria()
+            .acceptance
+            .least_gain_of(self.problem.residuals() as f64);
+        for position in 0..best.point.effects.len() {
+            let mut begun = Vec::new();
+            for start in self.other_starts(best, position)? {
+                let quick = fit(self.problem, start, self.criteria().fitting.quick)?;
+                if !self.same_shape(&quick.point, &best.point, position) {
+                    begun.push(quick);
+                }
+            }
+            begun.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+            for quick in begun.into_iter().take(self.criteria().screening.sizes_refined) {
+                let again = fit(self.problem, quick.point, self.criteria().fitting.converged)?;
+                if again.cost < best.cost - least {
+                    return self.fitted(again.point).map(Some);
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// True if two points have about the same numbers, sizes apart, for the effect at a position: the one is on its way back to
+    /// the minimum in which the other is.
+    fn same_shape(&self, a: &Point, b: &Point, position: usize) -> bool {
+        let parameters = &self.candidate(a.effects[position]).parameters;
+        let own = a.coordinates_of(self.specimen(), position);
+        (parameters.iter().zip(own)).all(|(p, k)| p.is_size || (a.z[k] - b.z[k]).abs() < SAME_SHAPE)
+    }
+
+    /// Starts of the effect at a position with everything else as fitted: the best size of every shape, by one simulation each,
+    /// and of those the shapes of lowest cost.
+    fn other_starts(&self, best: &Fit, position: usize) -> Result<Vec<Point>, DiagnoseError> {
+        let description = self.candidate(best.point.effects[position]);
+        if description.is_unlisted() || description.parameters.iter().all(|p| p.is_size) {
+            return Ok(vec![]);
+        }
+        let without = self
+            .problem
+            .cost_at(&best.point.without_effect(self.specimen(), position))?;
+        let own = best.point.coordinates_of(self.specimen(), position);
+        let fitted: Vec<f64> = (description.parameters.iter().zip(&best.point.z[own.clone()]))
+            .map(|(p, z)| p.value(*z))
+            .collect();
+        let mut starts = Vec::new();
+        for shape in shapes(description, fitted) {
+            let mut least: Option<(f64, Point)> = None;
+            for values in starting_sizes(description, &shape).into_iter().flatten() {
+                let mut point = best.point.clone();
+                for (k, (p, value)) in own.clone().zip(description.parameters.iter().zip(values)) {
+                    point.z[k] = p.z(value);
+                }
+                match self.problem.cost_at(&point) {
+                    Ok(cost) if least.as_ref().is_none_or(|l| cost < l.0) => least = Some((cost, point)),
+                    Ok(_) | Err(DiagnoseError::Simulation { .. }) => {}
+                    Err(other) => return Err(other),
+                }
+            }
+            starts.extend(least.filter(|(cost, _)| *cost < without));
+        }
+        starts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        starts.truncate(self.criteria().screening.shapes_restarted);
+        Ok(starts.into_iter().map(|(_, point)| point).collect())
+    }
+}
+
+/// Numbers besides the sizes from which an effect is started again: those of its starts, the fitted ones, and those with one
+/// number moved either way by what would show.
+fn shapes(candidate: &Candidate, fitted: Vec<f64>) -> Vec<Vec<f64>> {
+    let mut all = vec![candidate.parameters.iter().map(|p| p.start).collect()];
+    all.extend(candidate.starts.iter().cloned());
+    for (k, parameter) in candidate.parameters.iter().enumerate().filter(|(_, p)| !p.is_size) {
+        for steps in MOVED {
+            let mut shape = fitted.clone();
+            shape[k] = parameter.value(parameter.z(fitted[k]) + steps);
+            all.push(shape);
+        }
+    }
+    all.push(fitted);
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analytic::{CUBIC, RUN, Recipe, VIBRATION};
+    use crate::estimation::LeastSquares;
+
+    /// The fit of a vibration of 2.3 rad/s from another frequency, started again: frequencies before and after.
+    fn started_again(from: f64, starts: Vec<Vec<f64>>) -> (f64, Option<f64>) {
+        let mut specimen = Recipe {
+            truth: vec![(VIBRATION, vec![0.1, 2.3])],
+            ..Recipe::default()
+        }
+        .make();
+        specimen.give_starts(VIBRATION, starts);
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut selector = Selector::new(&problem);
+        let start = Point::nominal(&specimen).with_effect(&specimen, VIBRATION, &[0.02, from]);
+        let best = selector.fitted(start).expect("a fit");
+        let again = selector.restarted(&best).expect("fits");
+        let frequency = |fit: &Fit| fit.point.hypothesis(&specimen).effects[0].1[1];
+        (frequency(&best), again.as_ref().map(frequency))
+    }
+
+    #[test]
+    fn a_local_minimum_is_left_from_a_start_in_the_basin_of_the_lowest() {
+        let (before, after) = started_again(1.5, vec![vec![0.0, 2.28]]);
+        assert!((before - 2.3).abs() > 0.3, "{before}");
+        assert!(after.is_some_and(|w| (w - 2.3).abs() < 0.003), "{after:?}");
+    }
+
+    #[test]
+    fn a_fit_that_is_at_the_lowest_stays() {
+        let (before, after) = started_again(2.29, vec![vec![0.0, 1.0]]);
+        assert!((before - 2.3).abs() < 0.003 && after.is_none(), "{before} {after:?}");
+    }
+
+    #[test]
+    fn an_effect_of_nothing_but_its_size_is_not_started_again() {
+        let specimen = Recipe {
+            truth: vec![(VIBRATION, vec![0.1, 2.3])],
+            ..Recipe::default()
+        }
+        .make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut selector = Selector::new(&problem);
+        let start = Point::nominal(&specimen).with_effect(&specimen, CUBIC, &[0.1]);
+        let best = selector.fitted(start).expect("a fit");
+        let before = problem.evaluation.simulated();
+        assert!(selector.restarted(&best).expect("fits").is_none());
+        assert_eq!(problem.evaluation.simulated(), before);
+    }
+}

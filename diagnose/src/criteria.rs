@@ -35,8 +35,11 @@ pub struct Effort {
 /// How far fits are carried, and when the linear approximation of a held-out fit is believed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fitting {
-    /// A fit whose figures are reported.
+    /// A fit whose figures are reported. It is bounded: a model that still lacks something may creep, at a gain of nothing that
+    /// matters, to numbers from which what it lacks is no longer found.
     pub converged: Effort,
+    /// A fit that goes on where nothing can be added and the model is not complete.
+    pub continued: Effort,
     /// A fit that starts close to its end: without one fold, or without one effect for the share of the misfit.
     pub quick: Effort,
     /// Largest change of a coordinate that leaving out a fold may make in the linear approximation. Coordinates are of
@@ -51,6 +54,10 @@ impl Default for Fitting {
     fn default() -> Self {
         Self {
             converged: Effort {
+                linearisations: 8,
+                tolerance: 3e-5,
+            },
+            continued: Effort {
                 linearisations: 40,
                 tolerance: 3e-5,
             },

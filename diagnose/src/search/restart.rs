@@ -12,13 +12,21 @@ const MOVED: [f64; 6] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0];
 const SAME_SHAPE: f64 = 0.3;
 
 impl Selector<'_, '_> {
-    /// The model fitted again from other starts of one of its effects; `None` if no start ends lower by what an effect must
-    /// gain. Only effects with numbers besides their size are started again: of a size alone screening has tried all.
+    /// The model fitted on where its fit ended before it had converged, or fitted again from other starts of one of its effects;
+    /// `None` if neither ends lower by what an effect must gain. Only effects with numbers besides their size are started again:
+    /// of a size alone screening has tried all.
     pub fn restarted(&mut self, best: &Fit) -> Result<Option<Fit>, DiagnoseError> {
         let least = self
             .criteria()
             .acceptance
             .least_gain_of(self.problem.residuals() as f64);
+        let continued = self.criteria().fitting.continued;
+        if !best.converged {
+            let on = fit(self.problem, best.point.clone(), continued)?;
+            if on.cost < best.cost - least && self.held_out_ratio(&on) < self.held_out_ratio(best) {
+                return self.fitted(on.point).map(Some);
+            }
+        }
         for position in 0..best.point.effects.len() {
             let mut begun = Vec::new();
             for start in self.other_starts(best, position)? {
@@ -29,7 +37,7 @@ impl Selector<'_, '_> {
             }
             begun.sort_by(|a, b| a.cost.total_cmp(&b.cost));
             for quick in begun.into_iter().take(self.criteria().screening.sizes_refined) {
-                let again = fit(self.problem, quick.point, self.criteria().fitting.converged)?;
+                let again = fit(self.problem, quick.point, continued)?;
                 if again.cost < best.cost - least {
                     return self.fitted(again.point).map(Some);
                 }

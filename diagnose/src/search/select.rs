@@ -61,7 +61,7 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
     Ok(Selection {
         calibrated_ratio: selector.held_out_ratio(&calibrated),
         improved_ratio,
-        incomplete: improved_ratio > selector.complete_up_to(&best) || !best.converged,
+        incomplete: improved_ratio > selector.complete_up_to(&best),
         effects: comparison.effects,
         calibrated,
         best,

@@ -32,6 +32,8 @@ pub struct Fit {
     pub screened: bool,
     /// The folds left out in turn, once somebody has asked ([`super::held_out`]).
     pub(super) held_out: Arc<OnceLock<HeldOut>>,
+    /// Cost of all recordings, each predicted by a fit of the others, once somebody has asked.
+    pub(super) whole_recordings: Arc<OnceLock<f64>>,
 }
 
 /// A model judged on each fold by a fit that the fold had no say in.
@@ -62,6 +64,7 @@ impl Fit {
             sensitivities: None,
             screened: false,
             held_out: Arc::default(),
+            whole_recordings: Arc::default(),
         }
     }
 

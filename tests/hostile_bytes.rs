@@ -159,7 +159,13 @@ fn specimen_model() {
     let cylinder = b"[specimen]\nname = \"a\"\nkind = \"cylinder\"\n[[chamber]]\ncolumn = \"p_Pa\"\narea_m2 = 0.001\n[effects]\n\
         moving_mass_kg = 3.0\n[effects.seal_friction]\ncoulomb_force_N = 5.0\npresliding_stiffness_N_m = 1e5\n\
         [effects.side_load_friction]\ncoefficient = 0.02\n[effects.sensor_skew]\np_Pa = 0.02\n[tolerance]\narea = 0.03\n";
-    drive(targets::specimen_model, &[spring, cylinder]);
+    let damper = b"[specimen]\nname = \"a\"\nkind = \"damper\"\n[damper]\nviscous_N_s_m = 1500.0\noffset_N = 2.0\n\
+        [effects.presliding_friction]\ncoulomb_force_N = 50.0\npresliding_stiffness_N_m = 1e6\n[effects.gas_spring]\n\
+        gas_force_N = 50.0\ngas_length_m = 0.3\n[effects.backlash]\ngap_m = 0.001\n[noise]\nforce_N = 5.0\n";
+    let carriage = b"[specimen]\nname = \"a\"\nkind = \"drive\"\n[drive]\nmass_kg = 95.0\nviscous_N_s_m = 200.0\n\
+        [effects.coulomb_friction]\ncoulomb_force_N = 20.0\n[effects.inertia]\nmoving_mass_kg = 2.0\n[effects.sensor_skew]\n\
+        position_m = 0.002\n[effects.sensor_gain]\nposition_m = 0.1\n[tolerance]\nmass = 0.15\n";
+    drive(targets::specimen_model, &[spring, cylinder, damper, carriage]);
 }
 
 #[test]

@@ -38,6 +38,10 @@ pub const TABLE: usize = 6;
 pub const FRAGILE: usize = 7;
 /// Friction of each output with a number of its own: the same effect as [`FRICTION`] in more places.
 pub const FRICTION_OF_BOTH: usize = 8;
+/// A vibration of the first output at 5 rad/s; one number.
+pub const FIRST_OF_PAIR: usize = 9;
+/// Nearly the opposite, with a little of another vibration: where both are true, either alone explains 2.5 % of the misfit.
+pub const SECOND_OF_PAIR: usize = 10;
 
 /// Frequency of the vibration, rad/s.
 pub const FREQUENCY: f64 = 2.3;
@@ -105,7 +109,7 @@ impl Analytic {
 impl Recipe {
     /// Makes the specimen: simulates the truth and adds noise.
     pub fn make(&self) -> Analytic {
-        let mut candidates: Vec<Candidate> = (0..=FRICTION_OF_BOTH).map(candidate).collect();
+        let mut candidates: Vec<Candidate> = (0..=SECOND_OF_PAIR).map(candidate).collect();
         for (k, c) in candidates.iter_mut().enumerate() {
             if !self.candidates.contains(&k) {
                 c.untestable = Some("not part of this test".to_owned());
@@ -206,6 +210,8 @@ fn candidate(index: usize) -> Candidate {
             TABLE_M.map(|x| amount(&format!("at_{x}"))).to_vec(),
         ),
         FRAGILE => (EffectId::BumpStop, Site::EndStop.into(), vec![positive("stress")]),
+        FIRST_OF_PAIR => (EffectId::DampingFade, Site::Mount.into(), vec![amount("first")]),
+        SECOND_OF_PAIR => (EffectId::EntrainedAir, Site::Mount.into(), vec![amount("second")]),
         _ => (
             EffectId::SealFriction,
             Site::MainSeal.into(),
@@ -220,6 +226,8 @@ fn candidate(index: usize) -> Candidate {
             String::new()
         },
         starts: vec![],
+        takes_from: None,
+        becomes: None,
         untestable: None,
         id,
         place,
@@ -250,6 +258,8 @@ fn law(index: usize, v: &[f64], t: f64, x: f64, speed: f64) -> Result<[f64; 2], 
         ],
         FRAGILE if v[0] > 1.0 => return Err("broken".to_owned()),
         FRICTION_OF_BOTH => [v[0] * direction, v[1] * direction],
+        FIRST_OF_PAIR => [v[0] * libm::sin(5.0 * t), 0.0],
+        SECOND_OF_PAIR => [-v[0] * (0.95 * libm::sin(5.0 * t) + 0.31 * libm::sin(7.0 * t)), 0.0],
         _ => [0.0, 0.0],
     })
 }

@@ -15,6 +15,8 @@ pub struct Criteria {
     pub fitting: Fitting,
     /// How candidates are screened before any is fitted in full.
     pub screening: Screening,
+    /// How combinations of effects are tried where no single one is accepted.
+    pub combinations: Combinations,
     /// When an effect is accepted into the model.
     pub acceptance: Acceptance,
     /// When a model counts as complete.
@@ -118,6 +120,47 @@ impl Default for Screening {
     }
 }
 
+/// How combinations of effects are tried where no single one is accepted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Combinations {
+    /// They are tried if the held-out noise ratio exceeds this multiple of what counts as complete. Closer to the noise a pair
+    /// could bend towards what is left, and most models that are so close lack one weak effect and not two.
+    pub far_from_complete: f64,
+    /// They are tried while at least this part of the cost of the calibrated model is left. A search that has explained more is
+    /// not stuck; what remains is a shape that the laws lack, towards which pairs only bend.
+    pub least_part_left: f64,
+    /// Most effects of a combination.
+    pub largest: usize,
+    /// Combinations of one size from which the next larger ones are made.
+    pub beam: usize,
+    /// Combinations of one size that are fitted in full.
+    pub finalists: usize,
+    /// Largest correlation between parameters of two effects of a combination. Beyond it they nearly cancel each other.
+    pub largest_correlation: f64,
+    /// Candidates that pairs are made from: those of lowest cost. One of a pair must be among them.
+    pub seeds: usize,
+    /// The same where simulations are slow.
+    pub seeds_of_slow: usize,
+    /// Most effects of a combination where simulations are slow.
+    pub largest_of_slow: usize,
+}
+
+impl Default for Combinations {
+    fn default() -> Self {
+        Self {
+            far_from_complete: 3.0,
+            least_part_left: 0.01,
+            largest: 3,
+            beam: 3,
+            finalists: 3,
+            largest_correlation: 0.98,
+            seeds: 8,
+            seeds_of_slow: 3,
+            largest_of_slow: 2,
+        }
+    }
+}
+
 /// When an effect is accepted into the model.
 ///
 /// A gain must be large enough in three ways (absolute, for each residual, as a fraction of what is unexplained) and more
@@ -146,6 +189,9 @@ pub struct Acceptance {
     pub least_fraction_incomplete: f64,
     /// The same for a specimen recorded under several conditions whose few parameters those conditions pin down.
     pub least_fraction_conditions: f64,
+    /// Largest cost of two whole recordings, each predicted by a fit of the other, over that without the effect. A single motion
+    /// determines the parameters of a law badly, so a little worse is no evidence against it.
+    pub whole_recordings: f64,
     /// A fault of an instrument below this fraction of a visible one is not reported: a clock off by a hundredth of a
     /// sample, a gain off by a thousandth.
     pub least_fault: f64,
@@ -167,6 +213,7 @@ impl Default for Acceptance {
             least_fraction: 0.08,
             least_fraction_incomplete: 0.35,
             least_fraction_conditions: 0.1,
+            whole_recordings: 1.05,
             least_fault: 0.1,
             better_start: 0.1,
         }

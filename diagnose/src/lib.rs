@@ -5,7 +5,7 @@
 //! model of a specimen, [`search`] finds the missing effects, and [`Diagnosis`] states the result.
 //!
 //! ```text
-//! recording --> campaign --> specimen (strut | gas spring | cylinder: one trait) <-- effect (what may be missing: one file each)
+//! recording --> campaign --> specimen (strut | gas spring | cylinder | damper | drive: one trait) <-- effect (what may be missing: one file each)
 //!                               |
 //!              estimation (residuals in noise units, sensitivities of free runs, fits with calibration within tolerance)
 //!                               |

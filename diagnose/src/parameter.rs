@@ -35,6 +35,8 @@ pub struct Parameter {
     pub lower: f64,
     /// Largest value that the parameter may have.
     pub upper: f64,
+    /// Range while no effect of the model takes over a part of what the value stands for; `None` where that is no matter.
+    pub tolerated: Option<(f64, f64)>,
     /// Calibration: `z` is normal with standard deviation 1 before the recordings are seen.
     pub prior: bool,
     /// Changes only what an instrument shows, so the physics need not be simulated again.
@@ -58,10 +60,32 @@ impl Parameter {
             scale: Scale::Linear(0.5 * tolerance),
             lower: -TOLERANCE_BOUND * tolerance,
             upper: TOLERANCE_BOUND * tolerance,
+            tolerated: None,
             prior: true,
             instrument_only: false,
             is_size: false,
             inverse_of: None,
+        }
+    }
+
+    /// The same for a value that was identified without the missing effects, and holds a part of them. Beside an effect that
+    /// takes over this part ([`crate::effect::Candidate::takes_from`]) it may fall to `least`.
+    ///
+    /// ```
+    /// use oleo_diagnose::parameter::Parameter;
+    /// // An equivalent viscous coefficient holds friction too: beside friction it may fall to zero.
+    /// let viscous = Parameter::calibration_down_to("viscous", 0.3, -1.0);
+    /// let (low, high) = viscous.tolerated_z_range();
+    /// assert!((viscous.value(low) + 0.33).abs() < 1e-12 && (viscous.value(high) - 0.33).abs() < 1e-12);
+    /// assert_eq!(viscous.value(viscous.z_range().0), -1.0);
+    /// ```
+    #[must_use]
+    pub fn calibration_down_to(key: impl Into<String>, tolerance: f64, least: f64) -> Self {
+        let alone = Self::calibration(key, tolerance);
+        Self {
+            tolerated: Some((alone.lower, alone.upper)),
+            lower: alone.lower.min(least),
+            ..alone
         }
     }
 
@@ -74,6 +98,7 @@ impl Parameter {
             scale: Scale::Linear(scale),
             lower: range.0,
             upper: range.1,
+            tolerated: None,
             prior: false,
             instrument_only: false,
             is_size: false,
@@ -147,6 +172,14 @@ impl Parameter {
     #[must_use]
     pub fn z_range(&self) -> (f64, f64) {
         let (a, b) = (self.z(self.lower), self.z(self.upper));
+        (a.min(b), a.max(b))
+    }
+
+    /// The same while no effect takes over a part of what the value stands for.
+    #[must_use]
+    pub fn tolerated_z_range(&self) -> (f64, f64) {
+        let (lower, upper) = self.tolerated.unwrap_or((self.lower, self.upper));
+        let (a, b) = (self.z(lower), self.z(upper));
         (a.min(b), a.max(b))
     }
 

@@ -110,10 +110,19 @@ fn rivals(problem: &LeastSquares<'_>, diagnosis: &Diagnosis) -> Result<Vec<(Stri
     let converged = problem.criteria.fitting.converged;
     let all = specimen.candidates();
     let mut points = Vec::new();
+    // A rival that cannot be simulated predicts nothing.
+    let mut add = |name: String, start: Point| match fit(problem, start, converged) {
+        Ok(fitted) => {
+            points.push((name, fitted.point));
+            Ok(())
+        }
+        Err(DiagnoseError::Simulation { .. }) => Ok(()),
+        Err(other) => Err(other),
+    };
     if best.effects.len() > 1 {
         for (position, &effect) in best.effects.iter().enumerate() {
-            let less = fit(problem, best.without_effect(specimen, position), converged)?;
-            points.push((format!("improved, without {}", all[effect].name()), less.point));
+            let less = best.without_effect(specimen, position);
+            add(format!("improved, without {}", all[effect].name()), less)?;
         }
     }
     if specimen.simulates_in_milliseconds() {
@@ -121,8 +130,8 @@ fn rivals(problem: &LeastSquares<'_>, diagnosis: &Diagnosis) -> Result<Vec<(Stri
             let values: Vec<f64> = all[added].parameters.iter().map(|p| p.start).collect();
             let vocabulary = !all[added].is_unlisted() && !all[added].is_instrument_fault();
             if vocabulary && !best.effects.iter().any(|&e| all[e].excludes(&all[added])) {
-                let more = fit(problem, best.with_effect(specimen, added, &values), converged)?;
-                points.push((format!("improved, with {} added", all[added].name()), more.point));
+                let more = best.with_effect(specimen, added, &values);
+                add(format!("improved, with {} added", all[added].name()), more)?;
             }
         }
         let alone: Vec<usize> = (0..all.len())
@@ -131,8 +140,7 @@ fn rivals(problem: &LeastSquares<'_>, diagnosis: &Diagnosis) -> Result<Vec<(Stri
         let screened = Screen::new(problem, &diagnosis.selection.calibrated)?.all(&alone)?;
         for (candidate, start) in alone.into_iter().zip(screened) {
             let Some(start) = start else { continue };
-            let full = fit(problem, start.point, converged)?;
-            points.push((format!("{} alone", all[candidate].name()), full.point));
+            add(format!("{} alone", all[candidate].name()), start.point)?;
         }
     }
     Ok(points)

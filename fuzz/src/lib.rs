@@ -10,7 +10,7 @@ use oleo_hil::bus::{SlcanDecoder, slcan_encode};
 use oleo_hil::candump::{parse_line, write_line};
 use oleo_interface::StrutValves;
 use oleo_plant_sim::road::{Road, crg, profile_from_csv};
-use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, smooth_motion, specimen_name};
+use oleo_plant_sim::specimen::{CylinderModel, DamperModel, DriveModel, GasSpringModel, smooth_motion, specimen_name};
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::VehicleParameters;
 use std::path::Path;
@@ -134,7 +134,7 @@ pub fn recording(bytes: &[u8]) {
     }
 }
 
-/// The `model.toml` of a gas spring or a cylinder, as `oleo diagnose` and `oleo predict` read it. A model that is
+/// The `model.toml` of a gas spring, a cylinder, a damper or a drive, as `oleo diagnose` and `oleo predict` read it. A model that is
 /// accepted is written and read again as the same, and predicts a recording or says in a line why not.
 pub fn specimen_model(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
@@ -161,6 +161,28 @@ pub fn specimen_model(bytes: &[u8]) {
             let pressures = vec![vec![1e5; time_s.len()]; model.chamber.len()];
             let force = model.force_n(&time_s, &smooth_motion(&time_s, &x, 0.05), &pressures);
             assert_eq!(model.shown(&time_s, force).len(), time_s.len());
+        }
+        Err(error) => one_line(&error),
+    }
+    match DamperModel::from_toml(text, "any.toml") {
+        Ok(model) => {
+            let written = model.to_toml().expect("what was read can be written");
+            assert_eq!(DamperModel::from_toml(&written, "again.toml"), Ok(model.clone()));
+            match model.force_n(&DamperModel::motion(&time_s, &x)) {
+                Ok(force) => assert_eq!(model.shown(&time_s, force).len(), time_s.len()),
+                Err(message) => assert!(!message.is_empty() && !message.contains('\n'), "{message}"),
+            }
+        }
+        Err(error) => one_line(&error),
+    }
+    match DriveModel::from_toml(text, "any.toml") {
+        Ok(model) => {
+            let written = model.to_toml().expect("what was read can be written");
+            assert_eq!(DriveModel::from_toml(&written, "again.toml"), Ok(model.clone()));
+            match model.position_m(&time_s, &x, &DriveModel::motion(&time_s, &x)) {
+                Ok(position) => assert_eq!(model.shown(&time_s, position).len(), time_s.len()),
+                Err(message) => assert!(!message.is_empty() && !message.contains('\n'), "{message}"),
+            }
         }
         Err(error) => one_line(&error),
     }

@@ -2,7 +2,7 @@
 
 use oleo_plant_sim::handling::HandlingParameters;
 use oleo_plant_sim::model_file::ModelFileError;
-use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel};
+use oleo_plant_sim::specimen::{CylinderModel, DamperModel, DriveModel, GasSpringModel};
 use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::vehicle::VehicleParameters;
 use proptest::prelude::*;
@@ -348,6 +348,15 @@ fn files() -> Vec<(String, Reader)> {
                   [noise]\np_Pa = 300.0\n";
     let cylinder = "chamber = [\n    { column = \"a_Pa\", area_m2 = 0.001 },\n    { column = \"b_Pa\", area_m2 = -0.002 },\n]\n\
                     [specimen]\nname = \"a\"\nkind = \"cylinder\"\n[effects]\nmoving_mass_kg = 3.0\n[tolerance]\narea = 0.03\n";
+    let damper = "[specimen]\nname = \"a\"\nkind = \"damper\"\n[damper]\nviscous_N_s_m = 1500.0\noffset_N = 2.0\n[effects]\n\
+                  presliding_friction = { coulomb_force_N = 50.0, presliding_stiffness_N_m = 1e6, breakaway_force_N = 60.0, stribeck_speed_m_s = 0.01 }\n\
+                  smooth_yield = { yield_force_N = 300.0, yield_speed_m_s = 0.02 }\nstiffness = { stiffness_N_m = 100.0 }\n\
+                  gas_spring = { gas_force_N = 50.0, gas_length_m = 0.3 }\nunlisted = { turbulent_N_s2_m2 = 3.0 }\n\
+                  [tolerance]\nviscous = 0.3\n[noise]\nforce_N = 5.0\n";
+    let drive = "[specimen]\nname = \"a\"\nkind = \"drive\"\n[drive]\nmass_kg = 95.0\nviscous_N_s_m = 200.0\n[effects]\n\
+                 coulomb_friction = { coulomb_force_N = 20.0 }\nforce_offset = { force_N = -3.0 }\nbacklash = { gap_m = 1e-4 }\n\
+                 stribeck_friction = { coulomb_force_N = 20.0, breakaway_force_N = 25.0, stribeck_speed_m_s = 0.01 }\n\
+                 inertia = { moving_mass_kg = 2.0 }\nsensor_skew = { position_m = 0.002 }\n[tolerance]\nmass = 0.15\n";
     vec![
         (STRUT.to_owned(), |text| read(text).map(drop)),
         (StrutModel::defender110(8000.0).to_toml(), |text| read(text).map(drop)),
@@ -367,6 +376,10 @@ fn files() -> Vec<(String, Reader)> {
         (cylinder.to_owned(), |text| {
             CylinderModel::from_toml(text, "m.toml").map(drop)
         }),
+        (damper.to_owned(), |text| {
+            DamperModel::from_toml(text, "m.toml").map(drop)
+        }),
+        (drive.to_owned(), |text| DriveModel::from_toml(text, "m.toml").map(drop)),
     ]
 }
 

@@ -2,7 +2,8 @@
 //!
 //! The inputs of a strut are its displacement and its switching signals. A gas spring also takes its first recorded
 //! pressure, which says how much gas there is. A cylinder also takes its recorded pressures, because its model has no
-//! accumulator from which they would follow.
+//! accumulator from which they would follow. The input of a damper is its displacement. The input of a drive is its force, with
+//! the recorded position and speed at the start of each window.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -10,7 +11,7 @@ use std::process::ExitCode;
 
 use oleo_interface::Valve;
 use oleo_plant_sim::rig::{Columns, RecordedStrut};
-use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, smooth_motion, specimen_name};
+use oleo_plant_sim::specimen::{CylinderModel, DamperModel, DriveModel, GasSpringModel, smooth_motion, specimen_name};
 use oleo_plant_sim::strut::{StrutModel, replay};
 use oleo_report::{Column, OutputDirectory, Table};
 
@@ -24,7 +25,7 @@ use crate::failure::Failure;
                   by the sensor noise that the model states. A ratio of 1 means that only noise is left."
 )]
 pub struct Args {
-    /// Model file of a two-stage hydropneumatic strut, a gas spring or a cylinder
+    /// Model file of a two-stage hydropneumatic strut, a gas spring, a cylinder, a damper or a drive
     #[arg(long, value_name = "MODEL.toml")]
     model: PathBuf,
     /// Recording whose inputs are simulated
@@ -62,6 +63,8 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let (inputs, channels) = match kind.as_str() {
         "gas spring" => gas_spring(&text, &model_file, source, &file)?,
         "cylinder" => cylinder(&text, &model_file, source, &file)?,
+        "damper" => damper(&text, &model_file, source, &file)?,
+        "drive" => drive(&text, &model_file, source, &file)?,
         _ => strut(&text, &model_file, source, &file)?,
     };
 
@@ -175,6 +178,47 @@ fn cylinder(text: &str, model_file: &str, source: File, file: &str) -> Result<Pr
         recorded: recording.column("force_N").map(<[f64]>::to_vec),
         predicted: model.shown(time, force),
         noise: model.noise.get("force_N").copied(),
+    };
+    Ok((inputs, vec![channel]))
+}
+
+fn damper(text: &str, model_file: &str, source: File, file: &str) -> Result<Predicted, Failure> {
+    let model = DamperModel::from_toml(text, model_file)?;
+    let recording = Columns::read(source, file, &["displacement_m"], &["force_N"])?;
+    let (time, x) = (recording.time_s(), column(&recording, "displacement_m"));
+    let force = model
+        .force_n(&DamperModel::motion(time, x))
+        .map_err(|what| Failure::new(format!("{file}: {what}")))?;
+    let inputs = vec![
+        ("time_s".to_owned(), time.to_vec()),
+        ("displacement_m".to_owned(), x.to_vec()),
+    ];
+    let channel = Channel {
+        name: "force_N".into(),
+        recorded: recording.column("force_N").map(<[f64]>::to_vec),
+        predicted: model.shown(time, force),
+        noise: model.noise.get("force_N").copied(),
+    };
+    Ok((inputs, vec![channel]))
+}
+
+fn drive(text: &str, model_file: &str, source: File, file: &str) -> Result<Predicted, Failure> {
+    let model = DriveModel::from_toml(text, model_file)?;
+    let recording = Columns::read(source, file, &["force_N", "position_m"], &[])?;
+    let (time, force) = (recording.time_s(), column(&recording, "force_N"));
+    let recorded = column(&recording, "position_m");
+    let position = model
+        .position_m(time, force, &DriveModel::motion(time, recorded))
+        .map_err(|what| Failure::new(format!("{file}: {what}")))?;
+    let inputs = vec![
+        ("time_s".to_owned(), time.to_vec()),
+        ("force_N".to_owned(), force.to_vec()),
+    ];
+    let channel = Channel {
+        name: "position_m".into(),
+        recorded: Some(recorded.to_vec()),
+        predicted: model.shown(time, position),
+        noise: model.noise.get("position_m").copied(),
     };
     Ok((inputs, vec![channel]))
 }

@@ -16,6 +16,10 @@ pub struct Candidate {
     pub parameters: Vec<Parameter>,
     /// Further starting points of the fit, as values of the parameters.
     pub starts: Vec<Vec<f64>>,
+    /// Key of a calibration value that was identified without the effect and holds a part of it.
+    pub takes_from: Option<&'static str>,
+    /// The effect of fewer numbers that this one becomes at an end of its range.
+    pub becomes: Option<EffectId>,
     /// Candidates of the same group exclude each other.
     pub group: Option<ExclusionGroup>,
     /// Why the recordings cannot show the candidate; `None` if they can.
@@ -36,6 +40,8 @@ impl Candidate {
             label: String::new(),
             parameters,
             starts: vec![],
+            takes_from: None,
+            becomes: None,
             group: None,
             untestable: None,
         }
@@ -54,6 +60,24 @@ impl Candidate {
     #[must_use]
     pub fn starting_at(self, starts: Vec<Vec<f64>>) -> Self {
         Self { starts, ..self }
+    }
+
+    /// The candidate that takes over a part of what a calibration value stands for.
+    #[must_use]
+    pub fn taking_from(self, key: &'static str) -> Self {
+        Self {
+            takes_from: Some(key),
+            ..self
+        }
+    }
+
+    /// The candidate that becomes another effect at an end of its range.
+    #[must_use]
+    pub fn becoming(self, id: EffectId) -> Self {
+        Self {
+            becomes: Some(id),
+            ..self
+        }
     }
 
     /// The candidate in the exclusion group of an effect.

@@ -1,6 +1,6 @@
 //! The traits of an effect: its texts, and what it does in each kind of specimen.
 
-use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel};
+use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, MechanismEffects};
 use oleo_plant_sim::strut::{Equation, StrutModel};
 
 use super::candidate::Candidate;
@@ -70,6 +70,11 @@ pub trait Effect: Sync {
         None
     }
 
+    /// What the effect does in a damper or a drive; `None` if it cannot occur in one.
+    fn in_mechanism(&self) -> Option<&dyn ActsOn<Mechanism>> {
+        None
+    }
+
     /// Name in a heading or a table; `label` distinguishes laws without a name.
     fn named(&self, _kind: SpecimenKind, _label: &str) -> &'static str {
         self.name()
@@ -86,6 +91,7 @@ pub trait Effect: Sync {
             SpecimenKind::TwoStageStrut => self.in_strut()?.equation(),
             SpecimenKind::GasSpring => self.in_gas_spring()?.equation(),
             SpecimenKind::Cylinder => self.in_cylinder()?.equation(),
+            SpecimenKind::Damper | SpecimenKind::Drive => self.in_mechanism()?.equation(),
         })
     }
 
@@ -95,6 +101,7 @@ pub trait Effect: Sync {
             SpecimenKind::TwoStageStrut => self.in_strut()?.experiment(),
             SpecimenKind::GasSpring => self.in_gas_spring()?.experiment(),
             SpecimenKind::Cylinder => self.in_cylinder()?.experiment(),
+            SpecimenKind::Damper | SpecimenKind::Drive => self.in_mechanism()?.experiment(),
         })
     }
 }
@@ -172,6 +179,14 @@ pub struct Cylinder;
 impl Kind for Cylinder {
     type Model = CylinderModel;
     type Excitation = excitation::Cylinder;
+}
+
+/// The kinds of specimen "damper" and "drive", whose models have the same effects.
+pub struct Mechanism;
+
+impl Kind for Mechanism {
+    type Model = MechanismEffects;
+    type Excitation = excitation::Mechanism;
 }
 
 /// The channels in which an effect shows.

@@ -14,6 +14,7 @@
 //! | `candidate` | [`Candidate`]: an effect at a place with the numbers to fit |
 //! | `drawn` | what a self-test draws of a concealed effect |
 //! | `relation` | the relation of the model at a place |
+//! | `mechanism/` | effects of dampers and drives |
 //! | `sensor/` | faults of instruments, the same for every kind of specimen |
 //! | `unlisted/` | laws that the vocabulary has no name for: forms, and where they act on what |
 //! | every other file | the effect of its name |
@@ -23,6 +24,7 @@
 mod candidate;
 mod contract;
 mod drawn;
+mod mechanism;
 mod registry;
 mod relation;
 pub mod sensor;
@@ -50,6 +52,8 @@ mod valve_transition;
 mod tests;
 
 pub use candidate::{Candidate, ExclusionGroup};
-pub use contract::{ActsOn, Concealed, Cylinder, Effect, Experiment, GasSpring, Kind, ShowsIn, Strut, StrutEffect};
+pub use contract::{
+    ActsOn, Concealed, Cylinder, Effect, Experiment, GasSpring, Kind, Mechanism, ShowsIn, Strut, StrutEffect,
+};
 pub use drawn::{Drawn, TrueNumber};
 pub use registry::{ALL, in_struts, of};

@@ -9,7 +9,7 @@ use crate::vocabulary::Site;
 pub fn at(site: &Site) -> String {
     match site {
         Site::Sensor(column) => format!("instrument {column}"),
-        Site::MainSeal | Site::EndStop => "force balance".into(),
+        Site::MainSeal | Site::EndStop | Site::Damper | Site::Drive => "force balance".into(),
         Site::Mount => "motion of the strut (mount)".into(),
         Site::MainChamber => "continuity of the oil".into(),
         Site::Chamber | Site::Accumulators => "gas law".into(),

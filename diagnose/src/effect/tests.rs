@@ -1,6 +1,6 @@
 //! Tests that hold for every effect.
 
-use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, SmoothedMotion};
+use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, MechanismEffects, SmoothedMotion};
 use oleo_plant_sim::strut::{Effects, Equation, StrutModel, TermId};
 
 use strum::VariantArray;
@@ -8,7 +8,7 @@ use strum::VariantArray;
 use super::*;
 use crate::excitation;
 use crate::recording::Recording;
-use crate::vocabulary::{EffectId, SpecimenKind};
+use crate::vocabulary::{Column, EffectId, Site, SpecimenKind};
 
 fn bare_strut() -> StrutModel {
     let mut model = StrutModel::defender110(8000.0);
@@ -37,6 +37,30 @@ fn wave(size: f64) -> Vec<f64> {
     (0..200).map(|k| size * libm::sin(0.1 * f64::from(k))).collect()
 }
 
+/// All candidates of a damper or a drive, of which the columns of force and motion are given.
+fn of_mechanism(site: Site, [force, motion]: [usize; 2], compared: Column) -> Vec<Candidate> {
+    let channels = excitation::Channels {
+        site,
+        force,
+        motion,
+        compared,
+        motion_noise_m: 1e-5,
+        begins_with_instrument: motion == 1,
+        mass_kg: if motion == 1 { 100.0 } else { 0.0 },
+    };
+    let mut columns = vec![wave(0.1), wave(0.1)];
+    columns[force] = wave(500.0);
+    let motion = SmoothedMotion {
+        displacement_m: wave(0.1),
+        speed_m_s: wave(1.0),
+        acceleration_m_s2: wave(10.0),
+    };
+    let excitation = excitation::Mechanism::of(channels, &[recording(columns)], &[motion]);
+    (ALL.iter().filter_map(|id| of(*id).in_mechanism()))
+        .flat_map(|e| e.candidates(&MechanismEffects::default(), &excitation))
+        .collect()
+}
+
 /// All candidates of a kind of specimen whose recordings excite everything.
 fn candidates(kind: SpecimenKind) -> Vec<Candidate> {
     let all = ALL.iter().map(|id| of(*id));
@@ -56,6 +80,8 @@ fn candidates(kind: SpecimenKind) -> Vec<Candidate> {
                 .flat_map(|e| e.candidates(&model, &excitation))
                 .collect()
         }
+        SpecimenKind::Damper => of_mechanism(Site::Damper, [1, 0], Column::FORCE),
+        SpecimenKind::Drive => of_mechanism(Site::Drive, [0, 1], Column::POSITION),
         SpecimenKind::Cylinder => {
             let text =
                 "[specimen]\nname = \"a\"\nkind = \"cylinder\"\n[[chamber]]\ncolumn = \"p_Pa\"\narea_m2 = 4.9e-4\n";
@@ -195,6 +221,26 @@ fn what_is_put_into_a_model_is_read_back_from_its_file() {
             "{}",
             candidate.name()
         );
+    }
+}
+
+/// The same for dampers and drives.
+#[test]
+fn what_is_put_into_a_mechanism_is_read_back_from_its_file() {
+    for kind in [SpecimenKind::Damper, SpecimenKind::Drive] {
+        for candidate in candidates(kind) {
+            let effect = of(candidate.id).in_mechanism().expect("an effect of mechanisms");
+            let mut model = MechanismEffects::default();
+            effect.put(&mut model, &candidate, &some_values(&candidate));
+            assert_ne!(model, MechanismEffects::default(), "{}", candidate.name());
+            let effects = toml::to_string_pretty(&model).expect("TOML");
+            assert!(
+                effects.contains(candidate.id.as_str()),
+                "{}: {effects}",
+                candidate.name()
+            );
+            assert_eq!(toml::from_str(&effects), Ok(model), "{}", candidate.name());
+        }
     }
 }
 

@@ -34,6 +34,8 @@ pub struct Fit {
     pub converged: bool,
     /// The folds left out in turn, once somebody has asked ([`super::held_out`]).
     pub(super) held_out: Arc<OnceLock<HeldOut>>,
+    /// Cost of all recordings, each predicted by a fit of the others, once somebody has asked.
+    pub(super) whole_recordings: Arc<OnceLock<f64>>,
 }
 
 /// A model judged on each fold by a fit that the fold had no say in.
@@ -65,6 +67,7 @@ impl Fit {
             screened: false,
             converged: true,
             held_out: Arc::default(),
+            whole_recordings: Arc::default(),
         }
     }
 

@@ -1,5 +1,6 @@
 //! A model judged on what had no say in its fit: each fold is left out in turn.
 
+use super::blocks::Block;
 use super::fit::{Fit, HeldOut};
 use super::gauss_newton::fit;
 use super::least_squares::LeastSquares;
@@ -13,30 +14,49 @@ use crate::criteria::Effort;
 pub fn held_out<'f>(fitted: &'f Fit, problem: &LeastSquares<'_>) -> &'f HeldOut {
     fitted.held_out.get_or_init(|| {
         let fitting = problem.criteria.fitting;
+        let folds = problem.blocks.folds();
         if problem.refits_folds() {
-            return refitted(fitted, problem, fitting.converged);
+            return refitted(fitted, problem, folds, |b| b.fold, fitting.converged);
         }
         let linear = linear(fitted, problem);
         let limit = fitting.linear_limit * total_cost(&fitted.normals);
         if fitted.screened || linear.costs.iter().sum::<f64>() < limit {
             linear
         } else {
-            refitted(fitted, problem, fitting.quick)
+            refitted(fitted, problem, folds, |b| b.fold, fitting.quick)
         }
     })
 }
 
-/// One fit without each fold. A fold whose rest cannot be fitted keeps the full fit's point, one that cannot be simulated
+/// Cost of all recordings, each predicted by a fit of the others; computed once for each fit.
+pub fn cost_of_whole_recordings(fitted: &Fit, problem: &LeastSquares<'_>) -> f64 {
+    *fitted.whole_recordings.get_or_init(|| {
+        let recordings = problem.specimen().recordings().len();
+        let effort = problem.criteria.fitting.converged;
+        refitted(fitted, problem, recordings, |b| b.recording, effort)
+            .costs
+            .iter()
+            .sum()
+    })
+}
+
+/// One fit without each of some parts, which the blocks are dealt into. A part whose rest cannot be fitted keeps the full fit's point, one that cannot be simulated
 /// there costs infinitely much.
-fn refitted(fitted: &Fit, problem: &LeastSquares<'_>, effort: Effort) -> HeldOut {
+fn refitted(
+    fitted: &Fit,
+    problem: &LeastSquares<'_>,
+    parts: usize,
+    part_of: fn(&Block) -> usize,
+    effort: Effort,
+) -> HeldOut {
     let mut costs = vec![f64::INFINITY; fitted.normals.len()];
-    let mut points = Vec::with_capacity(problem.blocks.folds());
-    for fold in 0..problem.blocks.folds() {
-        let rest = problem.keeping(|b| b.fold != fold);
+    let mut points = Vec::with_capacity(parts);
+    for part in 0..parts {
+        let rest = problem.keeping(|b| part_of(b) != part);
         let point = fit(&rest, fitted.point.clone(), effort).map_or_else(|_| fitted.point.clone(), |f| f.point);
         if let Ok(residuals) = problem.evaluation.residuals_at(&point) {
             for (k, cost) in problem.block_costs(&residuals).into_iter().enumerate() {
-                if problem.blocks.as_slice()[k].fold == fold {
+                if part_of(&problem.blocks.as_slice()[k]) == part {
                     costs[k] = cost;
                 }
             }
@@ -93,7 +113,13 @@ mod tests {
             let fitted = fit(&problem, start, problem.criteria.fitting.converged).expect("a fit");
             let (linear, refitted) = (
                 linear(&fitted, &problem),
-                refitted(&fitted, &problem, problem.criteria.fitting.converged),
+                refitted(
+                    &fitted,
+                    &problem,
+                    problem.blocks.folds(),
+                    |b| b.fold,
+                    problem.criteria.fitting.converged,
+                ),
             );
             for (a, b) in linear.costs.iter().zip(&refitted.costs) {
                 assert!((a - b).abs() < 1e-3 * b, "{a} {b}");

@@ -8,7 +8,7 @@ use super::point::Point;
 use crate::criteria::Criteria;
 use crate::error::DiagnoseError;
 use crate::recording::Recording;
-use crate::specimen::{Series, Specimen};
+use crate::specimen::{Folding, Series, Specimen};
 
 /// A specimen whose parameters are estimated on some blocks of its recordings.
 pub struct LeastSquares<'a> {
@@ -46,7 +46,7 @@ impl<'a> LeastSquares<'a> {
         let specimen = evaluation.specimen();
         let samples: Vec<usize> = specimen.recordings().iter().map(Recording::len).collect();
         Self {
-            blocks: Blocks::cut(&samples),
+            blocks: Blocks::cut(&samples, specimen.folding()),
             evaluation,
             criteria,
         }
@@ -71,7 +71,9 @@ impl<'a> LeastSquares<'a> {
     /// True where fitting without each fold is cheap enough to be done instead of approximated.
     #[must_use]
     pub fn refits_folds(&self) -> bool {
-        self.specimen().simulates_in_milliseconds() && self.specimen().recordings().len() == 1
+        let few_folds =
+            self.specimen().recordings().len() == 1 || self.specimen().folding() == Folding::WholeRecordings;
+        self.specimen().simulates_in_milliseconds() && few_folds
     }
 
     /// Number of residuals.

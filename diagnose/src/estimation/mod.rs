@@ -30,7 +30,7 @@ pub use blocks::{Block, Blocks};
 pub use evaluation::{Evaluation, Sensitivity};
 pub use fit::{Fit, HeldOut};
 pub use gauss_newton::fit;
-pub use held_out::held_out;
+pub use held_out::{cost_of_whole_recordings, held_out};
 pub use least_squares::LeastSquares;
 pub use normal_equations::NormalEquations;
 pub use point::Point;

@@ -38,10 +38,20 @@ impl Point {
             .collect()
     }
 
-    /// Range of every coordinate.
+    /// Range of every coordinate. A calibration value of which an effect takes over a part is freed from its tolerance.
     #[must_use]
     pub fn ranges(&self, specimen: &dyn Specimen) -> Vec<(f64, f64)> {
-        self.parameters(specimen).iter().map(|p| p.z_range()).collect()
+        let candidates = specimen.candidates();
+        let freed = |key: &str| (self.effects.iter()).any(|&e| candidates[e].takes_from == Some(key));
+        (self.parameters(specimen).iter())
+            .map(|p| {
+                if freed(&p.key) {
+                    p.z_range()
+                } else {
+                    p.tolerated_z_range()
+                }
+            })
+            .collect()
     }
 
     /// Precision of the prior on every coordinate: 1 for what has a tolerance, 0 for what is free.

@@ -2,7 +2,7 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `strut`, `cylinder`, `gas_spring` | ranges and events that the effects of this kind of specimen need |
+//! | `strut`, `cylinder`, `gas_spring`, `mechanism` | ranges and events that the effects of this kind of specimen need |
 //! | `extent` | ranges of columns, duration and sampling interval |
 //! | `corner` | corners of a motion, and what they say about the clocks of two columns |
 
@@ -10,9 +10,11 @@ mod corner;
 mod cylinder;
 mod extent;
 mod gas_spring;
+mod mechanism;
 mod strut;
 
 pub use corner::{Clock, corners};
 pub use cylinder::{Cylinder, pressing};
 pub use gas_spring::GasSpring;
+pub use mechanism::{Channels, Mechanism};
 pub use strut::Strut;

@@ -137,7 +137,7 @@ fn title(kind: SpecimenKind, diagnosis: &Diagnosis, location: &Location) -> Stri
 }
 
 /// Values rounded to five digits, which is all that a figure shows.
-fn brief(values: &[f64]) -> Vec<f64> {
+pub(super) fn brief(values: &[f64]) -> Vec<f64> {
     values
         .iter()
         .map(|v| format!("{v:.4e}").parse().unwrap_or(*v))
@@ -145,7 +145,7 @@ fn brief(values: &[f64]) -> Vec<f64> {
 }
 
 /// Factor and unit in which people read a quantity.
-fn scaled(unit: &str) -> (f64, &str) {
+pub(super) fn scaled(unit: &str) -> (f64, &str) {
     match unit {
         "Pa" => (1e-6, "MPa"),
         "m" => (1e3, "mm"),

@@ -5,6 +5,7 @@ mod effects;
 mod improvement;
 mod locations;
 mod model;
+mod portrait;
 pub mod words;
 
 use oleo_report::{Cell, Column, Page, Table, Verdict as Colour, significant};
@@ -42,6 +43,7 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
          simulation receives {} and no other measured value.",
         specimen.inputs_in_words()
     ));
+    portrait::section(&mut page, specimen, diagnosis);
     locations::section(&mut page, campaign, diagnosis);
     effects::section(&mut page, campaign, diagnosis);
     model::section(&mut page, specimen.kind(), diagnosis);

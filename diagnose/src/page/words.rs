@@ -27,6 +27,8 @@ pub fn at(place: &Place) -> String {
         Site::Valve(Valve::Spring) => "(valve 3)".into(),
         Site::Accumulators => "in both accumulators".into(),
         Site::Chamber => "in the gas chamber".into(),
+        Site::Damper => "in the damper".into(),
+        Site::Drive => "in the drive".into(),
         Site::Paths => "in both paths".into(),
         Site::Unknown => "at an unknown place".into(),
         Site::Accumulator(_) | Site::Path(_) | Site::Valve(_) => {
@@ -45,7 +47,8 @@ pub fn sentence(text: &str) -> String {
 }
 
 /// Units at the end of a parameter's key, longest first, with their usual spelling.
-const UNITS: [(&str, &str); 21] = [
+const UNITS: [(&str, &str); 22] = [
+    ("_N_s2_m2", "N s2/m2"),
     ("_Pa_s_m3", "Pa s/m3"),
     ("_s_MPa2", "s/MPa2"),
     ("_s_MPa", "s/MPa"),
@@ -71,7 +74,9 @@ const UNITS: [(&str, &str); 21] = [
 /// Keys in which a number before the unit counts places.
 const COUNTED: [&str; 2] = ["time_constant", "pressure"];
 /// Words of keys without a unit that are relative changes.
-const RELATIVE: [&str; 7] = [
+const RELATIVE: [&str; 9] = [
+    "mass",
+    "viscous",
     "volume",
     "static_pressure",
     "initial_pressure",

@@ -26,7 +26,7 @@ impl Selector<'_, '_> {
                 let gain = self.gain(self.held_out(&less), self.held_out(best));
                 let fraction = self.least_fraction(effects[position], fraction);
                 let weaker = weakest.as_ref().is_none_or(|(least, _)| gain.total < *least);
-                if !self.accepts(&gain, fraction) && weaker {
+                if !self.improves(&less, best, fraction) && weaker {
                     weakest = Some((gain.total, less));
                 }
             }

@@ -26,13 +26,15 @@ impl Selector<'_, '_> {
             if winner.as_ref().is_some_and(|(cost, _)| behind(*cost)) {
                 continue;
             }
-            let full = self.fitted(start.point)?;
+            let Some(full) = self.fitted_if_simulated(start.point)? else {
+                continue;
+            };
             if self.is_too_small(&full, candidate) {
                 continue;
             }
             let after = self.held_out(&full);
             let cost: f64 = after.iter().sum();
-            let accepted = self.accepts(&self.gain(before, after), fraction);
+            let accepted = self.improves(best, &full, fraction);
             if accepted && winner.as_ref().is_none_or(|(best, _)| cost < *best) {
                 winner = Some((cost, full));
             }

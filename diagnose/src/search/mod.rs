@@ -5,7 +5,7 @@
 //!     |
 //!     v                                   (until no candidate is accepted; then once more with laws without a name)
 //! screen all candidates --> fit the finalists --> accept the best that held-out blocks confirm --+
-//!     ^                                                                                         |
+//!     ^                         (none, and far above the noise: pairs and triples)              |
 //!     +-----------------------------------------------------------------------------------------+
 //!     |
 //!     v
@@ -17,6 +17,7 @@
 //! can never pass for physics. When what remains is far above the noise, no model that was tried is complete, and a small
 //! gain may be a wrong law that bends towards a missing one: a law must then explain much more to be reported.
 
+mod combinations;
 mod elimination;
 pub mod evidence;
 mod forward;
@@ -26,6 +27,7 @@ pub mod screen;
 mod select;
 mod selection;
 mod selector;
+mod simplification;
 mod sizes;
 
 pub use evidence::HeldOutGain;

@@ -2,6 +2,7 @@
 
 use super::selection::{Rival, SelectedEffect};
 use super::selector::{Selector, ranked};
+use super::simplification::is_form_of;
 use crate::criteria::Criteria;
 use crate::effect::Candidate;
 use crate::error::DiagnoseError;
@@ -106,7 +107,7 @@ impl Selector<'_, '_> {
         let simpler = other.id == effect.id
             && other.parameters.len() < effect.parameters.len()
             && !self.accepts(&rival.lead, 0.0);
-        clearly || simpler
+        (clearly || simpler) && !self.predicts_recordings_worse(best, full)
     }
 }
 
@@ -117,7 +118,8 @@ fn includes(wider: &Candidate, effect: &Candidate) -> bool {
     let more_places = wider.id == effect.id
         && wider.parameters.len() > effect.parameters.len()
         && wider.place.contains(&effect.place);
-    law || more_places
+    let more_numbers = is_form_of(effect, wider) && wider.parameters.len() > effect.parameters.len();
+    law || more_places || more_numbers
 }
 
 #[cfg(test)]

@@ -285,8 +285,9 @@ impl<'p, 'a> Screen<'p, 'a> {
             h[(k, k)] += prior[k];
             g[k] -= prior[k] * z[k];
         }
-        let response =
-            bounded_step(&h, &g, RESPONSE_DAMPING, z, &self.fit.ranges).unwrap_or_else(|| DVector::zeros(old));
+        // The candidate may free a value of the model from its tolerance.
+        let ranges = &point.ranges(self.specimen())[..old];
+        let response = bounded_step(&h, &g, RESPONSE_DAMPING, z, ranges).unwrap_or_else(|| DVector::zeros(old));
         let raw = total_cost(normals) + point.prior_cost(self.specimen());
         let cost = raw - 2.0 * g.dot(&response) + response.dot(&(&h * &response));
         (response, cost)

@@ -1,5 +1,6 @@
 //! The search from the believed model to the improved one.
 
+use super::combinations::Screening;
 use super::selection::{CandidateScore, Progress, Selection};
 use super::selector::{Screened, Selector};
 use crate::error::DiagnoseError;
@@ -36,9 +37,12 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
     let grown = best.point.effects.len();
     let acceptance = &problem.criteria.acceptance;
     best = selector.eliminate(best, acceptance.least_fraction)?;
+    let mut fraction = acceptance.least_fraction;
     if selector.held_out_ratio(&best) > selector.complete_up_to(&best) {
-        best = selector.eliminate(best, fraction_of_incomplete(problem))?;
+        fraction = fraction_of_incomplete(problem);
+        best = selector.eliminate(best, fraction)?;
     }
+    best = selector.simplify(best, fraction)?;
 
     progress("testing rivals in the place of each effect", done::RIVALS);
     let mut comparison = selector.compare_with_rivals(&best, with_laws)?;
@@ -86,12 +90,16 @@ fn grow(selector: &mut Selector<'_, '_>, calibrated: &Fit, progress: Progress<'_
     let mut best = calibrated.clone();
     let mut with_laws = false;
     let mut scores: Vec<CandidateScore> = Vec::new();
+    let mut screened_alone: Vec<Screened> = Vec::new();
     loop {
         let screening = done::SCREENING + done::EFFECT * best.point.effects.len() as f64;
         progress("screening every candidate", screening);
         let screened = selector.screen(&best, selector.open(&best.point, with_laws))?;
         if best.point.effects.is_empty() {
             score_alone(selector, &screened, &mut scores);
+            if screened_alone.is_empty() {
+                screened_alone.clone_from(&screened);
+            }
         }
         progress(
             "fitting the strongest candidates",
@@ -112,6 +120,21 @@ fn grow(selector: &mut Selector<'_, '_>, calibrated: &Fit, progress: Progress<'_
         {
             best = better;
             continue;
+        }
+        if !full && !with_laws && selector.is_far_from_complete(&best, calibrated) {
+            progress("trying combinations", screening + done::FITTING_AFTER_SCREENING);
+            let end = Screening {
+                model: &best,
+                screened: &screened,
+            };
+            let begin = Screening {
+                model: calibrated,
+                screened: &screened_alone,
+            };
+            if let Some(next) = selector.strongest_combination(end, begin)? {
+                best = next;
+                continue;
+            }
         }
         let reaches_noise = || {
             let limit = criteria.completeness.law_noise_ratio.max(selector.floor(&best));

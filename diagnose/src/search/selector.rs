@@ -8,8 +8,8 @@ use super::screen::Screen;
 use crate::criteria::Criteria;
 use crate::effect::Candidate;
 use crate::error::DiagnoseError;
-use crate::estimation::{Fit, LeastSquares, Point, fit, held_out};
-use crate::specimen::Specimen;
+use crate::estimation::{Fit, LeastSquares, Point, cost_of_whole_recordings, fit, held_out};
+use crate::specimen::{Folding, Specimen};
 
 /// A candidate and its screened fit; `None` where it cannot be simulated at all.
 pub type Screened = (usize, Option<Fit>);
@@ -43,6 +43,11 @@ impl<'p, 'a> Selector<'p, 'a> {
         self.problem.specimen()
     }
 
+    /// Candidates that the recordings can show.
+    pub fn testable(&self) -> &[usize] {
+        &self.testable
+    }
+
     pub fn candidate(&self, index: usize) -> &'a Candidate {
         &self.specimen().candidates()[index]
     }
@@ -62,6 +67,15 @@ impl<'p, 'a> Selector<'p, 'a> {
         let full = fit(self.problem, start, self.criteria().fitting.converged)?;
         self.known.insert(effects, full.without_sensitivities());
         Ok(full)
+    }
+
+    /// The same where the start can be simulated; `None` where it cannot, which is no candidate and no failure.
+    pub fn fitted_if_simulated(&mut self, start: Point) -> Result<Option<Fit>, DiagnoseError> {
+        match self.fitted(start) {
+            Ok(fit) => Ok(Some(fit)),
+            Err(DiagnoseError::Simulation { .. }) => Ok(None),
+            Err(other) => Err(other),
+        }
     }
 
     /// Costs of the blocks, each held out.
@@ -88,6 +102,25 @@ impl<'p, 'a> Selector<'p, 'a> {
     /// True if a gain is accepted: certain, large, and at least a fraction of what is unexplained.
     pub fn accepts(&self, gain: &HeldOutGain, least_fraction: f64) -> bool {
         gain.is_accepted(least_fraction, &self.criteria().acceptance)
+    }
+
+    /// True if a model is accepted over one with fewer effects: the gain on held-out blocks is accepted, and whole recordings
+    /// are not predicted worse.
+    pub fn improves(&self, less: &Fit, full: &Fit, least_fraction: f64) -> bool {
+        let gain = self.gain(self.held_out(less), self.held_out(full));
+        self.accepts(&gain, least_fraction) && !self.predicts_recordings_worse(less, full)
+    }
+
+    /// True if a model predicts whole recordings, each from a fit of the others, worse than another model does. Asked of two
+    /// recordings that repeat one motion each, because then a fold holds a part of each. (Where there are more, a fold is a
+    /// whole recording.)
+    pub fn predicts_recordings_worse(&self, than: &Fit, full: &Fit) -> bool {
+        let specimen = self.specimen();
+        let asked = specimen.folding() == Folding::WholeRecordings && specimen.recordings().len() == 2;
+        asked && {
+            let cost = |fit| cost_of_whole_recordings(fit, self.problem);
+            cost(full) > self.criteria().acceptance.whole_recordings * cost(than)
+        }
     }
 
     /// Candidates that may be added to a model: not in it and excluded by none of its effects. Laws without a name only

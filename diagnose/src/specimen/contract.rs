@@ -3,7 +3,9 @@
 use oleo_plant_sim::model_file::InvalidValue;
 
 use super::channel::{Channel, Series, StateSeries};
+use super::folding::Folding;
 use super::hypothesis::Hypothesis;
+use super::portrait::Portrait;
 use super::relation::MeasuredRelation;
 use crate::effect::Candidate;
 use crate::error::DiagnoseError;
@@ -85,6 +87,16 @@ pub trait Specimen: Sync {
     /// Whether simulating all recordings takes only milliseconds. Then quantities are computed that are otherwise approximated.
     fn simulates_in_milliseconds(&self) -> bool {
         false
+    }
+
+    /// What a fold of held-out data is, where there are several recordings.
+    fn folding(&self) -> Folding {
+        Folding::PartsOfEach
+    }
+
+    /// The picture by which people of the trade judge a specimen of this kind; none if there is no usual one.
+    fn portrait(&self) -> Option<Portrait> {
+        None
     }
 
     /// Whether the model is stated to be complete apart from missing effects, so that a remaining misfit is itself a result.

@@ -1,4 +1,4 @@
-//! Specimens: struts, gas springs, cylinders.
+//! Specimens: struts, gas springs, cylinders, dampers, drives.
 //!
 //! All that the search, the report and the page know of a specimen is the trait [`Specimen`]. A kind is one folder behind it:
 //!
@@ -7,6 +7,8 @@
 //! | `mod.rs` | the columns of its recordings, the model under a hypothesis, what that predicts |
 //! | `calibration.rs` | what may be off within tolerance, and how it is put into a model |
 //! | what only this kind has | force balance (cylinder), relations between neighbours, floor of the noise, drawing (strut) |
+//!
+//! Damper and drive are mechanisms with one degree of freedom and the same effects; `mechanism` holds what they share.
 //!
 //! What a model may lack is not here: each effect says what it does in each kind of specimen ([`crate::effect`]).
 //!
@@ -18,16 +20,23 @@
 pub mod channel;
 pub mod contract;
 mod cylinder;
+mod damper;
 pub mod drawing;
+mod drive;
+mod folding;
 mod gas_spring;
 mod hypothesis;
+mod mechanism;
 mod model_file;
+mod portrait;
 pub mod relation;
 pub mod single_output;
 pub mod strut;
 
 pub use channel::{Channel, Series, StateSeries};
 pub use contract::{BelievedModel, Specimen};
+pub use folding::Folding;
 pub use hypothesis::Hypothesis;
 pub use model_file::ModelFile;
+pub use portrait::Portrait;
 pub use relation::MeasuredRelation;

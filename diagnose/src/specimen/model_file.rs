@@ -2,7 +2,7 @@
 
 use oleo_plant_sim::model_file::InvalidValue;
 use oleo_plant_sim::model_file::names::suggestion;
-use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, specimen_name};
+use oleo_plant_sim::specimen::{CylinderModel, DamperModel, DriveModel, GasSpringModel, specimen_name};
 use oleo_plant_sim::strut::StrutModel;
 use strum::VariantNames;
 
@@ -30,6 +30,8 @@ impl ModelFile {
             SpecimenKind::TwoStageStrut => Box::new(StrutModel::from_toml(text, source)?),
             SpecimenKind::GasSpring => Box::new(GasSpringModel::from_toml(text, source)?),
             SpecimenKind::Cylinder => Box::new(CylinderModel::from_toml(text, source)?),
+            SpecimenKind::Damper => Box::new(DamperModel::from_toml(text, source)?),
+            SpecimenKind::Drive => Box::new(DriveModel::from_toml(text, source)?),
         };
         model.check_noise().map_err(|invalid| invalid.in_file(text, source))?;
         Ok(Self { name: head.name, model })

@@ -5,7 +5,9 @@
 
 use super::channel::{Channel, Series, StateSeries};
 use super::contract::Specimen;
+use super::folding::Folding;
 use super::hypothesis::Hypothesis;
+use super::portrait::Portrait;
 use crate::effect::Candidate;
 use crate::parameter::Parameter;
 use crate::recording::Recording;
@@ -49,6 +51,21 @@ pub trait SingleOutput: Sync {
 
     /// The specimen as a drawing with the places marked where something was found.
     fn drawing(&self, found: &[&Place]) -> String;
+
+    /// Noise ratio that a complete model reaches, 1 or more.
+    fn noise_floor(&self, _model: &Self::Model, _recordings: &[Recording], _noise: f64) -> f64 {
+        1.0
+    }
+
+    /// What a fold of held-out data is, where there are several recordings.
+    fn folding(&self) -> Folding {
+        Folding::PartsOfEach
+    }
+
+    /// The picture by which people of the trade judge a specimen of this kind.
+    fn portrait(&self) -> Option<Portrait> {
+        None
+    }
 }
 
 /// A specimen with one compared channel.
@@ -122,5 +139,18 @@ impl<K: SingleOutput> Specimen for SingleOutputSpecimen<K> {
 
     fn drawing(&self, found: &[&Place]) -> Option<String> {
         Some(self.kind.drawing(found))
+    }
+
+    fn noise_floor(&self, hypothesis: &Hypothesis) -> f64 {
+        let model = self.kind.applied(&self.candidates, hypothesis);
+        self.kind.noise_floor(&model, &self.recordings, self.channel.noise)
+    }
+
+    fn folding(&self) -> Folding {
+        self.kind.folding()
+    }
+
+    fn portrait(&self) -> Option<Portrait> {
+        self.kind.portrait()
     }
 }

@@ -20,6 +20,9 @@ impl Column {
     /// Force of the load cell, N.
     pub const FORCE: Self = Self::known("force_N");
 
+    /// Position of the carriage of a drive, m.
+    pub const POSITION: Self = Self::known("position_m");
+
     /// A column that a kind of specimen always has.
     #[must_use]
     pub const fn known(name: &'static str) -> Self {

@@ -70,6 +70,24 @@ pub enum EffectId {
     MountCompliance,
     /// The dampers weaken as their oil warms.
     DampingFade,
+    /// Dry friction of constant size in a damper or a drive.
+    CoulombFriction,
+    /// Dry friction that falls with speed.
+    StribeckFriction,
+    /// Hysteresis of dry friction over displacement before it slides.
+    PreslidingFriction,
+    /// A resisting force that saturates with speed.
+    SmoothYield,
+    /// A constant force.
+    ForceOffset,
+    /// A linear spring in parallel.
+    Stiffness,
+    /// A gas spring in parallel.
+    GasSpring,
+    /// A gap in a joint.
+    Backlash,
+    /// A moving mass that the model does not have.
+    Inertia,
     /// The instrument follows with a first-order lag.
     SensorLag,
     /// The gain of the instrument is wrong.
@@ -140,6 +158,15 @@ mod tests {
             "bump_stop",
             "mount_compliance",
             "damping_fade",
+            "coulomb_friction",
+            "stribeck_friction",
+            "presliding_friction",
+            "smooth_yield",
+            "force_offset",
+            "stiffness",
+            "gas_spring",
+            "backlash",
+            "inertia",
             "sensor_lag",
             "sensor_gain",
             "sensor_drift",

@@ -86,6 +86,10 @@ pub enum Site {
     Mount,
     /// Gas chamber of a gas spring.
     Chamber,
+    /// The damper on a dynamometer as a whole: its two ends are all that is recorded.
+    Damper,
+    /// The drive as a whole, from the force of its motor to the position of its carriage.
+    Drive,
     /// The instrument behind a column.
     Sensor(Column),
     /// The place is unknown.
@@ -182,6 +186,8 @@ impl fmt::Display for Site {
             Self::EndStop => out.write_str("end-stop"),
             Self::Mount => out.write_str("mount"),
             Self::Chamber => out.write_str("chamber"),
+            Self::Damper => out.write_str("damper"),
+            Self::Drive => out.write_str("drive"),
             Self::Sensor(column) => write!(out, "{SENSOR}{column}"),
             Self::Unknown => out.write_str("unknown"),
         }
@@ -247,6 +253,8 @@ impl FromStr for Site {
             "end-stop" => Self::EndStop,
             "mount" => Self::Mount,
             "chamber" => Self::Chamber,
+            "damper" => Self::Damper,
+            "drive" => Self::Drive,
             "unknown" => Self::Unknown,
             _ => return Err(PlaceError(text.to_owned())),
         })
@@ -286,6 +294,8 @@ mod tests {
             Just(Site::EndStop),
             Just(Site::Mount),
             Just(Site::Chamber),
+            Just(Site::Damper),
+            Just(Site::Drive),
             "[a-z][a-z0-9_]{0,8}_(Pa|m|N)".prop_map(|name| Site::Sensor(Column::named(name))),
             Just(Site::Unknown),
         ]

@@ -14,6 +14,12 @@ pub enum SpecimenKind {
     /// Chambers under pressure that is measured, and the force of the rod.
     #[strum(serialize = "cylinder")]
     Cylinder,
+    /// Damper that is moved by a dynamometer, and its force.
+    #[strum(serialize = "damper")]
+    Damper,
+    /// Carriage that is pushed by a measured force, and its position.
+    #[strum(serialize = "drive")]
+    Drive,
 }
 
 impl SpecimenKind {

@@ -1,12 +1,18 @@
-//! Test specimens simpler than the strut: a gas spring and a cylinder, as found on other people's test machines.
+//! Test specimens simpler than the strut: a gas spring, a cylinder, a damper and a drive, as found on other people's test
+//! machines.
 //!
-//! They share the strut's physics (energy equation of the gas, friction of the seal) and its vocabulary of effects, so
-//! that a diagnosis learnt on one is checked on the others.
+//! Gas spring and cylinder share the strut's physics (energy equation of the gas, friction of the seal) and its vocabulary of
+//! effects, so that a diagnosis learnt on one is checked on the others. Damper and drive have a vocabulary of their own.
 
 mod cylinder;
 mod gas_spring;
+mod mechanism;
 mod name;
 
 pub use cylinder::{CylinderChamber, CylinderEffects, CylinderModel, CylinderSeal, SmoothedMotion, smooth_motion};
 pub use gas_spring::{GasHeatTransferTerm, GasProcess, GasSpringEffects, GasSpringGas, GasSpringModel, SpringChamber};
+pub use mechanism::{
+    Backlash, CoulombFriction, Damper, DamperModel, Drive, DriveModel, ForceOffset, Inertia, MechanismEffects,
+    ParallelGasSpring, PreslidingFriction, SmoothYield, Stiffness, StribeckFriction, UnnamedForces, WINDOW_S,
+};
 pub use name::{SpecimenName, specimen_name};

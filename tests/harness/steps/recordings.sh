@@ -4,6 +4,7 @@
 readonly folder=../shared/recordings
 
 libtest "bad recordings" cargo test --locked --release --test diagnose_bad_recordings -- --show-output
+libtest "dampers and drives" cargo test --locked --release --test diagnose_mechanisms
 
 if [ ! -d $folder ]; then
     skip "recordings" "no folder $folder beside this checkout"

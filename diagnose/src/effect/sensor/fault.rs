@@ -1,10 +1,12 @@
 //! What the faults of instruments have in common: where they can be, how they are put, concealed and searched for.
 
-use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel};
+use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, MechanismEffects};
 use oleo_plant_sim::strut::{COLUMNS, Equation, SensorEffect, StrutModel, TermId};
 
 use crate::effect::candidate::Candidate;
-use crate::effect::contract::{ActsOn, Concealed, Cylinder, Effect, Experiment, GasSpring, Strut, StrutEffect};
+use crate::effect::contract::{
+    ActsOn, Concealed, Cylinder, Effect, Experiment, GasSpring, Mechanism, Strut, StrutEffect,
+};
 use crate::effect::drawn::{Drawn, TrueNumber};
 use crate::excitation;
 use crate::parameter::Parameter;
@@ -130,6 +132,10 @@ impl Effect for Fault {
     fn in_cylinder(&self) -> Option<&dyn ActsOn<Cylinder>> {
         (self.of_cylinder != OfCylinder::No).then_some(self)
     }
+
+    fn in_mechanism(&self) -> Option<&dyn ActsOn<Mechanism>> {
+        Some(self)
+    }
 }
 
 impl ActsOn<Strut> for Fault {
@@ -218,6 +224,35 @@ impl ActsOn<Cylinder> for Fault {
 
     fn put(&self, model: &mut CylinderModel, candidate: &Candidate, values: &[f64]) {
         self.enter(model.effects.sensor_fault_mut(self.term), candidate, values);
+    }
+
+    fn experiment(&self) -> Experiment {
+        self.without_valves
+    }
+}
+
+/// Only the compared column is tried: what a fault of the other column does can as well be done by one of this column and by
+/// the values of the model.
+impl ActsOn<Mechanism> for Fault {
+    fn equation(&self) -> Equation {
+        self.term.equation()
+    }
+
+    fn candidates(&self, _model: &MechanismEffects, excitation: &excitation::Mechanism) -> Vec<Candidate> {
+        let extent = &excitation.extent;
+        let reading = Reading::new(
+            excitation.compared.clone(),
+            extent.spread(1),
+            extent.duration_s,
+            extent.interval_s,
+        );
+        let mut candidate = self.candidate(&reading);
+        (candidate.parameters.iter_mut()).for_each(|p| p.instrument_only = !excitation.begins_with_instrument);
+        vec![candidate]
+    }
+
+    fn put(&self, model: &mut MechanismEffects, candidate: &Candidate, values: &[f64]) {
+        self.enter(model.sensor_fault_mut(self.term), candidate, values);
     }
 
     fn experiment(&self) -> Experiment {

@@ -9,7 +9,7 @@
 //! | `forms/` | one file for each form |
 //! | `knots` | points of the tables |
 //! | `strut_laws` | place x dependence x form: the laws that are tried on a strut |
-//! | `cylinder_laws`, `gas_spring_laws` | laws of one number that only these kinds of specimen may have |
+//! | `cylinder_laws`, `gas_spring_laws`, `mechanism_laws` | laws of one number that only these kinds of specimen may have |
 //! | `textbook` | other laws, for the self-test to conceal |
 //!
 //! A new form is a file in `forms` and its name in the rows of `strut_laws`. A new quantity to depend on is a variant of
@@ -20,6 +20,7 @@ mod cylinder_laws;
 mod forms;
 mod gas_spring_laws;
 mod knots;
+mod mechanism_laws;
 mod nameless;
 mod strut_laws;
 mod textbook;

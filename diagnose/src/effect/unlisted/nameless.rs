@@ -3,9 +3,11 @@
 use oleo_plant_sim::strut::{Equation, StrutModel, TermId};
 
 use super::words::NamelessLaw;
-use super::{cylinder_laws, gas_spring_laws, strut_laws, textbook};
+use super::{cylinder_laws, gas_spring_laws, mechanism_laws, strut_laws, textbook};
 use crate::effect::candidate::Candidate;
-use crate::effect::contract::{ActsOn, Concealed, Cylinder, Effect, Experiment, GasSpring, Strut, StrutEffect};
+use crate::effect::contract::{
+    ActsOn, Concealed, Cylinder, Effect, Experiment, GasSpring, Mechanism, Strut, StrutEffect,
+};
 use crate::effect::drawn::{Drawn, TrueNumber};
 use crate::excitation;
 use crate::vocabulary::{EffectId, SpecimenKind};
@@ -58,6 +60,10 @@ impl Effect for Unlisted {
     fn in_cylinder(&self) -> Option<&dyn ActsOn<Cylinder>> {
         Some(&cylinder_laws::Laws)
     }
+
+    fn in_mechanism(&self) -> Option<&dyn ActsOn<Mechanism>> {
+        Some(&mechanism_laws::Laws)
+    }
 }
 
 /// Words of a law of one number; `None` for a table, which a strut's laws are.
@@ -66,6 +72,7 @@ fn words(kind: SpecimenKind, label: &str) -> Option<NamelessLaw> {
         SpecimenKind::TwoStageStrut => None,
         SpecimenKind::GasSpring => gas_spring_laws::words(label),
         SpecimenKind::Cylinder => cylinder_laws::words(label),
+        SpecimenKind::Damper | SpecimenKind::Drive => mechanism_laws::words(label),
     }
 }
 

@@ -1,0 +1,103 @@
+//! Simplification: an effect that has forms of fewer numbers is reported in the simplest that does as well.
+//!
+//! Friction whose level falls with speed holds friction whose level does not. Where the fall gains little, the numbers that
+//! describe it are not determined and mean nothing.
+
+use super::selector::Selector;
+use crate::effect::Candidate;
+use crate::error::DiagnoseError;
+use crate::estimation::Fit;
+
+impl Selector<'_, '_> {
+    /// Puts simpler forms in the place of effects, as long as the form that is there is not accepted over the simpler one.
+    pub fn simplify(&mut self, mut best: Fit, fraction: f64) -> Result<Fit, DiagnoseError> {
+        for effect in best.point.effects.clone() {
+            let mut forms = self.simpler_forms(effect, &best);
+            forms.sort_by_key(|&form| self.candidate(form).parameters.len());
+            for form in forms {
+                let Some(position) = best.point.effects.iter().position(|&e| e == effect) else {
+                    break;
+                };
+                if let Some(simpler) = self.with_form(&best, position, form)?
+                    && !self.improves(&simpler, &best, fraction)
+                {
+                    best = simpler;
+                }
+            }
+        }
+        Ok(best)
+    }
+
+    /// The model with a simpler form in the place of the effect at a position, fitted from the numbers that both have and from
+    /// those that screening finds; `None` where it cannot be simulated.
+    fn with_form(&mut self, best: &Fit, position: usize, form: usize) -> Result<Option<Fit>, DiagnoseError> {
+        let specimen = self.specimen();
+        let (there, simpler) = (self.candidate(best.point.effects[position]), self.candidate(form));
+        let values = &best.point.hypothesis(specimen).effects[position].1;
+        let known = |key: &str| {
+            (there.parameters.iter().zip(values))
+                .find(|(p, _)| p.key == key)
+                .map(|(_, v)| *v)
+        };
+        let own: Vec<f64> = simpler
+            .parameters
+            .iter()
+            .map(|p| known(&p.key).unwrap_or(p.start))
+            .collect();
+        let without = best.point.without_effect(specimen, position);
+        let near = self.fitted_if_simulated(without.with_effect(specimen, form, &own))?;
+        let less = self.fitted(without)?;
+        match self.screen(&less, vec![form])?.into_iter().next() {
+            Some((_, Some(start))) => Ok(self.fitted_if_simulated(start.point)?.or(near)),
+            _ => Ok(near),
+        }
+    }
+
+    /// Forms of an effect of a model with fewer numbers, which no other of its effects excludes.
+    fn simpler_forms(&self, effect: usize, best: &Fit) -> Vec<usize> {
+        let there = self.candidate(effect);
+        let simpler = |form: &Candidate| is_form_of(form, there) && form.parameters.len() < there.parameters.len();
+        let excluded =
+            |form: &Candidate| (best.point.effects.iter()).any(|&e| e != effect && self.candidate(e).excludes(form));
+        (self.testable().iter().copied())
+            .filter(|&c| simpler(self.candidate(c)) && !excluded(self.candidate(c)))
+            .collect()
+    }
+}
+
+/// True if a candidate is a form of another at the same place: of the same named effect, or what the other becomes at an end of
+/// its range.
+pub fn is_form_of(form: &Candidate, other: &Candidate) -> bool {
+    let named = !form.is_unlisted() && !other.is_unlisted();
+    let same_effect = form.group.is_some() && form.group == other.group;
+    named && form.place == other.place && (same_effect || other.becomes == Some(form.id))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analytic::{Analytic, FRICTION, FRICTION_OF_BOTH, RUN, Recipe};
+    use crate::estimation::{LeastSquares, Point};
+
+    /// What is left of friction with a number for each output, fitted to this truth.
+    fn simplified(truth: (usize, Vec<f64>)) -> Vec<usize> {
+        let specimen: Analytic = Recipe {
+            truth: vec![truth],
+            candidates: vec![FRICTION, FRICTION_OF_BOTH],
+            ..Recipe::default()
+        }
+        .make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut selector = Selector::new(&problem);
+        let start = Point::nominal(&specimen).with_effect(&specimen, FRICTION_OF_BOTH, &[0.1, 0.1]);
+        let best = selector.fitted(start).expect("a fit");
+        let fraction = problem.criteria.acceptance.least_fraction;
+        selector.simplify(best, fraction).expect("a fit").point.effects
+    }
+
+    #[test]
+    fn the_simpler_form_is_taken_where_it_does_as_well() {
+        assert_eq!(simplified((FRICTION, vec![0.1])), [FRICTION]);
+        assert_eq!(simplified((FRICTION_OF_BOTH, vec![0.15, 0.04])), [FRICTION_OF_BOTH]);
+    }
+}

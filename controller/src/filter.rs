@@ -14,8 +14,13 @@ pub struct LowPass {
 impl LowPass {
     /// Lag with a time constant, s, above 0.
     pub fn from_time_constant_s(time_constant_s: f32) -> Self {
+        Self::sampled(TICK_S, time_constant_s)
+    }
+
+    /// Lag that is stepped once in a period, s, with a time constant, s; both above 0.
+    pub fn sampled(period_s: f32, time_constant_s: f32) -> Self {
         Self {
-            alpha: -libm::expm1f(-TICK_S / time_constant_s),
+            alpha: -libm::expm1f(-period_s / time_constant_s),
         }
     }
 

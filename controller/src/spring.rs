@@ -24,7 +24,7 @@
 //! The shift that a closing in an emergency traps has no bound. [`Springs::trapped_shift_m`] reports it, and the next opening
 //! releases it.
 
-use oleo_interface::{Absolute, Corners, Gauge, StrutPressures};
+use oleo_interface::{Absolute, Corner, Corners, Gauge, StrutPressures};
 
 use crate::filter::{Derivative, DerivativeState, at_least};
 use crate::plausibility::Trusted;
@@ -199,11 +199,10 @@ impl Springs {
         self.valves.each_ref().map(|valve| valve.throttled)
     }
 
-    /// Corners at which valve 3 has been open for so long that p4 follows p1.
-    pub fn settled_open(&self) -> Corners<bool> {
-        self.valves
-            .each_ref()
-            .map(|valve| valve.open && valve.since >= SETTLE_TICKS && !valve.throttled)
+    /// Whether valve 3 of a corner has been open for so long that p4 follows p1.
+    pub fn is_settled_open(&self, corner: Corner) -> bool {
+        let valve = &self.valves[corner];
+        valve.open && valve.since >= SETTLE_TICKS && !valve.throttled
     }
 
     /// Shift of the ride height by the oil behind each closed valve 3, m, positive where the corner is lower. Where the valve

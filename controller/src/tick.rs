@@ -92,9 +92,10 @@ pub struct Outputs {
 /// assert_eq!(outputs.map(|outputs| outputs.command), Some(ValveCommand::SAFE));
 /// ```
 pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
+    let compared = state.plausibility.turn();
     let context = plausibility::Context {
-        spring_settled_open: state.springs.settled_open(),
-        spring_commanded_closed: state.switching.command().corners().map(|strut| !strut[Valve::Spring]),
+        spring_settled_open: state.springs.is_settled_open(compared),
+        spring_commanded_closed: !state.switching.command().is_open(compared, Valve::Spring),
         learning: !state.failsafe.was_normal(),
     };
     let trusted = state.plausibility.step(&c.plausibility, inputs, &context);
@@ -104,7 +105,7 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     // load.
     let mut estimate = Estimate::default();
     if state.failsafe.was_normal() || health == Health::default() {
-        estimate = state.estimate.step(&c.estimate, &trusted);
+        estimate = state.estimate.step(&c.estimate, trusted);
         if !estimate.is_finite() {
             health.cause = FaultCode::Internal;
             estimate = Estimate::default();
@@ -112,13 +113,13 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     }
 
     let mode = state.failsafe.step(&health);
-    let demand = state.strategy.step(&c.strategy, &estimate, &trusted);
+    let demand = state.strategy.step(&c.strategy, &estimate, trusted);
     let springs = if mode == Mode::Normal {
         let wanted = demand.valves.corners().map(|strut| strut[Valve::Spring]);
         let load_n = &estimate.static_load_n;
-        state.springs.step(&c.spring, &trusted, load_n, wanted, demand.urgency)
+        state.springs.step(&c.spring, trusted, load_n, wanted, demand.urgency)
     } else {
-        state.springs.forced_closed(&c.spring, &trusted);
+        state.springs.forced_closed(&c.spring, trusted);
         Corners::splat(false)
     };
     let bypass = state.dwell.step(demand.valves, demand.urgency == Urgency::Emergency);

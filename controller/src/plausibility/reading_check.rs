@@ -3,7 +3,10 @@
 //! A single bad sample is replaced by the last good one. A counter goes up by 4 with each bad sample and down by 1 with each good
 //! one. At 12 the reading is faulty, which takes three bad samples in a row, and at 0 it is believed again.
 
-use super::limits::Limits;
+use oleo_interface::{Gauge, StrutPressures};
+
+use super::limits::{DISPLACEMENT, Limits, PRESSURE};
+use super::verdict::Verdicts;
 use crate::failsafe::FaultCode;
 use crate::reading::Reading;
 
@@ -39,24 +42,20 @@ impl ReadingCheck {
         self.last
     }
 
-    /// One tick; returns what is wrong if the reading is to be replaced, and [`FaultCode::None`] if it may be used.
-    pub fn step(&mut self, reading: Reading, message_lost: bool, limits: &Limits) -> FaultCode {
-        // Most ticks end here: nothing was wrong lately, so the last sample was good, and nothing is wrong now.
-        if self.bad == 0
-            && let Some(value) = reading.value()
-            && value >= limits.least
-            && value <= limits.most
-            && (value - self.last).abs() <= limits.step
-        {
-            self.last = value;
-            return FaultCode::None;
-        }
-        self.doubt(reading, message_lost, limits)
+    /// Whether nothing was wrong with the reading lately.
+    fn is_calm(&self) -> bool {
+        self.bad == 0
     }
 
-    /// The whole check, for a reading that was wrong lately or may be wrong now.
-    #[inline(never)]
-    fn doubt(&mut self, reading: Reading, message_lost: bool, limits: &Limits) -> FaultCode {
+    /// Whether a reading is good by itself; only while the check is calm, so that the last sample was good.
+    fn is_ordinary(&self, reading: Reading, limits: &Limits) -> bool {
+        // Nothing compares with NaN, so no invalid reading passes.
+        let value = reading.value_or_nan();
+        (value - self.last).abs() <= limits.step && value >= limits.least && value <= limits.most
+    }
+
+    /// One tick; returns what is wrong if the reading is to be replaced, and [`FaultCode::None`] if it may be used.
+    fn step(&mut self, reading: Reading, message_lost: bool, limits: &Limits) -> FaultCode {
         let in_range = reading.value().filter(|&v| v >= limits.least && v <= limits.most);
         // The longer ago the last good sample, the further the value may have gone.
         let reach = limits.step * (f32::from(self.age) + 1.0);
@@ -90,6 +89,72 @@ impl ReadingCheck {
             }
         }
         if self.faulty { self.cause } else { FaultCode::None }
+    }
+}
+
+/// The checks of the five readings of a strut.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct StrutReadings {
+    displacement: ReadingCheck,
+    pressure: StrutPressures<ReadingCheck>,
+    /// Whether all five checks are calm.
+    calm: bool,
+    /// What is wrong; nothing while all are calm.
+    verdicts: Verdicts,
+}
+
+impl StrutReadings {
+    /// Whether nothing was wrong with any of the readings lately.
+    pub fn is_calm(&self) -> bool {
+        self.calm
+    }
+
+    /// What the last tick has found.
+    pub fn verdicts(&self) -> &Verdicts {
+        &self.verdicts
+    }
+
+    /// One tick of a strut: returns the last good displacement, m, and pressures, Pa. `lost` says whether the displacement's
+    /// and the pressures' message are lost.
+    pub fn step(
+        &mut self,
+        displacement: Reading,
+        pressure: &StrutPressures<Reading>,
+        lost: impl FnOnce() -> (bool, bool),
+    ) -> (f32, StrutPressures<Gauge<f32>>) {
+        let last = &self.pressure;
+        // Most ticks end here: nothing was wrong lately, and nothing is wrong now.
+        if self.calm
+            && self.displacement.is_ordinary(displacement, &DISPLACEMENT)
+            && last.p1.is_ordinary(pressure.p1, &PRESSURE)
+            && last.p2.is_ordinary(pressure.p2, &PRESSURE)
+            && last.p3.is_ordinary(pressure.p3, &PRESSURE)
+            && last.p4.is_ordinary(pressure.p4, &PRESSURE)
+        {
+            self.displacement.last = displacement.value_or_nan();
+            self.pressure.p1.last = pressure.p1.value_or_nan();
+            self.pressure.p2.last = pressure.p2.value_or_nan();
+            self.pressure.p3.last = pressure.p3.value_or_nan();
+            self.pressure.p4.last = pressure.p4.value_or_nan();
+        } else {
+            self.doubt(displacement, pressure, lost());
+        }
+        (
+            self.displacement.value(),
+            self.pressure.each_ref().map(|check| Gauge(check.value())),
+        )
+    }
+
+    /// The whole checks, for readings of which one was wrong lately or may be wrong now.
+    #[inline(never)]
+    fn doubt(&mut self, displacement: Reading, pressure: &StrutPressures<Reading>, lost: (bool, bool)) {
+        self.verdicts.displacement = self.displacement.step(displacement, lost.0, &DISPLACEMENT);
+        self.calm = self.displacement.is_calm();
+        let checks = self.pressure.each_mut().zip(self.verdicts.pressure.each_mut());
+        for ((check, verdict), reading) in checks.zip(*pressure).into_array() {
+            *verdict = check.step(reading, lost.1, &PRESSURE);
+            self.calm &= check.is_calm();
+        }
     }
 }
 

@@ -16,6 +16,21 @@ impl Verdicts {
     pub fn all(&self) -> impl Iterator<Item = FaultCode> {
         core::iter::once(self.displacement).chain(self.pressure.into_array())
     }
+
+    /// These causes, and those of later checks where there is none.
+    pub fn or(&self, later: &Self) -> Self {
+        self.select(self, later)
+    }
+
+    /// For each reading, one of two causes: `faulty` where this names a cause, `good` where it names none.
+    pub fn select(&self, faulty: &Self, good: &Self) -> Self {
+        let choose = |fault, faulty, good| if fault == FaultCode::None { good } else { faulty };
+        let pressure = self.pressure.zip(faulty.pressure).zip(good.pressure);
+        Self {
+            displacement: choose(self.displacement, faulty.displacement, good.displacement),
+            pressure: pressure.map(|((fault, faulty), good)| choose(fault, faulty, good)),
+        }
+    }
 }
 
 /// Notes a cause, unless an earlier check has found one.

@@ -268,6 +268,11 @@ impl State {
         if self.mode == Mode::Latched {
             return self.mode;
         }
+        // Most ticks end here: nothing is wrong, and nothing of the past is remembered.
+        if self.mode == Mode::Normal && *health == Health::default() && self.is_unburdened() {
+            self.healthy = self.healthy.saturating_add(1);
+            return self.mode;
+        }
         let affected = affected_axles(health.affected);
         let terminal = matches!(health.cause, FaultCode::Solenoid | FaultCode::Internal);
         let healthy = affected == Axles::splat(false) && !terminal;
@@ -290,6 +295,12 @@ impl State {
             self.first_cause = FaultCode::None;
         }
         self.mode
+    }
+
+    /// Whether no fault is remembered, so that a healthy tick has nothing to forget.
+    fn is_unburdened(&self) -> bool {
+        let Axles { front, rear } = &self.axles;
+        front.faults.count == 0 && rear.faults.count == 0 && self.safe_entries.count == 0
     }
 
     /// The mode once the vehicle has been healthy.

@@ -26,7 +26,7 @@ impl LowPass {
 
     /// Lag with a corner frequency, Hz, above 0.
     pub fn from_corner_hz(corner_hz: f32) -> Self {
-        Self::from_time_constant_s(1.0 / (2.0 * core::f32::consts::PI * corner_hz))
+        Self::from_time_constant_s(time_constant_s(corner_hz))
     }
 
     /// One tick; returns the new output, which is the state.
@@ -34,6 +34,11 @@ impl LowPass {
         *state += self.alpha * (input - *state);
         *state
     }
+}
+
+/// Time constant of a lag with a corner frequency, Hz, above 0.
+fn time_constant_s(corner_hz: f32) -> f32 {
+    1.0 / (2.0 * core::f32::consts::PI * corner_hz)
 }
 
 /// The greater of a value and its lower bound; the bound where the value is not a number. `f32::max` is a library call on a
@@ -105,6 +110,7 @@ impl SecondOrder {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Derivative {
     lag: LowPass,
+    per_period: f32,
 }
 
 /// State of [`Derivative`].
@@ -118,12 +124,18 @@ pub struct DerivativeState {
 impl Derivative {
     /// Both lags with this corner frequency, Hz, above 0.
     pub fn from_corner_hz(corner_hz: f32) -> Self {
+        Self::sampled(TICK_S, corner_hz)
+    }
+
+    /// The same for a filter that is stepped once in a period, s, above 0.
+    pub fn sampled(period_s: f32, corner_hz: f32) -> Self {
         Self {
-            lag: LowPass::from_corner_hz(corner_hz),
+            lag: LowPass::sampled(period_s, time_constant_s(corner_hz)),
+            per_period: 1.0 / period_s,
         }
     }
 
-    /// One tick; returns the derivative per second, which is 0 for the first sample.
+    /// One step; returns the derivative per second, which is 0 for the first sample.
     pub fn step(&self, state: &mut DerivativeState, input: f32) -> f32 {
         if !state.started {
             *state = DerivativeState {
@@ -133,7 +145,7 @@ impl Derivative {
             };
         }
         let before = state.lagged;
-        let slope = (self.lag.step(&mut state.lagged, input) - before) * (1.0 / TICK_S);
+        let slope = (self.lag.step(&mut state.lagged, input) - before) * self.per_period;
         self.lag.step(&mut state.rate, slope)
     }
 }

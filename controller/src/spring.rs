@@ -24,13 +24,14 @@
 //! The shift that a closing in an emergency traps has no bound. [`Springs::trapped_shift_m`] reports it, and the next opening
 //! releases it.
 
-use oleo_interface::{Absolute, Corner, Corners, Gauge, StrutPressures};
+use oleo_interface::{Absolute, Corner, Corners, Gauge, StrutPressures, Valve};
 
 use crate::filter::{Derivative, DerivativeState, at_least};
 use crate::plausibility::Trusted;
 use crate::range::{ConfigurationError, within};
 use crate::strategy::Urgency;
 use crate::timing::ticks;
+use crate::valves::ValveCommand;
 use crate::vehicle::VehicleDescription;
 
 /// Time over which pressures are extrapolated, s: the middle of the valves' response times of 40 to 90 ms.
@@ -197,6 +198,22 @@ impl Springs {
     /// Corners at which valve 3 opens throttled through damper 2, so that valve 2 is to stay closed.
     pub fn throttled(&self) -> Corners<bool> {
         self.valves.each_ref().map(|valve| valve.throttled)
+    }
+
+    /// The signals of the bypass valves, with those of valve 3 as they are to be. Valve 2 stays closed where valve 3 opens throttled,
+    /// and also where it is closed: there it has no effect, and a valve that is not energised does not wear.
+    pub fn applied_to(&self, bypass: ValveCommand) -> ValveCommand {
+        let (mut open, mut closed) = (0, 0);
+        for (corner, valve) in self.valves.iter() {
+            let bit = |valve| 1 << ValveCommand::bit(corner, valve);
+            if valve.open {
+                open |= bit(Valve::Spring);
+            }
+            if !valve.open || valve.throttled {
+                closed |= bit(Valve::Bypass2);
+            }
+        }
+        ValveCommand::from_word((bypass.word() | open) & !closed)
     }
 
     /// Whether valve 3 of a corner has been open for so long that p4 follows p1.

@@ -4,7 +4,7 @@
 //! is wanted, let the mode machine take out what it does not permit, and limit how often valves switch. Nothing else keeps state
 //! between ticks.
 
-use oleo_interface::{Corners, StrutValves, Valve};
+use oleo_interface::{Corners, Valve};
 
 use crate::configuration::Configuration;
 use crate::dwell::Dwell;
@@ -114,27 +114,16 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
 
     let mode = state.failsafe.step(&health);
     let demand = state.strategy.step(&c.strategy, &estimate, trusted);
-    let springs = if mode == Mode::Normal {
-        let wanted = demand.valves.corners().map(|strut| strut[Valve::Spring]);
+    if mode == Mode::Normal {
+        let wanted = Corners::from_fn(|corner| demand.valves.is_open(corner, Valve::Spring));
         let load_n = &estimate.static_load_n;
-        state.springs.step(&c.spring, trusted, load_n, wanted, demand.urgency)
+        state.springs.step(&c.spring, trusted, load_n, wanted, demand.urgency);
     } else {
         state.springs.forced_closed(&c.spring, trusted);
-        Corners::splat(false)
-    };
+    }
     let bypass = state.dwell.step(demand.valves, demand.urgency == Urgency::Emergency);
-
-    // Valve 2 has no effect behind a closed valve 3, and a valve that is not energised does not wear.
-    let valve_2 = springs
-        .zip(state.springs.throttled())
-        .map(|(open, throttled)| open && !throttled);
-    let struts = bypass
-        .corners()
-        .zip(springs.zip(valve_2))
-        .map(|(bypass, (spring, valve_2))| {
-            StrutValves::new(bypass[Valve::Bypass1], bypass[Valve::Bypass2] && valve_2, spring)
-        });
-    let permitted = failsafe::permitted(mode, state.failsafe.restricted(), ValveCommand::from_corners(struts));
+    let decided = state.springs.applied_to(bypass);
+    let permitted = failsafe::permitted(mode, state.failsafe.restricted(), decided);
     let command = state.switching.step(permitted);
     Outputs {
         command,

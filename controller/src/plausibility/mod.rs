@@ -36,7 +36,7 @@ mod vote;
 use oleo_interface::{Corner, Corners};
 
 use crate::reading::Inputs;
-use crate::sensor_message::SensorMessage;
+use crate::sensor_message::{MessageSet, SensorMessage};
 use crate::vehicle::VehicleDescription;
 use oil_balance::OilBalance;
 use reading_check::StrutReadings;
@@ -92,7 +92,12 @@ pub struct State {
     turn: Corner,
     /// Turns of the present window of `stuck` that are over at each corner before the one whose turn it is.
     window_turns: u8,
-    trusted: Trusted,
+    /// A bit for each corner at which a comparison has found something.
+    disagreeing: u8,
+    /// The last good readings. Nothing is wrong in its `health`.
+    measured: Trusted,
+    /// The same in a tick in which something is wrong: what is wrong, and with what it is replaced.
+    replaced: Trusted,
 }
 
 impl Default for State {
@@ -102,7 +107,9 @@ impl Default for State {
             comparisons: Corners::default(),
             turn: Corner::FrontLeft,
             window_turns: 0,
-            trusted: Trusted::default(),
+            disagreeing: 0,
+            measured: Trusted::default(),
+            replaced: Trusted::default(),
         }
     }
 }
@@ -127,8 +134,6 @@ struct Comparisons {
     trapped: TrappedOil,
     oil: OilBalance,
     verdicts: Verdicts,
-    /// Whether nothing was found.
-    right: bool,
 }
 
 impl State {
@@ -139,36 +144,44 @@ impl State {
 
     /// One tick: returns all readings, measured or replaced, and their health.
     pub fn step(&mut self, parameters: &Parameters, inputs: &Inputs, context: &Context) -> &Trusted {
-        for (corner, readings) in self.readings.iter_mut() {
+        let mut calm = true;
+        let Trusted {
+            displacement_m,
+            pressure,
+            ..
+        } = &mut self.measured;
+        let last = displacement_m.each_mut().zip(pressure.each_mut());
+        for ((corner, readings), (last_displacement_m, last_pressure)) in
+            self.readings.iter_mut().zip(last.into_array())
+        {
             let lost = || {
                 let lost = |message| inputs.lost_messages.contains(message);
                 let displacement = lost(SensorMessage::Displacement(corner.axle()));
                 (displacement, lost(SensorMessage::Pressure(corner)))
             };
-            (self.trusted.displacement_m[corner], self.trusted.pressure[corner]) =
-                readings.step(inputs.displacement[corner], &inputs.pressure[corner], lost);
+            let displacement = (inputs.displacement[corner], last_displacement_m);
+            calm &= readings.step(displacement, (&inputs.pressure[corner], last_pressure), lost);
         }
         self.compare(parameters, context);
-        // In most ticks nothing is wrong with any reading.
-        let right = (self.readings.values().zip(self.comparisons.values()))
-            .all(|(readings, comparisons)| readings.is_calm() && comparisons.right);
-        if right {
-            self.trusted.judge(None, inputs);
-        } else {
-            self.replace(inputs);
+        // In most ticks nothing is wrong.
+        let right = calm && self.disagreeing == 0 && inputs.lost_messages == MessageSet::EMPTY;
+        if right && !inputs.foreign_sender && !inputs.solenoid_failed {
+            return &self.measured;
         }
-        &self.trusted
+        self.replace(inputs)
     }
 
-    /// The end of a tick in which some reading is or may be wrong.
+    /// The end of a tick in which something is or may be wrong.
     #[inline(never)]
-    fn replace(&mut self, inputs: &Inputs) {
+    fn replace(&mut self, inputs: &Inputs) -> &Trusted {
         let checks = self.readings.each_ref().zip(self.comparisons.each_ref());
         let verdicts = checks.map(|(readings, comparisons)| readings.verdicts().or(&comparisons.verdicts));
-        self.trusted.judge(Some(&verdicts), inputs);
-        if self.trusted.invalid_readings > 0 {
-            self.trusted.substitute(&verdicts);
+        self.replaced = self.measured;
+        self.replaced.judge(&verdicts, inputs);
+        if self.replaced.invalid_readings > 0 {
+            self.replaced.substitute(&verdicts);
         }
+        &self.replaced
     }
 
     /// Compares the readings of the corner whose turn it is.
@@ -182,7 +195,7 @@ impl State {
         };
         let moving = (self.window_turns == 0).then(moving);
         let comparisons = &mut self.comparisons[corner];
-        let (x, pressure) = (self.trusted.displacement_m[corner], &self.trusted.pressure[corner]);
+        let (x, pressure) = (self.measured.displacement_m[corner], &self.measured.pressure[corner]);
         let p4_follows = context.spring_settled_open;
         let by_itself = self.readings[corner].verdicts();
         let mut verdict = *by_itself;
@@ -199,11 +212,17 @@ impl State {
         comparisons
             .trapped
             .step(pressure, context.spring_commanded_closed, &mut verdict);
-        self.trusted.charge[corner] =
+        self.measured.charge[corner] =
             (comparisons.oil).step(&parameters.oil_balance, x, pressure, context.learning, &mut verdict);
-        // What was said of a reading that is wrong by itself now holds until it can be compared again.
-        comparisons.verdicts = by_itself.select(&comparisons.verdicts, &verdict);
-        comparisons.right = comparisons.verdicts == Verdicts::default();
+        let bit = 1 << corner.index();
+        if self.disagreeing & bit != 0 || verdict != Verdicts::default() {
+            // What was said of a reading that is wrong by itself now holds until it can be compared again.
+            comparisons.verdicts = by_itself.select(&comparisons.verdicts, &verdict);
+            self.disagreeing &= !bit;
+            if comparisons.verdicts != Verdicts::default() {
+                self.disagreeing |= bit;
+            }
+        }
         self.turn = turn::next(corner);
         if self.turn == Corner::FrontLeft {
             self.window_turns = (self.window_turns + 1) % stuck::WINDOW_TURNS;

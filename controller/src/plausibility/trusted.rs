@@ -25,12 +25,10 @@ pub struct Trusted {
 }
 
 impl Trusted {
-    /// Sums up for the mode machine what the checks have found, if anything.
-    pub(super) fn judge(&mut self, verdicts: Option<&Corners<Verdicts>>, inputs: &Inputs) {
-        self.health = Health::default();
-        self.invalid_readings = 0;
+    /// Sums up the verdicts for the mode machine.
+    pub(super) fn judge(&mut self, verdicts: &Corners<Verdicts>, inputs: &Inputs) {
         let mut cause = FaultCode::None;
-        for (corner, verdict) in verdicts.into_iter().flat_map(Corners::iter) {
+        for (corner, verdict) in verdicts.iter() {
             for fault in verdict.all().filter(|&fault| fault != FaultCode::None) {
                 self.health.affected[corner] = true;
                 self.invalid_readings = self.invalid_readings.saturating_add(1);

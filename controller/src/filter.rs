@@ -118,7 +118,16 @@ pub struct Derivative {
 pub struct DerivativeState {
     lagged: f32,
     rate: f32,
-    started: bool,
+}
+
+impl DerivativeState {
+    /// The state in which the input has been constant for ever.
+    pub fn at_rest(input: f32) -> Self {
+        Self {
+            lagged: input,
+            rate: 0.0,
+        }
+    }
 }
 
 impl Derivative {
@@ -135,15 +144,8 @@ impl Derivative {
         }
     }
 
-    /// One step; returns the derivative per second, which is 0 for the first sample.
+    /// One step; returns the derivative per second.
     pub fn step(&self, state: &mut DerivativeState, input: f32) -> f32 {
-        if !state.started {
-            *state = DerivativeState {
-                lagged: input,
-                rate: 0.0,
-                started: true,
-            };
-        }
         let before = state.lagged;
         let slope = (self.lag.step(&mut state.lagged, input) - before) * self.per_period;
         self.lag.step(&mut state.rate, slope)
@@ -227,7 +229,7 @@ mod tests {
 
     #[test]
     fn derivative_of_a_slow_sine() {
-        let (filter, mut state) = (Derivative::from_corner_hz(18.0), DerivativeState::default());
+        let (filter, mut state) = (Derivative::from_corner_hz(18.0), DerivativeState::at_rest(0.0));
         let omega = 2.0 * core::f32::consts::PI;
         assert!((gain(1.0, |x| filter.step(&mut state, x)) / omega - 1.0).abs() < 0.01);
     }
@@ -236,7 +238,7 @@ mod tests {
     fn derivative_at_its_corner_is_6_db_down() {
         // The analogue gain of two lags at their corner frequency is one half; at 200 Hz sampling the step-invariant form is
         // within a tenth of it.
-        let (filter, mut state) = (Derivative::from_corner_hz(18.0), DerivativeState::default());
+        let (filter, mut state) = (Derivative::from_corner_hz(18.0), DerivativeState::at_rest(0.0));
         let omega = 2.0 * core::f32::consts::PI * 18.0;
         let measured = gain(18.0, |x| filter.step(&mut state, x)) / omega;
         assert!((measured - 0.5).abs() < 0.06, "{measured}");

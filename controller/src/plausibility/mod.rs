@@ -175,7 +175,7 @@ impl State {
     #[inline(never)]
     fn replace(&mut self, inputs: &Inputs) -> &Trusted {
         let checks = self.readings.each_ref().zip(self.comparisons.each_ref());
-        let verdicts = checks.map(|(readings, comparisons)| readings.verdicts().or(&comparisons.verdicts));
+        let verdicts = checks.map(|(readings, comparisons)| readings.verdicts().or(comparisons.verdicts));
         self.replaced = self.measured;
         self.replaced.judge(&verdicts, inputs);
         if self.replaced.invalid_readings > 0 {
@@ -198,7 +198,7 @@ impl State {
         let (x, pressure) = (self.measured.displacement_m[corner], &self.measured.pressure[corner]);
         let p4_follows = context.spring_settled_open;
         let by_itself = self.readings[corner].verdicts();
-        let mut verdict = *by_itself;
+        let mut verdict = by_itself;
         if let Some(moving) = moving {
             comparisons.stuck.begin_window(moving);
         }
@@ -215,11 +215,11 @@ impl State {
         self.measured.charge[corner] =
             (comparisons.oil).step(&parameters.oil_balance, x, pressure, context.learning, &mut verdict);
         let bit = 1 << corner.index();
-        if self.disagreeing & bit != 0 || verdict != Verdicts::default() {
+        if self.disagreeing & bit != 0 || verdict != Verdicts::GOOD {
             // What was said of a reading that is wrong by itself now holds until it can be compared again.
-            comparisons.verdicts = by_itself.select(&comparisons.verdicts, &verdict);
+            comparisons.verdicts = by_itself.select(comparisons.verdicts, verdict);
             self.disagreeing &= !bit;
-            if comparisons.verdicts != Verdicts::default() {
+            if comparisons.verdicts != Verdicts::GOOD {
                 self.disagreeing |= bit;
             }
         }

@@ -17,7 +17,7 @@ use oleo_interface::{Absolute, Gauge, StrutPressures};
 
 use super::oil_motion::OilMotion;
 use super::turn::{TURN_S, turns};
-use super::verdict::{Verdicts, blame};
+use super::verdict::{Place, Verdicts};
 use crate::failsafe::FaultCode;
 use crate::filter::{LowPass, at_least};
 use crate::vehicle::VehicleDescription;
@@ -84,9 +84,7 @@ impl OilBalance {
         verdict: &mut Verdicts,
     ) -> Absolute<f32> {
         let mut motion = None;
-        let measured = [verdict.displacement, verdict.pressure.p2, verdict.pressure.p4]
-            .iter()
-            .all(|&fault| fault == FaultCode::None);
+        let measured = [Place::DISPLACEMENT, Place::P2, Place::P4].map(|place| verdict.is_good(place)) == [true; 3];
         if measured {
             let (v1, v2) = (c.gas_volume_1_m3, c.gas_volume_2_m3);
             let least = |p: Gauge<f32>| at_least(p.absolute().pa(), LEAST_PA);
@@ -129,9 +127,9 @@ impl OilBalance {
             }
         }
         if self.flagged {
-            blame(&mut verdict.displacement, FaultCode::OilBalance);
+            verdict.blame(Place::DISPLACEMENT, FaultCode::OilBalance);
         }
-        self.motion.step(motion, &mut verdict.displacement);
+        self.motion.step(motion, verdict);
         Absolute(self.charge_pa)
     }
 }

@@ -13,7 +13,7 @@
 
 use super::span::Span;
 use super::turn::turns;
-use super::verdict::blame;
+use super::verdict::{Place, Verdicts};
 use crate::failsafe::FaultCode;
 
 const WINDOW_TURNS: u8 = turns(500);
@@ -49,7 +49,7 @@ impl Default for OilMotion {
 
 impl OilMotion {
     /// One turn with a displacement and what it says beyond the gas, m, if both are measured.
-    pub fn step(&mut self, measured: Option<(f32, f32)>, displacement: &mut FaultCode) {
+    pub fn step(&mut self, measured: Option<(f32, f32)>, verdict: &mut Verdicts) {
         match measured {
             Some((displacement_m, residual_m)) => {
                 self.residual.add(residual_m);
@@ -63,7 +63,7 @@ impl OilMotion {
             None => self.begin_window(),
         }
         if self.flagged {
-            blame(displacement, FaultCode::OilBalance);
+            verdict.blame(Place::DISPLACEMENT, FaultCode::OilBalance);
         }
     }
 
@@ -101,9 +101,9 @@ mod tests {
         (0..1000).find(|turn| {
             let true_m = 0.02 * libm::sinf(2.0 * core::f32::consts::PI * 1.3 * f32::from(*turn) * TURN_S);
             let reading = says(true_m);
-            let mut verdict = FaultCode::None;
+            let mut verdict = Verdicts::GOOD;
             motion.step(Some((reading, reading - 1.4 * true_m)), &mut verdict);
-            verdict != FaultCode::None
+            verdict != Verdicts::GOOD
         })
     }
 
@@ -121,15 +121,15 @@ mod tests {
     fn a_verdict_needs_motion_and_its_end_too() {
         let mut motion = OilMotion::default();
         let mut window = |residual_m: f32, moved_m: f32| {
-            let mut verdict = FaultCode::None;
+            let mut verdict = Verdicts::GOOD;
             for turn in 0..WINDOW_TURNS {
                 let up = f32::from(turn % 2);
                 motion.step(Some((up * (moved_m + residual_m), up * residual_m)), &mut verdict);
             }
             // The verdict as it stands after the window.
-            verdict = FaultCode::None;
+            verdict = Verdicts::GOOD;
             motion.step(None, &mut verdict);
-            verdict != FaultCode::None
+            verdict != Verdicts::GOOD
         };
         assert!((0..10).all(|_| !window(0.02, 0.02)), "too little motion");
         let verdicts: [bool; 4] = core::array::from_fn(|_| window(0.03, 0.03));

@@ -3,10 +3,10 @@
 //! A single bad sample is replaced by the last good one. A counter goes up by 4 with each bad sample and down by 1 with each good
 //! one. At 12 the reading is faulty, which takes three bad samples in a row, and at 0 it is believed again.
 
-use oleo_interface::{Gauge, StrutPressures};
+use oleo_interface::{Gauge, PressurePoint, StrutPressures};
 
 use super::limits::{DISPLACEMENT, Limits, PRESSURE};
-use super::verdict::Verdicts;
+use super::verdict::{Place, Verdicts};
 use crate::failsafe::FaultCode;
 use crate::reading::Reading;
 
@@ -95,8 +95,8 @@ pub struct StrutReadings {
 
 impl StrutReadings {
     /// What the last tick has found.
-    pub fn verdicts(&self) -> &Verdicts {
-        &self.verdicts
+    pub fn verdicts(&self) -> Verdicts {
+        self.verdicts
     }
 
     /// One tick: takes the good readings over into the last good displacement, m, and pressures, Pa. Returns whether nothing was
@@ -132,15 +132,16 @@ impl StrutReadings {
         lost: (bool, bool),
     ) {
         let check = &mut self.displacement;
-        self.verdicts.displacement = check.step(last_displacement_m, displacement, lost.0, &DISPLACEMENT);
+        let mut verdicts = Verdicts::GOOD;
+        let cause = check.step(last_displacement_m, displacement, lost.0, &DISPLACEMENT);
+        verdicts.blame(Place::DISPLACEMENT, cause);
         self.calm = check.bad == 0;
-        let checks = self.pressure.each_mut().zip(self.verdicts.pressure.each_mut());
-        for ((check, verdict), (Gauge(last), reading)) in
-            checks.zip(last_pressure.each_mut().zip(*pressure)).into_array()
-        {
-            *verdict = check.step(last, reading, lost.1, &PRESSURE);
+        for point in PressurePoint::ALL {
+            let (check, Gauge(last)) = (&mut self.pressure[point], &mut last_pressure[point]);
+            verdicts.blame(Place::of(point), check.step(last, pressure[point], lost.1, &PRESSURE));
             self.calm &= check.bad == 0;
         }
+        self.verdicts = verdicts;
     }
 }
 

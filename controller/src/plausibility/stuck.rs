@@ -12,13 +12,14 @@
 //! - p4 is stuck by the same rule with 20 mm, but only if valve 3 was open during the whole window: behind a closed valve its
 //!   pressure is trapped.
 //!
-//! A stuck reading is found within two windows and a round of turns, which are less than 200 ticks. A window in which the reading moves clears the verdict.
+//! A stuck reading is found within two windows and a round of turns, which are less than 200 ticks. A window in which the reading
+//! moves clears the verdict.
 
 use oleo_interface::{Gauge, PressurePoint, StrutPressures};
 
 use super::span::Span;
 use super::turn::turns;
-use super::verdict::{Verdicts, blame};
+use super::verdict::{Place, Verdicts};
 use crate::failsafe::FaultCode;
 
 /// Turns of a window. All corners' windows begin in the same round of turns.
@@ -69,23 +70,35 @@ impl Stuck {
     ) {
         // A value that replaces a reading (at first, zero) does not move with the strut. It must not count, or a parked
         // vehicle would be called broken.
-        if verdict.displacement == FaultCode::None {
+        if *verdict == Verdicts::GOOD {
             self.displacement.add(displacement_m);
-        }
-        for ((span, pressure), fault) in (self.pressure.each_mut().zip(*pressure).zip(verdict.pressure)).into_array() {
-            if fault == FaultCode::None {
+            for (span, pressure) in self.pressure.each_mut().zip(*pressure).into_array() {
                 span.add(pressure.pa());
             }
+        } else {
+            self.add_good(displacement_m, pressure, *verdict);
         }
         self.spring_open &= spring_settled_open;
         if self.any {
             if self.displacement_stuck {
-                blame(&mut verdict.displacement, FaultCode::SensorStuck);
+                verdict.blame(Place::DISPLACEMENT, FaultCode::SensorStuck);
             }
             for (point, stuck) in self.pressure_stuck.iter() {
                 if *stuck {
-                    blame(&mut verdict.pressure[point], FaultCode::SensorStuck);
+                    verdict.blame(Place::of(point), FaultCode::SensorStuck);
                 }
+            }
+        }
+    }
+
+    /// Takes those values in that are not wrong.
+    fn add_good(&mut self, displacement_m: f32, pressure: &StrutPressures<Gauge<f32>>, verdict: Verdicts) {
+        if verdict.is_good(Place::DISPLACEMENT) {
+            self.displacement.add(displacement_m);
+        }
+        for point in PressurePoint::ALL {
+            if verdict.is_good(Place::of(point)) {
+                self.pressure[point].add(pressure[point].pa());
             }
         }
     }
@@ -139,18 +152,16 @@ mod tests {
                 stuck.begin_window(0);
             }
             let believed = turn >= 4;
-            let mut verdict = Verdicts::default();
+            let mut verdict = Verdicts::GOOD;
             let mut pressure = StrutPressures::default();
             if believed {
                 pressure = StrutPressures::splat(Gauge(2.0e6));
             } else {
-                verdict = Verdicts {
-                    displacement: FaultCode::SensorRange,
-                    pressure: StrutPressures::splat(FaultCode::SensorRange),
-                };
+                verdict.blame(Place::DISPLACEMENT, FaultCode::SensorRange);
+                PressurePoint::ALL.map(|point| verdict.blame(Place::of(point), FaultCode::SensorRange));
             }
             stuck.step(0.0, &pressure, false, &mut verdict);
-            let healthy = verdict.all().all(|fault| fault == FaultCode::None);
+            let healthy = verdict == Verdicts::GOOD;
             assert_eq!(healthy, believed, "turn {turn}");
             stuck.end_window();
         }

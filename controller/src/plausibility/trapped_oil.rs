@@ -12,7 +12,7 @@ use oleo_interface::{Gauge, StrutPressures};
 
 use super::span::Span;
 use super::turn::turns;
-use super::verdict::{Verdicts, blame};
+use super::verdict::{Place, Verdicts};
 use crate::failsafe::FaultCode;
 
 const WINDOW_TURNS: u8 = turns(500);
@@ -52,7 +52,7 @@ impl TrappedOil {
     /// One turn; `commanded_closed` says whether valve 3 was told to be closed in the last tick. An opening between two turns is
     /// not seen: it is shorter than any valve takes to open.
     pub fn step(&mut self, pressure: &StrutPressures<Gauge<f32>>, commanded_closed: bool, verdict: &mut Verdicts) {
-        let healthy = verdict.pressure.p3 == FaultCode::None && verdict.pressure.p4 == FaultCode::None;
+        let healthy = verdict.is_good(Place::P3) && verdict.is_good(Place::P4);
         self.closed = if commanded_closed {
             self.closed.saturating_add(1)
         } else {
@@ -70,7 +70,7 @@ impl TrappedOil {
             }
         }
         if self.flagged {
-            blame(&mut verdict.pressure.p4, FaultCode::ValveStuck);
+            verdict.blame(Place::P4, FaultCode::ValveStuck);
         }
     }
 
@@ -107,9 +107,9 @@ mod tests {
                 p4: Gauge(2.0e6 + share * swing),
                 ..StrutPressures::splat(Gauge(2.0e6 + swing))
             };
-            let mut verdict = Verdicts::default();
+            let mut verdict = Verdicts::GOOD;
             check.step(&pressure, closed, &mut verdict);
-            verdict.pressure.p4 == FaultCode::ValveStuck
+            verdict.gravest() == FaultCode::ValveStuck
         })
     }
 
@@ -130,16 +130,16 @@ mod tests {
         for _ in 0..2 {
             found(&mut check, 0.02, true);
         }
-        let mut verdict = Verdicts::default();
+        let mut verdict = Verdicts::GOOD;
         for turn in 0..CLOSED_TURNS + 2 * WINDOW_TURNS {
             let swing = 0.5e6 * libm::sinf(0.16 * f32::from(turn));
             let pressure = StrutPressures {
                 p4: Gauge(2.0e6),
                 ..StrutPressures::splat(Gauge(2.0e6 + swing))
             };
-            verdict = Verdicts::default();
+            verdict = Verdicts::GOOD;
             check.step(&pressure, true, &mut verdict);
         }
-        assert_eq!(verdict.pressure.p4, FaultCode::None);
+        assert_eq!(verdict, Verdicts::GOOD);
     }
 }

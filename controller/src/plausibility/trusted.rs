@@ -3,7 +3,7 @@
 use oleo_interface::{Absolute, Corners, Gauge, StrutPressures};
 
 use super::limits::DISPLACEMENT;
-use super::verdict::Verdicts;
+use super::verdict::{Place, Verdicts};
 use crate::failsafe::{FaultCode, Health};
 use crate::reading::Inputs;
 use crate::sensor_message::MessageSet;
@@ -28,12 +28,10 @@ impl Trusted {
     /// Sums up the verdicts for the mode machine.
     pub(super) fn judge(&mut self, verdicts: &Corners<Verdicts>, inputs: &Inputs) {
         let mut cause = FaultCode::None;
-        for (corner, verdict) in verdicts.iter() {
-            for fault in verdict.all().filter(|&fault| fault != FaultCode::None) {
-                self.health.affected[corner] = true;
-                self.invalid_readings = self.invalid_readings.saturating_add(1);
-                cause = cause.max(fault);
-            }
+        for (corner, verdict) in verdicts.iter().filter(|(_, verdict)| **verdict != Verdicts::GOOD) {
+            self.health.affected[corner] = true;
+            self.invalid_readings = self.invalid_readings.saturating_add(verdict.count());
+            cause = cause.max(verdict.gravest());
         }
         if inputs.lost_messages == MessageSet::ALL {
             cause = FaultCode::BusSilent;
@@ -51,9 +49,7 @@ impl Trusted {
 
     /// Replaces what was found wrong.
     pub(super) fn substitute(&mut self, verdicts: &Corners<Verdicts>) {
-        let good = verdicts
-            .each_ref()
-            .map(|verdict| verdict.displacement == FaultCode::None);
+        let good = verdicts.map(|verdict| verdict.is_good(Place::DISPLACEMENT));
         let [fl, fr, rl, rr] = self.displacement_m.into_array();
         // The body is rigid: left and right differ equally at both axles.
         self.displacement_m = Corners::from_array(match good.into_array() {
@@ -64,9 +60,9 @@ impl Trusted {
             _ => [fl, fr, rl, rr],
         })
         .map(|x| x.clamp(DISPLACEMENT.least, DISPLACEMENT.most));
-        for (corner, verdict) in verdicts.iter() {
+        for (corner, verdict) in verdicts.iter().filter(|(_, verdict)| !verdict.pressures_are_good()) {
             let pressure = &mut self.pressure[corner];
-            let good = verdict.pressure.map(|fault| fault == FaultCode::None);
+            let good = StrutPressures::from_fn(|point| verdict.is_good(Place::of(point)));
             let main = if good.p1 {
                 pressure.p1
             } else if good.p2 {

@@ -9,7 +9,7 @@
 use oleo_interface::{Gauge, PressurePoint, StrutPressures};
 
 use super::turn::{TURN_S, turns};
-use super::verdict::{Verdicts, blame};
+use super::verdict::{Place, Verdicts};
 use crate::failsafe::FaultCode;
 use crate::filter::LowPass;
 
@@ -51,7 +51,7 @@ impl Vote {
         p4_follows: bool,
         verdict: &mut Verdicts,
     ) {
-        let healthy = verdict.pressure == StrutPressures::splat(FaultCode::None);
+        let healthy = verdict.pressures_are_good();
         if !healthy {
             // A replaced value says nothing about the others: start again when all four are measured. A verdict that was
             // reached before stays.
@@ -106,7 +106,7 @@ impl Vote {
                 }
             }
             if *flagged {
-                blame(&mut verdict.pressure[point], FaultCode::SensorVote);
+                verdict.blame(Place::of(point), FaultCode::SensorVote);
             }
         }
     }
@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     fn outvoted(verdict: &Verdicts) -> bool {
-        verdict.all().any(|fault| fault == FaultCode::SensorVote)
+        verdict.gravest() == FaultCode::SensorVote
     }
 
     /// The first turn in which a pressure is outvoted, on a strut that is shaken through closed dampers: p1 swings by 2 MPa
@@ -133,7 +133,7 @@ mod tests {
         let parameters = Parameters::default();
         for turn in turns {
             let swing = 2.0e6 * libm::cosf(2.0 * core::f32::consts::PI * 8.0 * f32::from(turn) * TURN_S);
-            let mut verdict = Verdicts::default();
+            let mut verdict = Verdicts::GOOD;
             let pressure = StrutPressures {
                 p1: 4.0e6 + swing,
                 p2: 4.0e6,
@@ -161,10 +161,8 @@ mod tests {
         let parameters = Parameters::default();
         let mut vote = Vote::default();
         assert_eq!(shaken(&mut vote, 0..500, 0.0), None);
-        let mut silent = Verdicts {
-            pressure: StrutPressures::splat(FaultCode::MessageLost),
-            ..Verdicts::default()
-        };
+        let mut silent = Verdicts::GOOD;
+        PressurePoint::ALL.map(|point| silent.blame(Place::of(point), FaultCode::MessageLost));
         vote.step(&parameters, &StrutPressures::default(), false, &mut silent);
         assert_eq!(shaken(&mut vote, 0..1000, 0.0), None);
     }
@@ -184,7 +182,7 @@ mod tests {
             // Trapped 3 MPa apart for 2.5 s; equal once the valve is settled open.
             let open = turn >= 125;
             let p4 = if open { 4.0e6 } else { 7.0e6 };
-            let mut verdict = Verdicts::default();
+            let mut verdict = Verdicts::GOOD;
             let pressure = StrutPressures {
                 p4,
                 ..StrutPressures::splat(4.0e6)

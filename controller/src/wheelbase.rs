@@ -58,6 +58,27 @@ struct Place {
     carry: u128,
 }
 
+/// What is known of the greatest number of agreements, while the counters are looked at from their highest place.
+#[derive(Clone, Copy, Debug)]
+struct Judgement {
+    /// Delays of which the places so far are the greatest.
+    best: u128,
+    /// Those places.
+    agreements: u16,
+    /// Number of places that have been looked at.
+    looked_at: u8,
+}
+
+impl Default for Judgement {
+    fn default() -> Self {
+        Self {
+            best: DELAYS,
+            agreements: 0,
+            looked_at: 0,
+        }
+    }
+}
+
 /// Signs, counters and the delay found last.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct State {
@@ -66,7 +87,9 @@ pub(crate) struct State {
     front: [u128; 2],
     /// Place `n` holds bit `n` of the number of agreements.
     places: [Place; PLACES],
+    /// Ticks since the start, until the history is full; then its length and the ticks of the window.
     ticks: u16,
+    judgement: Judgement,
     delay: Option<u8>,
     unclear: u8,
 }
@@ -81,34 +104,45 @@ impl State {
         *left = *left << 1 | u128::from(front.0);
         *right = *right << 1 | u128::from(front.1);
         // A window begins when the history is full, or what was before the start would be counted.
-        if let Some(tick) = self.ticks.checked_sub(HISTORY as u16) {
+        let Some(tick) = self.ticks.checked_sub(HISTORY as u16) else {
+            self.ticks += 1;
+            return None;
+        };
+        if tick < WINDOW_TICKS {
             let agreeing = |rear: bool, front: u128| if rear { front } else { !front };
-            let both = [agreeing(rear.0, *left), agreeing(rear.1, *right)];
-            count(&mut self.places, tick, both);
-        }
-        self.ticks += 1;
-        if self.ticks == HISTORY as u16 + WINDOW_TICKS {
-            self.ticks = HISTORY as u16;
+            count(
+                &mut self.places,
+                tick,
+                [agreeing(rear.0, *left), agreeing(rear.1, *right)],
+            );
+            self.ticks += 1;
+        } else {
+            // The places are judged one in a tick, from the highest, while nothing is counted.
             self.judge();
-            self.places = [Place::default(); PLACES];
         }
         self.delay
     }
 
-    /// Chooses the delay of greatest agreement.
+    /// Looks at the next lower place of the counters; after the lowest, chooses the delay of greatest agreement and begins a window.
     fn judge(&mut self) {
-        let mut best = DELAYS;
-        let mut agreements = 0;
+        let Judgement {
+            best,
+            agreements,
+            looked_at,
+        } = &mut self.judgement;
         // After a whole window no carry waits, but for the one out of the last place, which is the highest bit.
         let [.., last] = &self.places;
-        for bit in core::iter::once(&last.carry).chain(self.places.iter().rev().map(|place| &place.sum)) {
-            let with = best & bit;
-            agreements = agreements << 1 | u16::from(with != 0);
+        let mut downwards = core::iter::once(&last.carry).chain(self.places.iter().rev().map(|place| &place.sum));
+        if let Some(bit) = downwards.nth(usize::from(*looked_at)) {
+            let with = *best & bit;
+            *agreements = *agreements << 1 | u16::from(with != 0);
             if with != 0 {
-                best = with;
+                *best = with;
             }
+            *looked_at += 1;
+            return;
         }
-        if agreements >= LEAST_AGREEMENTS {
+        if *agreements >= LEAST_AGREEMENTS {
             self.delay = Some(best.trailing_zeros() as u8);
             self.unclear = 0;
         } else {
@@ -117,6 +151,9 @@ impl State {
                 self.delay = None;
             }
         }
+        self.judgement = Judgement::default();
+        self.places = [Place::default(); PLACES];
+        self.ticks = HISTORY as u16;
     }
 }
 

@@ -8,6 +8,15 @@ pub struct Limits {
     pub step: f32,
 }
 
+impl Limits {
+    /// Whether a value is within the range. NaN is not.
+    pub fn hold(&self, value: f32) -> bool {
+        // One comparison with the distance from the middle is quicker than two with the ends.
+        let (middle, half_width) = (0.5 * (self.least + self.most), 0.5 * (self.most - self.least));
+        (value - middle).abs() <= half_width
+    }
+}
+
 /// Limits of a displacement, m. Struts have 120 mm of jounce and 180 mm of rebound travel; 6 m/s is three times the design
 /// speed (report: 2 m/s).
 pub const DISPLACEMENT: Limits = Limits {

@@ -151,16 +151,15 @@ impl State {
             ..
         } = &mut self.measured;
         let last = displacement_m.each_mut().zip(pressure.each_mut());
-        for ((corner, readings), (last_displacement_m, last_pressure)) in
-            self.readings.iter_mut().zip(last.into_array())
-        {
+        let readings = inputs.displacement.zip(inputs.pressure.each_ref());
+        let corners = Corners::from_fn(|corner| corner).zip(self.readings.each_mut());
+        for (((corner, checks), (x, p)), (last_x, last_p)) in corners.zip(readings).zip(last).into_array() {
             let lost = || {
                 let lost = |message| inputs.lost_messages.contains(message);
                 let displacement = lost(SensorMessage::Displacement(corner.axle()));
                 (displacement, lost(SensorMessage::Pressure(corner)))
             };
-            let displacement = (inputs.displacement[corner], last_displacement_m);
-            calm &= readings.step(displacement, (&inputs.pressure[corner], last_pressure), lost);
+            calm &= checks.step((x, last_x), (p, last_p), lost);
         }
         self.compare(parameters, context);
         // In most ticks nothing is wrong.

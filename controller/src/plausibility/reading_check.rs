@@ -39,14 +39,14 @@ impl Default for ReadingCheck {
 fn is_ordinary(reading: Reading, last: f32, limits: &Limits) -> bool {
     // Nothing compares with NaN, so no invalid reading passes.
     let value = reading.value_or_nan();
-    (value - last).abs() <= limits.step && value >= limits.least && value <= limits.most
+    (value - last).abs() <= limits.step && limits.hold(value)
 }
 
 impl ReadingCheck {
     /// One tick; returns what is wrong if the reading is to be replaced, and [`FaultCode::None`] if it may be used. `last` is the
     /// last good value.
     fn step(&mut self, last: &mut f32, reading: Reading, message_lost: bool, limits: &Limits) -> FaultCode {
-        let in_range = reading.value().filter(|&v| v >= limits.least && v <= limits.most);
+        let in_range = reading.value().filter(|&value| limits.hold(value));
         // The longer ago the last good sample, the further the value may have gone.
         let reach = limits.step * (f32::from(self.age) + 1.0);
         match in_range {

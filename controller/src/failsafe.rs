@@ -153,6 +153,13 @@ pub struct Health {
     pub cause: FaultCode,
 }
 
+impl Health {
+    /// Whether nothing is wrong.
+    pub fn is_good(&self) -> bool {
+        self.cause == FaultCode::None && self.affected == Corners::splat(false)
+    }
+}
+
 /// Whether either corner of each axle is affected.
 fn affected_axles(affected: Corners<bool>) -> Axles<bool> {
     affected.by_axle().map(|(left, right)| left || right)
@@ -269,7 +276,7 @@ impl State {
             return self.mode;
         }
         // Most ticks end here: nothing is wrong, and nothing of the past is remembered.
-        if self.mode == Mode::Normal && *health == Health::default() && self.is_unburdened() {
+        if self.mode == Mode::Normal && health.is_good() && self.is_unburdened() {
             self.healthy = self.healthy.saturating_add(1);
             return self.mode;
         }

@@ -95,6 +95,15 @@ impl SecondOrder {
         SecondOrderState([first, second])
     }
 
+    /// One tick; returns the output `y` for the input `x` alone.
+    pub fn low_pass(&self, state: &mut SecondOrderState, x: f32) -> f32 {
+        let ([last, last_but_one], [first, second]) = (self.back, state.0);
+        let x = self.input * x;
+        let output = x + first;
+        state.0 = [2.0 * x - last * output + second, x - last_but_one * output];
+        output
+    }
+
     /// One tick; returns the output `y` for the inputs `x` and `u`.
     pub fn step(&self, state: &mut SecondOrderState, x: f32, u: f32) -> f32 {
         let ([last, last_but_one], [first, second]) = (self.back, state.0);

@@ -9,7 +9,7 @@ use oleo_interface::{Corners, Valve};
 use crate::configuration::Configuration;
 use crate::dwell::Dwell;
 use crate::estimate::{self, Estimate};
-use crate::failsafe::{self, FaultCode, Health, Mode};
+use crate::failsafe::{self, FaultCode, Mode};
 use crate::plausibility;
 use crate::reading::Inputs;
 use crate::spring::Springs;
@@ -104,7 +104,7 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     // Before the first complete set of readings there is nothing to estimate from, and the filters must not start at zero
     // load.
     let mut estimate = Estimate::default();
-    if state.failsafe.was_normal() || health == Health::default() {
+    if state.failsafe.was_normal() || health.is_good() {
         estimate = state.estimate.step(&c.estimate, trusted);
         if !estimate.is_finite() {
             health.cause = FaultCode::Internal;

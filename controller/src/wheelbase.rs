@@ -109,7 +109,8 @@ impl State {
             return None;
         };
         if tick < WINDOW_TICKS {
-            let agreeing = |rear: bool, front: u128| if rear { front } else { !front };
+            // Front signs where the rear one is upward, and their inverse where it is not.
+            let agreeing = |rear: bool, front: u128| front ^ u128::from(rear).wrapping_sub(1);
             count(
                 &mut self.places,
                 tick,

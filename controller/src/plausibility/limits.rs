@@ -1,6 +1,6 @@
 //! The range of plausible readings, and the fastest plausible change.
 
-/// Range of a reading, both ends included, and its largest change within a tick, in the reading's unit.
+/// Range of a reading, both ends included, with 0 in it, and its largest change within a tick, in the reading's unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     pub least: f32,
@@ -11,9 +11,8 @@ pub struct Limits {
 impl Limits {
     /// Whether a value is within the range. NaN is not.
     pub fn hold(&self, value: f32) -> bool {
-        // One comparison with the distance from the middle is quicker than two with the ends.
-        let (middle, half_width) = (0.5 * (self.least + self.most), 0.5 * (self.most - self.least));
-        (value - middle).abs() <= half_width
+        // Positive numbers compare as their bits do, and most values are positive: one integer comparison finds those in range.
+        value.to_bits() <= self.most.to_bits() || (value >= self.least && value <= self.most)
     }
 }
 

@@ -144,23 +144,11 @@ impl State {
 
     /// One tick: returns all readings, measured or replaced, and their health.
     pub fn step(&mut self, parameters: &Parameters, inputs: &Inputs, context: &Context) -> &Trusted {
-        let mut calm = true;
-        let Trusted {
-            displacement_m,
-            pressure,
-            ..
-        } = &mut self.measured;
-        let last = displacement_m.each_mut().zip(pressure.each_mut());
-        let readings = inputs.displacement.zip(inputs.pressure.each_ref());
-        let corners = Corners::from_fn(|corner| corner).zip(self.readings.each_mut());
-        for (((corner, checks), (x, p)), (last_x, last_p)) in corners.zip(readings).zip(last).into_array() {
-            let lost = || {
-                let lost = |message| inputs.lost_messages.contains(message);
-                let displacement = lost(SensorMessage::Displacement(corner.axle()));
-                (displacement, lost(SensorMessage::Pressure(corner)))
-            };
-            calm &= checks.step((x, last_x), (p, last_p), lost);
-        }
+        // Written out, because the compiler then knows every place in memory.
+        let calm = self.check(Corner::FrontLeft, inputs)
+            & self.check(Corner::FrontRight, inputs)
+            & self.check(Corner::RearLeft, inputs)
+            & self.check(Corner::RearRight, inputs);
         self.compare(parameters, context);
         // In most ticks nothing is wrong.
         let right = calm && self.disagreeing == 0 && inputs.lost_messages == MessageSet::EMPTY;
@@ -168,6 +156,19 @@ impl State {
             return &self.measured;
         }
         self.replace(inputs)
+    }
+
+    /// Checks the readings of a corner by themselves; returns whether nothing was wrong with any of them lately.
+    #[inline(always)]
+    fn check(&mut self, corner: Corner, inputs: &Inputs) -> bool {
+        let lost = || {
+            let lost = |message| inputs.lost_messages.contains(message);
+            let displacement = lost(SensorMessage::Displacement(corner.axle()));
+            (displacement, lost(SensorMessage::Pressure(corner)))
+        };
+        let displacement = (inputs.displacement[corner], &mut self.measured.displacement_m[corner]);
+        let pressure = (&inputs.pressure[corner], &mut self.measured.pressure[corner]);
+        self.readings[corner].step(displacement, pressure, lost)
     }
 
     /// The end of a tick in which something is or may be wrong.

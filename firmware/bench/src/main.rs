@@ -71,8 +71,9 @@ fn main() -> ! {
     for (name, costs) in ["tick", "node tick", "receive six frames"].into_iter().zip(&mut costs) {
         costs.sort_unstable();
         let (min, median, max) = (costs[0], costs[costs.len() / 2], costs[costs.len() - 1]);
+        let mean = costs.iter().sum::<u32>() / u32::from(TICKS);
         if max > 0 {
-            say!("{}: {} min, {} median, {} max instructions", name, min, median, max);
+            say!("{}: {} min, {} median, {} mean, {} max instructions", name, min, median, mean, max);
             within &= name != "tick" || max <= GOAL;
         }
     }

@@ -201,8 +201,8 @@ impl Springs {
         for (valve, wanted) in self.valves.each_mut().zip(wanted).into_array() {
             valve.wait(wanted);
         }
+        let axle = if self.rear_is_next { Axle::Rear } else { Axle::Front };
         self.rear_is_next = !self.rear_is_next;
-        let axle = if self.rear_is_next { Axle::Front } else { Axle::Rear };
         for corner in Side::ALL.map(|side| axle.corner(side)) {
             self.valves[corner].observe(c, &trusted.pressure[corner], trusted.charge[corner]);
         }

@@ -176,11 +176,9 @@ impl State {
     fn replace(&mut self, inputs: &Inputs) -> &Trusted {
         let checks = self.readings.each_ref().zip(self.comparisons.each_ref());
         let verdicts = checks.map(|(readings, comparisons)| readings.verdicts().or(comparisons.verdicts));
-        self.replaced = self.measured;
         self.replaced.judge(&verdicts, inputs);
-        if self.replaced.invalid_readings > 0 {
-            self.replaced.substitute(&verdicts);
-        }
+        self.replaced.charge = self.measured.charge;
+        self.replaced.substitute(&self.measured, &verdicts);
         &self.replaced
     }
 

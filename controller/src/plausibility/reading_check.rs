@@ -3,7 +3,7 @@
 //! A single bad sample is replaced by the last good one. A counter goes up by 4 with each bad sample and down by 1 with each good
 //! one. At 12 the reading is faulty, which takes three bad samples in a row, and at 0 it is believed again.
 
-use oleo_interface::{Gauge, PressurePoint, StrutPressures};
+use oleo_interface::{Gauge, StrutPressures};
 
 use super::limits::{DISPLACEMENT, Limits, PRESSURE};
 use super::verdict::{Place, Verdicts};
@@ -46,39 +46,41 @@ impl ReadingCheck {
     /// One tick; returns what is wrong if the reading is to be replaced, and [`FaultCode::None`] if it may be used. `last` is the
     /// last good value.
     fn step(&mut self, last: &mut f32, reading: Reading, message_lost: bool, limits: &Limits) -> FaultCode {
-        let in_range = reading.value().filter(|&value| limits.hold(value));
-        // The longer ago the last good sample, the further the value may have gone.
-        let reach = limits.step * (f32::from(self.age) + 1.0);
-        match in_range {
-            Some(value) if (value - *last).abs() <= reach || self.age == u8::MAX => {
-                *last = value;
-                self.age = 0;
-                self.bad = self.bad.saturating_sub(1);
-                if self.bad == 0 {
-                    self.faulty = false;
-                }
+        let value = reading.value_or_nan();
+        let change = (value - *last).abs();
+        let in_range = limits.hold(value);
+        if in_range && (change <= limits.step || self.reaches(change, limits)) {
+            *last = value;
+            self.age = 0;
+            self.bad = self.bad.saturating_sub(1);
+            if self.bad == 0 {
+                self.faulty = false;
             }
-            other => {
-                self.age = self.age.saturating_add(1);
-                // The node has already waited before it called a message lost.
-                self.bad = if message_lost {
-                    LIMIT
+        } else {
+            self.age = self.age.saturating_add(1);
+            // The node has already waited before it called a message lost.
+            self.bad = if message_lost {
+                LIMIT
+            } else {
+                self.bad.saturating_add(UP).min(LIMIT)
+            };
+            if self.bad == LIMIT {
+                self.faulty = true;
+                self.cause = if message_lost {
+                    FaultCode::MessageLost
+                } else if in_range {
+                    FaultCode::SensorRate
                 } else {
-                    self.bad.saturating_add(UP).min(LIMIT)
+                    FaultCode::SensorRange
                 };
-                if self.bad == LIMIT {
-                    self.faulty = true;
-                    self.cause = if message_lost {
-                        FaultCode::MessageLost
-                    } else if other.is_some() {
-                        FaultCode::SensorRate
-                    } else {
-                        FaultCode::SensorRange
-                    };
-                }
             }
         }
         if self.faulty { self.cause } else { FaultCode::None }
+    }
+
+    /// Whether a value may have changed so much: the longer ago the last good sample, the further it may have gone.
+    fn reaches(&self, change: f32, limits: &Limits) -> bool {
+        self.age == u8::MAX || change <= limits.step * (f32::from(self.age) + 1.0)
     }
 }
 
@@ -131,16 +133,19 @@ impl StrutReadings {
         (pressure, last_pressure): (&StrutPressures<Reading>, &mut StrutPressures<Gauge<f32>>),
         lost: (bool, bool),
     ) {
-        let check = &mut self.displacement;
         let mut verdicts = Verdicts::GOOD;
-        let cause = check.step(last_displacement_m, displacement, lost.0, &DISPLACEMENT);
+        let cause = (self.displacement).step(last_displacement_m, displacement, lost.0, &DISPLACEMENT);
         verdicts.blame(Place::DISPLACEMENT, cause);
-        self.calm = check.bad == 0;
-        for point in PressurePoint::ALL {
-            let (check, Gauge(last)) = (&mut self.pressure[point], &mut last_pressure[point]);
-            verdicts.blame(Place::of(point), check.step(last, pressure[point], lost.1, &PRESSURE));
-            self.calm &= check.bad == 0;
-        }
+        let (checks, last) = (&mut self.pressure, last_pressure);
+        let mut one = |place, check: &mut ReadingCheck, Gauge(last): &mut Gauge<f32>, reading| {
+            verdicts.blame(place, check.step(last, reading, lost.1, &PRESSURE));
+        };
+        one(Place::P1, &mut checks.p1, &mut last.p1, pressure.p1);
+        one(Place::P2, &mut checks.p2, &mut last.p2, pressure.p2);
+        one(Place::P3, &mut checks.p3, &mut last.p3, pressure.p3);
+        one(Place::P4, &mut checks.p4, &mut last.p4, pressure.p4);
+        let bad = checks.p1.bad | checks.p2.bad | checks.p3.bad | checks.p4.bad;
+        self.calm = self.displacement.bad | bad == 0;
         self.verdicts = verdicts;
     }
 }

@@ -255,6 +255,15 @@ impl AxleState {
 }
 
 impl State {
+    /// A machine that is latched from its first tick on, for a fault before a restart.
+    pub fn latched(cause: FaultCode) -> Self {
+        Self {
+            mode: Mode::Latched,
+            first_cause: cause,
+            ..Self::default()
+        }
+    }
+
     /// Whether the mode was ever [`Mode::Normal`].
     pub const fn was_normal(&self) -> bool {
         self.was_normal

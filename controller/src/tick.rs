@@ -41,6 +41,20 @@ impl State {
     pub fn new() -> Self {
         Self::default()
     }
+
+    /// Latches the safe state: from the next tick on all valves stay closed, for this cause. A restart that must not end the latched
+    /// mode begins with it.
+    ///
+    /// ```
+    /// use oleo_controller::{Configuration, FaultCode, Inputs, Mode, State, tick};
+    /// let mut state = State::new();
+    /// state.latch(FaultCode::Solenoid);
+    /// let outputs = tick(&Configuration::defender110(), &mut state, &Inputs::default());
+    /// assert_eq!((outputs.mode, outputs.fault), (Mode::Latched, FaultCode::Solenoid));
+    /// ```
+    pub fn latch(&mut self, cause: FaultCode) {
+        self.failsafe = failsafe::State::latched(cause);
+    }
 }
 
 /// What a tick decided, and what it was decided from.
@@ -91,6 +105,7 @@ pub struct Outputs {
 /// let outputs = core::iter::repeat_with(|| tick(&configuration, &mut state, &inputs)).nth(100);
 /// assert_eq!(outputs.map(|outputs| outputs.command), Some(ValveCommand::SAFE));
 /// ```
+#[inline(never)]
 pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     let compared = state.plausibility.turn();
     let context = plausibility::Context {

@@ -55,6 +55,25 @@ impl Can {
     }
 }
 
+/// The error state of the peripheral.
+pub struct Errors {
+    /// The whole error register (RM0090, section 32.9.2, `CAN_ESR`).
+    pub bits: u32,
+    /// Whether the peripheral has left the bus. It comes back by itself.
+    pub is_off: bool,
+}
+
+impl Can {
+    /// The error state now.
+    pub fn errors(&self) -> Errors {
+        let register = self.registers.esr().read();
+        Errors {
+            bits: register.bits(),
+            is_off: register.boff().bit_is_set(),
+        }
+    }
+}
+
 impl embedded_can::nb::Can for Can {
     type Frame = Frame;
     type Error = Error;
@@ -74,9 +93,7 @@ impl embedded_can::nb::Can for Can {
             mailbox.tdtr().write(|w| w.bits(u32::from(length)));
             mailbox.tdlr().write(|w| w.bits(u32::from_le_bytes([a, b, c, d])));
             mailbox.tdhr().write(|w| w.bits(u32::from_le_bytes([e, f, g, h])));
-            mailbox
-                .tir()
-                .write(|w| w.bits(u32::from(id) << 21).txrq().set_bit());
+            mailbox.tir().write(|w| w.bits(u32::from(id) << 21).txrq().set_bit());
         }
         Ok(None)
     }

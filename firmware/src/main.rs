@@ -20,6 +20,8 @@ mod can;
 mod clock;
 mod fault;
 mod frame;
+mod report;
+mod reset;
 #[cfg(feature = "slcan")]
 mod slcan;
 mod solenoid;
@@ -28,27 +30,62 @@ mod solenoid;
 mod surroundings;
 mod watchdog;
 
-use cortex_m::peripheral::SCB;
+use cortex_m::{peripheral::SCB, singleton};
 use cortex_m_rt::entry;
-use oleo_controller::{Configuration, Node, Port, Solenoids};
+use oleo_controller::{Configuration, FaultCode, Mode, Node, Port, Solenoids};
+use report::BOARD;
 use stm32f4::stm32f405::Peripherals;
+
+type Controller = Port<surroundings::Bus>;
 
 #[entry]
 fn main() -> ! {
     let (Some(board), Some(core)) = (Peripherals::take(), cortex_m::Peripherals::take()) else {
         SCB::sys_reset()
     };
-    let Ok(mut solenoids) = Solenoids::new(solenoid::take(board.GPIOE, &board.RCC)) else {
+    let Ok(solenoids) = Solenoids::new(solenoid::take(board.GPIOE, &board.RCC)) else {
         SCB::sys_reset()
     };
-    let mut watchdog = watchdog::Watchdog::start(board.IWDG);
+    let watchdog = watchdog::Watchdog::start(board.IWDG);
+    let causes = reset::causes(&board.RCC);
+    let (memory, latch) = reset::Memory::open(board.RTC, &board.RCC, &board.PWR, reset::is_power_on(causes));
     let source = clock::start(&board.RCC, &board.FLASH, &board.PWR);
     let (buses, ports) = ((board.CAN1, board.USART1), (board.GPIOA, board.GPIOB));
-    let Some((bus, mut pace)) = surroundings::start(buses, ports, core.SYST, &board.RCC, source) else {
+    let Some((bus, pace)) = surroundings::start(buses, ports, core.SYST, &board.RCC, source) else {
         SCB::sys_reset()
     };
-    let mut port = Port::new(bus, Node::new(Configuration::defender110()));
+    report::set(&BOARD.reset_causes, causes);
+    report::set(&BOARD.clock_source, report::number(source));
+    report::set(&BOARD.latch_before_reset, latch.map_or(0, |cause| cause.raw().into()));
+    report::set(
+        &BOARD.brown_out_level,
+        board.FLASH.optcr().read().bor_lev().bits().into(),
+    );
+    let Some(port) = controller(bus, latch) else {
+        SCB::sys_reset()
+    };
+    run(port, pace, solenoids, watchdog, memory)
+}
 
+/// The controller, in a static: it is large, and the stack of the loop is to be small.
+#[inline(never)]
+fn controller(bus: surroundings::Bus, latch: Option<FaultCode>) -> Option<&'static mut Controller> {
+    let port = singleton!(: Controller = Port::new(bus, Node::new(Configuration::defender110())))?;
+    if let Some(cause) = latch {
+        port.latch(cause);
+    }
+    Some(port)
+}
+
+/// Ticks for ever.
+#[inline(never)]
+fn run(
+    port: &mut Controller,
+    mut pace: surroundings::Pace,
+    mut solenoids: Solenoids<solenoid::Solenoid>,
+    mut watchdog: watchdog::Watchdog,
+    mut memory: reset::Memory,
+) -> ! {
     loop {
         port.poll();
         if pace.is_over(port.can_mut()) {
@@ -56,7 +93,13 @@ fn main() -> ! {
             if solenoids.drive(outputs.command).is_err() {
                 port.report_solenoid_failure();
             }
+            if outputs.mode == Mode::Latched {
+                memory.keep(outputs.fault);
+            }
             pace.end_tick(port.can_mut());
+            let counters = port.counters();
+            report::set(&BOARD.port_errors, counters.errors);
+            report::set(&BOARD.port_dropped, counters.dropped);
             watchdog.feed();
             #[cfg(feature = "deliberate-panic")]
             assert!(port.counters().dropped == 0);

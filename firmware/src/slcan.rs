@@ -42,8 +42,12 @@ impl Slcan {
         port.moder().modify(|_, w| w.moder9().alternate().moder10().alternate());
         #[allow(unsafe_code)]
         // SAFETY: the whole register is the divider, in sixteenths at 16 samples a bit.
-        registers.brr().write(|w| unsafe { w.bits((apb2_hz / BAUD) as u16 as _) });
-        registers.cr1().write(|w| w.ue().set_bit().te().set_bit().re().set_bit());
+        registers
+            .brr()
+            .write(|w| unsafe { w.bits((apb2_hz / BAUD) as u16 as _) });
+        registers
+            .cr1()
+            .write(|w| w.ue().set_bit().te().set_bit().re().set_bit());
         let mut line = Self {
             registers,
             line: [0; LONGEST],

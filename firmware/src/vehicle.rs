@@ -2,6 +2,7 @@
 
 use crate::can::{Can, QUANTA};
 use crate::clock::{CORE_HZ, Source};
+use crate::report::{self, BOARD};
 use cortex_m::peripheral::{SYST, syst::SystClkSource};
 use oleo_interface::tick::TICK_MS;
 use stm32f4::stm32f405::{CAN1, GPIOA, GPIOB, RCC, USART1};
@@ -23,7 +24,12 @@ const _: () = assert!(
 pub type Bus = Can;
 
 /// Says when a tick is over: SysTick does.
-pub struct Pace(SYST);
+pub struct Pace {
+    systick: SYST,
+    /// Whether the next tick was due before the last one had been worked off.
+    late: bool,
+    was_off: bool,
+}
 
 /// Joins the bus and starts the ticks; nothing without the PLL, whose clock both need.
 pub fn start(
@@ -41,15 +47,31 @@ pub fn start(
     systick.set_reload(TICK_RELOAD);
     systick.clear_current();
     systick.enable_counter();
-    Some((can, Pace(systick)))
+    let pace = Pace {
+        systick,
+        late: false,
+        was_off: false,
+    };
+    Some((can, pace))
 }
 
 impl Pace {
     /// Whether 5 ms are over since it last was so.
     pub fn is_over(&mut self, _bus: &mut Bus) -> bool {
-        self.0.has_wrapped()
+        core::mem::take(&mut self.late) || self.systick.has_wrapped()
     }
 
-    /// Is called when the tick has been worked off.
-    pub fn end_tick(&mut self, _bus: &mut Bus) {}
+    /// Is called when the tick has been worked off: reports overruns and the errors of the bus.
+    pub fn end_tick(&mut self, bus: &mut Bus) {
+        if self.systick.has_wrapped() {
+            self.late = true;
+            report::count(&BOARD.overruns);
+        }
+        let errors = bus.errors();
+        report::set(&BOARD.bus_errors, errors.bits);
+        if errors.is_off && !self.was_off {
+            report::count(&BOARD.bus_off);
+        }
+        self.was_off = errors.is_off;
+    }
 }

@@ -158,7 +158,9 @@ mod tests {
                 pressure = StrutPressures::splat(Gauge(2.0e6));
             } else {
                 verdict.blame(Place::DISPLACEMENT, FaultCode::SensorRange);
-                PressurePoint::ALL.map(|point| verdict.blame(Place::of(point), FaultCode::SensorRange));
+                for point in PressurePoint::ALL {
+                    verdict.blame(Place::of(point), FaultCode::SensorRange);
+                }
             }
             stuck.step(0.0, &pressure, false, &mut verdict);
             let healthy = verdict == Verdicts::GOOD;

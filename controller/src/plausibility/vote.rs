@@ -162,7 +162,9 @@ mod tests {
         let mut vote = Vote::default();
         assert_eq!(shaken(&mut vote, 0..500, 0.0), None);
         let mut silent = Verdicts::GOOD;
-        PressurePoint::ALL.map(|point| silent.blame(Place::of(point), FaultCode::MessageLost));
+        for point in PressurePoint::ALL {
+            silent.blame(Place::of(point), FaultCode::MessageLost);
+        }
         vote.step(&parameters, &StrutPressures::default(), false, &mut silent);
         assert_eq!(shaken(&mut vote, 0..1000, 0.0), None);
     }

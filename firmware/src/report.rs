@@ -12,7 +12,7 @@ pub struct Board {
     pub clock_source: AtomicU32,
     /// Cause of a latch that the reset has not ended, as on the bus; 0 for none.
     pub latch_before_reset: AtomicU32,
-    /// Brown-out level in the option bytes: 3 off (1.7 V), 2, 1 and 0 are about 2.2, 2.5 and 2.8 V (RM0090, section 3.9.10).
+    /// Bits `BOR_LEV` of the option bytes: 3 off, 2 level 1 (2.1 V), 1 level 2 (2.4 V), 0 level 3 (2.7 V) (RM0090, `FLASH_OPTCR`).
     pub brown_out_level: AtomicU32,
     /// Number of ticks at whose end the next one was due already. It wraps.
     pub overruns: AtomicU32,

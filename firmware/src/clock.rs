@@ -6,6 +6,7 @@
 //! temperature), which a bus of 500 kbit/s with short lines may or may not tolerate; the board reports it. If the PLL does not lock
 //! either, the core stays at 16 MHz, where the bit rate of the bus cannot be made.
 
+use crate::watchdog::Watchdog;
 use stm32f4::stm32f405::{FLASH, PWR, RCC};
 
 /// Frequency of the core clock, Hz.
@@ -18,9 +19,10 @@ const CRYSTAL_M: u32 = 8_000_000 / COMPARISON_HZ;
 const INTERNAL_M: u32 = 16_000_000 / COMPARISON_HZ;
 /// 168 MHz at 2.7 V to 3.6 V: five wait states.
 const FLASH_WAIT_STATES: u8 = 5;
-/// Longest wait for an oscillator, the PLL or the switch between clocks, in reads of the register: 10 ms and more at 16 MHz. A
-/// crystal starts within 2 ms (datasheet, table 41), the PLL within 0.3 ms.
-const PATIENCE: u32 = 40_000;
+/// Longest wait for an oscillator, the PLL or the switch between clocks, in reads of the register: some 5 ms at 16 MHz and ten cycles
+/// a read. A crystal starts within 2 ms (datasheet, table 41), the PLL within 0.3 ms. The watchdog runs already, and is fed between two
+/// waits.
+const PATIENCE: u32 = 8_000;
 
 const _: () = assert!(COMPARISON_HZ * PLL_N / 2 == CORE_HZ);
 
@@ -41,12 +43,13 @@ pub fn is_soon(ready: impl Fn() -> bool) -> bool {
 }
 
 /// Switches the core to the PLL of the crystal, or to the best that there is.
-pub fn start(rcc: &RCC, flash: &FLASH, pwr: &PWR) -> Source {
+pub fn start(rcc: &RCC, flash: &FLASH, pwr: &PWR, watchdog: &mut Watchdog) -> Source {
     rcc.apb1enr().modify(|_, w| w.pwren().enabled());
     pwr.cr().modify(|_, w| w.vos().set_bit());
 
     rcc.cr().modify(|_, w| w.hseon().on());
     let crystal = is_soon(|| rcc.cr().read().hserdy().is_ready());
+    watchdog.feed();
 
     #[allow(unsafe_code)]
     rcc.pllcfgr().write(|w| {
@@ -64,6 +67,7 @@ pub fn start(rcc: &RCC, flash: &FLASH, pwr: &PWR) -> Source {
     if !is_soon(|| rcc.cr().read().pllrdy().is_ready()) {
         return Source::InternalWithoutPll;
     }
+    watchdog.feed();
     flash.acr().write(|w| {
         w.prften().set_bit();
         w.icen().set_bit();

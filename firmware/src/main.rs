@@ -46,10 +46,10 @@ fn main() -> ! {
     let Ok(solenoids) = Solenoids::new(solenoid::take(board.GPIOE, &board.RCC)) else {
         SCB::sys_reset()
     };
-    let watchdog = watchdog::Watchdog::start(board.IWDG);
+    let mut watchdog = watchdog::Watchdog::start(board.IWDG);
     let causes = reset::causes(&board.RCC);
     let (memory, latch) = reset::Memory::open(board.RTC, &board.RCC, &board.PWR, reset::is_power_on(causes));
-    let source = clock::start(&board.RCC, &board.FLASH, &board.PWR);
+    let source = clock::start(&board.RCC, &board.FLASH, &board.PWR, &mut watchdog);
     let (buses, ports) = ((board.CAN1, board.USART1), (board.GPIOA, board.GPIOB));
     let Some((bus, pace)) = surroundings::start(buses, ports, core.SYST, &board.RCC, source) else {
         SCB::sys_reset()

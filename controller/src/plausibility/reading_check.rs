@@ -6,7 +6,7 @@
 use oleo_interface::{Gauge, StrutPressures};
 
 use super::limits::{DISPLACEMENT, Limits, PRESSURE};
-use super::verdict::{Place, Verdicts};
+use super::verdict::Verdicts;
 use crate::failsafe::FaultCode;
 use crate::reading::Reading;
 
@@ -103,6 +103,7 @@ impl StrutReadings {
 
     /// One tick: takes the good readings over into the last good displacement, m, and pressures, Pa. Returns whether nothing was
     /// wrong with any of them lately. `lost` says whether the displacement's and the pressures' message are lost.
+    #[inline(always)]
     pub fn step(
         &mut self,
         (displacement, last_displacement_m): (Reading, &mut f32),
@@ -133,20 +134,20 @@ impl StrutReadings {
         (pressure, last_pressure): (&StrutPressures<Reading>, &mut StrutPressures<Gauge<f32>>),
         lost: (bool, bool),
     ) {
-        let mut verdicts = Verdicts::GOOD;
         let cause = (self.displacement).step(last_displacement_m, displacement, lost.0, &DISPLACEMENT);
-        verdicts.blame(Place::DISPLACEMENT, cause);
         let (checks, last) = (&mut self.pressure, last_pressure);
-        let mut one = |place, check: &mut ReadingCheck, Gauge(last): &mut Gauge<f32>, reading| {
-            verdicts.blame(place, check.step(last, reading, lost.1, &PRESSURE));
+        let one = |check: &mut ReadingCheck, Gauge(last): &mut Gauge<f32>, reading| {
+            check.step(last, reading, lost.1, &PRESSURE)
         };
-        one(Place::P1, &mut checks.p1, &mut last.p1, pressure.p1);
-        one(Place::P2, &mut checks.p2, &mut last.p2, pressure.p2);
-        one(Place::P3, &mut checks.p3, &mut last.p3, pressure.p3);
-        one(Place::P4, &mut checks.p4, &mut last.p4, pressure.p4);
+        let causes = [
+            one(&mut checks.p1, &mut last.p1, pressure.p1),
+            one(&mut checks.p2, &mut last.p2, pressure.p2),
+            one(&mut checks.p3, &mut last.p3, pressure.p3),
+            one(&mut checks.p4, &mut last.p4, pressure.p4),
+        ];
+        self.verdicts = Verdicts::of(cause, causes);
         let bad = checks.p1.bad | checks.p2.bad | checks.p3.bad | checks.p4.bad;
         self.calm = self.displacement.bad | bad == 0;
-        self.verdicts = verdicts;
     }
 }
 

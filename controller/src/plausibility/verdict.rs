@@ -56,6 +56,18 @@ impl Verdicts {
         }
     }
 
+    /// From the causes of all readings.
+    pub fn of(displacement: FaultCode, [p1, p2, p3, p4]: [FaultCode; 4]) -> Self {
+        let at = |place: Place, cause: FaultCode| u32::from(cause.raw()) << place.0;
+        Self(
+            at(Place::DISPLACEMENT, displacement)
+                | at(Place::P1, p1)
+                | at(Place::P2, p2)
+                | at(Place::P3, p3)
+                | at(Place::P4, p4),
+        )
+    }
+
     /// All bits of the causes that are not [`FaultCode::None`].
     const fn found(self) -> u32 {
         let pairs = self.0 | self.0 >> 1;
@@ -81,17 +93,16 @@ impl Verdicts {
 
     /// The gravest of the causes.
     pub fn gravest(self) -> FaultCode {
-        let (mut rest, mut gravest) = (self.0, 0);
-        while rest != 0 {
-            gravest = gravest.max(rest & 0xF);
-            rest >>= CAUSE_BITS;
-        }
+        let at = |place: Place| self.0 >> place.0 & 0xF;
+        let pressures = at(Place::P1).max(at(Place::P2)).max(at(Place::P3)).max(at(Place::P4));
+        let gravest = at(Place::DISPLACEMENT).max(pressures);
         FaultCode::from_repr(gravest as u8).unwrap_or(FaultCode::Internal)
     }
 }
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
     use super::*;
     use strum::VariantArray;
 
@@ -113,6 +124,24 @@ mod tests {
                 assert_eq!(verdicts.pressures_are_good(), n == 0);
             }
         }
+    }
+
+    #[test]
+    fn causes_stand_in_their_places() {
+        let mut one_by_one = Verdicts::GOOD;
+        let causes = [
+            FaultCode::None,
+            FaultCode::SensorRate,
+            FaultCode::Internal,
+            FaultCode::SensorRange,
+        ];
+        for (place, cause) in PLACES
+            .into_iter()
+            .zip([&[FaultCode::MessageLost][..], &causes].concat())
+        {
+            one_by_one.blame(place, cause);
+        }
+        assert_eq!(Verdicts::of(FaultCode::MessageLost, causes), one_by_one);
     }
 
     #[test]

@@ -6,6 +6,7 @@
 use crate::clock::{CORE_HZ, Source};
 use crate::slcan::Slcan;
 use cortex_m::peripheral::SYST;
+use oleo_controller::BusCounters;
 use stm32f4::stm32f405::{CAN1, GPIOA, GPIOB, RCC, USART1};
 
 /// The driver of the bus.
@@ -36,7 +37,7 @@ impl Pace {
     }
 
     /// Is called when the tick has been worked off.
-    pub fn end_tick(&mut self, bus: &mut Bus) {
-        bus.end_tick();
+    pub fn end_tick(&mut self, bus: &mut Bus, counters: &BusCounters) {
+        bus.end_tick(counters.wrong_crc.saturating_add(counters.wrong_sequence));
     }
 }

@@ -96,7 +96,8 @@ fn run(
             if outputs.mode == Mode::Latched {
                 memory.keep(outputs.fault);
             }
-            pace.end_tick(port.can_mut());
+            let heard = port.node().counters();
+            pace.end_tick(port.can_mut(), &heard);
             let counters = port.counters();
             report::set(&BOARD.port_errors, counters.errors);
             report::set(&BOARD.port_dropped, counters.dropped);

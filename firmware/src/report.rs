@@ -5,6 +5,10 @@ use crate::clock::Source;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// The words.
+#[cfg_attr(
+    feature = "slcan",
+    allow(dead_code, reason = "some are about the hardware of the vehicle's board")
+)]
 pub struct Board {
     /// Why the board was reset, see [`crate::reset::causes`].
     pub reset_causes: AtomicU32,

@@ -31,6 +31,7 @@ pub struct Slcan {
     /// Number of the tick that the plant has ended and that was not answered yet.
     due: Option<u32>,
     sent: u16,
+    e2e_errors: u16,
 }
 
 impl Slcan {
@@ -54,6 +55,7 @@ impl Slcan {
             length: 0,
             due: None,
             sent: 0,
+            e2e_errors: 0,
         };
         line.write_sync([HELLO, 0, 0, 0, 0, 0, 0, 0]);
         line
@@ -64,8 +66,9 @@ impl Slcan {
         self.due.is_some()
     }
 
-    /// Tells the plant that its tick is answered.
-    pub fn end_tick(&mut self) {
+    /// Tells the plant that its tick is answered. The number of frames that have failed their end-to-end check is for the end of the run.
+    pub fn end_tick(&mut self, e2e_errors: u32) {
+        self.e2e_errors = u16::try_from(e2e_errors).unwrap_or(u16::MAX);
         let Some(tick) = self.due.take() else { return };
         let ([s0, s1], [t0, t1, t2, t3]) = (self.sent.to_le_bytes(), tick.to_le_bytes());
         self.write_sync([TICK_DONE, 0, s0, s1, t0, t1, t2, t3]);
@@ -121,8 +124,8 @@ impl Slcan {
                 match (id, kind) {
                     (PLANT_ID, TICK_DONE) => self.due = Some(u32::from_le_bytes([t0, t1, t2, t3])),
                     (PLANT_ID, END) => {
-                        let [s0, s1] = self.sent.to_le_bytes();
-                        self.write_sync([TALLY, 0, s0, s1, 0, 0, 0, 0]);
+                        let ([s0, s1], [e0, e1]) = (self.sent.to_le_bytes(), self.e2e_errors.to_le_bytes());
+                        self.write_sync([TALLY, 0, s0, s1, 0, 0, e0, e1]);
                     }
                     _ => {}
                 }

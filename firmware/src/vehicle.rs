@@ -4,6 +4,7 @@ use crate::can::{Can, QUANTA};
 use crate::clock::{CORE_HZ, Source};
 use crate::report::{self, BOARD};
 use cortex_m::peripheral::{SYST, syst::SystClkSource};
+use oleo_controller::BusCounters;
 use oleo_interface::tick::TICK_MS;
 use stm32f4::stm32f405::{CAN1, GPIOA, GPIOB, RCC, USART1};
 
@@ -62,7 +63,7 @@ impl Pace {
     }
 
     /// Is called when the tick has been worked off: reports overruns and the errors of the bus.
-    pub fn end_tick(&mut self, bus: &mut Bus) {
+    pub fn end_tick(&mut self, bus: &mut Bus, _counters: &BusCounters) {
         if self.systick.has_wrapped() {
             self.late = true;
             report::count(&BOARD.overruns);

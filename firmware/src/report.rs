@@ -59,6 +59,10 @@ pub fn set(word: &AtomicU32, value: u32) {
 }
 
 /// Counts one more.
+#[cfg_attr(
+    feature = "slcan",
+    allow(dead_code, reason = "what is counted is about the hardware")
+)]
 pub fn count(word: &AtomicU32) {
     word.store(word.load(Relaxed).wrapping_add(1), Relaxed);
 }

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use oleo_hil::candump::parse_line;
 use oleo_hil::scenario::BUILT_IN;
-use support::{complaint, no_panic, run, summary};
+use support::{complaint, no_panic, oleo, run, summary};
 
 fn hil(arguments: &[&str], out: &Path) -> serde_json::Value {
     let mut all = vec!["hil", "--out", out.to_str().unwrap()];
@@ -253,6 +253,36 @@ fn a_failed_check_is_exit_status_1_and_in_every_file() {
         junit.contains("tests=\"2\"") && junit.contains("failures=\"1\""),
         "{junit}"
     );
+}
+
+/// What needs no emulator of the image in the loop; `./test emulated-board` runs it.
+#[test]
+fn an_image_that_cannot_run_is_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let image = folder.path().join("image.elf");
+    let mut head = b"\x7fELF\x01\x01".to_vec();
+    head.resize(18, 0);
+    head.extend([40, 0]);
+    fs::write(&image, head).unwrap();
+    let image = image.to_str().unwrap();
+    let mut command = oleo(&["hil", "--firmware", image]);
+    let text = complaint(&command.env("PATH", folder.path()).output().unwrap());
+    assert!(text.contains("install the package qemu-system-arm"), "{text}");
+    let text = complaint(&run(&["hil", "--firmware", "Cargo.toml"]));
+    assert!(text.contains("Cargo.toml: is no ELF file for an Arm"), "{text}");
+    let stiff = folder.path().join("stiff.toml");
+    let text = "name = \"own\"\nroad = \"flat\"\nspeed_km_h = 30\nduration_s = 1\nstrategy = \"always-stiff\"\n";
+    fs::write(&stiff, text).unwrap();
+    let text = complaint(&run(&[
+        "hil",
+        "--firmware",
+        image,
+        "--scenario",
+        stiff.to_str().unwrap(),
+    ]));
+    assert!(text.contains("sets strategy, which an image has of its own"), "{text}");
+    let conflict = run(&["hil", "--firmware", image, "--strategy", "always-stiff"]);
+    assert_eq!(conflict.status.code(), Some(2));
 }
 
 #[test]

@@ -212,16 +212,17 @@ pub struct State {
 impl State {
     /// One tick; returns the motion that follows from readings that may be used.
     pub fn step(&mut self, c: &Parameters, trusted: &Trusted) -> Estimate {
+        let force = trusted.pressure.map(|pressure| pressure.p1.pa() * c.piston_area_m2);
+        if !self.started {
+            self.started = true;
+            self.speed = trusted.displacement_m.map(DerivativeState::at_rest);
+            self.static_load_n = force;
+        }
         let speeds = self.speed.each_mut().zip(trusted.displacement_m);
         let strut_speed_m_s = speeds.map(|(state, x)| c.strut_speed.step(state, x));
         let relative = Relative::from_struts(c, trusted.displacement_m);
         let relative_rate = Relative::from_struts(c, strut_speed_m_s);
 
-        let force = trusted.pressure.map(|pressure| pressure.p1.pa() * c.piston_area_m2);
-        if !self.started {
-            self.started = true;
-            self.static_load_n = force;
-        }
         for (load, force) in self.static_load_n.each_mut().zip(force).into_array() {
             // A strut without load (jacked up, or empty) must not lead to a division by zero.
             *load = at_least(c.static_load.step(load, force), 1.0);

@@ -153,6 +153,13 @@ pub struct Health {
     pub cause: FaultCode,
 }
 
+impl Health {
+    /// Whether nothing is wrong.
+    pub fn is_good(&self) -> bool {
+        self.cause == FaultCode::None && self.affected == Corners::splat(false)
+    }
+}
+
 /// Whether either corner of each axle is affected.
 fn affected_axles(affected: Corners<bool>) -> Axles<bool> {
     affected.by_axle().map(|(left, right)| left || right)
@@ -248,6 +255,15 @@ impl AxleState {
 }
 
 impl State {
+    /// A machine that is latched from its first tick on, for a fault before a restart.
+    pub fn latched(cause: FaultCode) -> Self {
+        Self {
+            mode: Mode::Latched,
+            first_cause: cause,
+            ..Self::default()
+        }
+    }
+
     /// Whether the mode was ever [`Mode::Normal`].
     pub const fn was_normal(&self) -> bool {
         self.was_normal
@@ -266,6 +282,11 @@ impl State {
     /// One tick; returns the mode that holds for it.
     pub fn step(&mut self, health: &Health) -> Mode {
         if self.mode == Mode::Latched {
+            return self.mode;
+        }
+        // Most ticks end here: nothing is wrong, and nothing of the past is remembered.
+        if self.mode == Mode::Normal && health.is_good() && self.is_unburdened() {
+            self.healthy = self.healthy.saturating_add(1);
             return self.mode;
         }
         let affected = affected_axles(health.affected);
@@ -290,6 +311,12 @@ impl State {
             self.first_cause = FaultCode::None;
         }
         self.mode
+    }
+
+    /// Whether no fault is remembered, so that a healthy tick has nothing to forget.
+    fn is_unburdened(&self) -> bool {
+        let Axles { front, rear } = &self.axles;
+        front.faults.count == 0 && rear.faults.count == 0 && self.safe_entries.count == 0
     }
 
     /// The mode once the vehicle has been healthy.

@@ -14,14 +14,19 @@ pub struct LowPass {
 impl LowPass {
     /// Lag with a time constant, s, above 0.
     pub fn from_time_constant_s(time_constant_s: f32) -> Self {
+        Self::sampled(TICK_S, time_constant_s)
+    }
+
+    /// Lag that is stepped once in a period, s, with a time constant, s; both above 0.
+    pub fn sampled(period_s: f32, time_constant_s: f32) -> Self {
         Self {
-            alpha: -libm::expm1f(-TICK_S / time_constant_s),
+            alpha: -libm::expm1f(-period_s / time_constant_s),
         }
     }
 
     /// Lag with a corner frequency, Hz, above 0.
     pub fn from_corner_hz(corner_hz: f32) -> Self {
-        Self::from_time_constant_s(1.0 / (2.0 * core::f32::consts::PI * corner_hz))
+        Self::from_time_constant_s(time_constant_s(corner_hz))
     }
 
     /// One tick; returns the new output, which is the state.
@@ -29,6 +34,11 @@ impl LowPass {
         *state += self.alpha * (input - *state);
         *state
     }
+}
+
+/// Time constant of a lag with a corner frequency, Hz, above 0.
+fn time_constant_s(corner_hz: f32) -> f32 {
+    1.0 / (2.0 * core::f32::consts::PI * corner_hz)
 }
 
 /// The greater of a value and its lower bound; the bound where the value is not a number. `f32::max` is a library call on a
@@ -85,6 +95,15 @@ impl SecondOrder {
         SecondOrderState([first, second])
     }
 
+    /// One tick; returns the output `y` for the input `x` alone.
+    pub fn low_pass(&self, state: &mut SecondOrderState, x: f32) -> f32 {
+        let ([last, last_but_one], [first, second]) = (self.back, state.0);
+        let x = self.input * x;
+        let output = x + first;
+        state.0 = [2.0 * x - last * output + second, x - last_but_one * output];
+        output
+    }
+
     /// One tick; returns the output `y` for the inputs `x` and `u`.
     pub fn step(&self, state: &mut SecondOrderState, x: f32, u: f32) -> f32 {
         let ([last, last_but_one], [first, second]) = (self.back, state.0);
@@ -100,6 +119,7 @@ impl SecondOrder {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Derivative {
     lag: LowPass,
+    per_period: f32,
 }
 
 /// State of [`Derivative`].
@@ -107,28 +127,36 @@ pub struct Derivative {
 pub struct DerivativeState {
     lagged: f32,
     rate: f32,
-    started: bool,
+}
+
+impl DerivativeState {
+    /// The state in which the input has been constant for ever.
+    pub fn at_rest(input: f32) -> Self {
+        Self {
+            lagged: input,
+            rate: 0.0,
+        }
+    }
 }
 
 impl Derivative {
     /// Both lags with this corner frequency, Hz, above 0.
     pub fn from_corner_hz(corner_hz: f32) -> Self {
+        Self::sampled(TICK_S, corner_hz)
+    }
+
+    /// The same for a filter that is stepped once in a period, s, above 0.
+    pub fn sampled(period_s: f32, corner_hz: f32) -> Self {
         Self {
-            lag: LowPass::from_corner_hz(corner_hz),
+            lag: LowPass::sampled(period_s, time_constant_s(corner_hz)),
+            per_period: 1.0 / period_s,
         }
     }
 
-    /// One tick; returns the derivative per second, which is 0 for the first sample.
+    /// One step; returns the derivative per second.
     pub fn step(&self, state: &mut DerivativeState, input: f32) -> f32 {
-        if !state.started {
-            *state = DerivativeState {
-                lagged: input,
-                rate: 0.0,
-                started: true,
-            };
-        }
         let before = state.lagged;
-        let slope = (self.lag.step(&mut state.lagged, input) - before) * (1.0 / TICK_S);
+        let slope = (self.lag.step(&mut state.lagged, input) - before) * self.per_period;
         self.lag.step(&mut state.rate, slope)
     }
 }
@@ -210,7 +238,7 @@ mod tests {
 
     #[test]
     fn derivative_of_a_slow_sine() {
-        let (filter, mut state) = (Derivative::from_corner_hz(18.0), DerivativeState::default());
+        let (filter, mut state) = (Derivative::from_corner_hz(18.0), DerivativeState::at_rest(0.0));
         let omega = 2.0 * core::f32::consts::PI;
         assert!((gain(1.0, |x| filter.step(&mut state, x)) / omega - 1.0).abs() < 0.01);
     }
@@ -219,7 +247,7 @@ mod tests {
     fn derivative_at_its_corner_is_6_db_down() {
         // The analogue gain of two lags at their corner frequency is one half; at 200 Hz sampling the step-invariant form is
         // within a tenth of it.
-        let (filter, mut state) = (Derivative::from_corner_hz(18.0), DerivativeState::default());
+        let (filter, mut state) = (Derivative::from_corner_hz(18.0), DerivativeState::at_rest(0.0));
         let omega = 2.0 * core::f32::consts::PI * 18.0;
         let measured = gain(18.0, |x| filter.step(&mut state, x)) / omega;
         assert!((measured - 0.5).abs() < 0.06, "{measured}");

@@ -165,7 +165,7 @@ impl Bessel {
     fn step(&mut self, c: &Parameters, x: f32, u: f32) -> f32 {
         let ([first, second], Self([one, two])) = (&c.sections, self);
         let y = first.step(one, x, u);
-        second.step(two, y, 0.0)
+        second.low_pass(two, y)
     }
 }
 
@@ -195,7 +195,7 @@ impl State {
         let witness = self.twist.step(c, 0.0, twist);
         let error = self.axles(witness, delay);
         let quick = plain + error;
-        let slow = c.slow.step(&mut self.body_slow, quick, 0.0);
+        let slow = c.slow.low_pass(&mut self.body_slow, quick);
         let bias = c.bias.step(&mut self.bias, quick.clamp(-MAX_BIAS_M_S2, MAX_BIAS_M_S2));
         Lateral {
             corrected: self.known >= SETTLING_TICKS + FADING_TICKS + FOLLOWING_TICKS,
@@ -205,7 +205,7 @@ impl State {
             },
             witness_m_s2: Bands {
                 quick: witness,
-                slow: c.slow.step(&mut self.twist_slow, witness, 0.0),
+                slow: c.slow.low_pass(&mut self.twist_slow, witness),
             },
         }
     }

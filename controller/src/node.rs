@@ -19,6 +19,7 @@ use crate::can::{
     PressureMessage, Protector, STATUS, StatusMessage, sensor_message,
 };
 use crate::configuration::Configuration;
+use crate::failsafe::FaultCode;
 use crate::freshness::{Freshness, counter};
 use crate::reading::{Inputs, Reading};
 use crate::receiver::Receiver;
@@ -109,6 +110,18 @@ impl Node {
             status_countdown: 0,
             counters: BusCounters::default(),
         }
+    }
+
+    /// Latches the safe state, see [`State::latch`].
+    ///
+    /// ```
+    /// use oleo_controller::{Configuration, FaultCode, Mode, Node};
+    /// let mut node = Node::new(Configuration::defender110());
+    /// node.latch(FaultCode::Solenoid);
+    /// assert_eq!(node.tick().0.mode, Mode::Latched);
+    /// ```
+    pub fn latch(&mut self, cause: FaultCode) {
+        self.state.latch(cause);
     }
 
     /// Takes a frame from the bus: its standard identifier, 0 to 0x7FF, and its data. Call it any number of times between

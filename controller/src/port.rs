@@ -6,6 +6,7 @@
 //! deciding.
 
 use crate::can::{FRAME_BYTES, Frame};
+use crate::failsafe::FaultCode;
 use crate::node::Node;
 use crate::tick::Outputs;
 use embedded_can::{Frame as _, Id, StandardId, nb::Can};
@@ -137,6 +138,11 @@ impl<C: Can> Port<C> {
         }
         self.send();
         outputs
+    }
+
+    /// Latches the safe state, see [`State::latch`](crate::State::latch).
+    pub fn latch(&mut self, cause: FaultCode) {
+        self.node.latch(cause);
     }
 
     /// Reports that the output stage could not switch a solenoid. The next tick latches.

@@ -15,36 +15,44 @@ use crate::sensor_message::MessageSet;
 /// assert_eq!(Reading::new(f32::NAN), Reading::INVALID);
 /// assert_eq!(Reading::INVALID.value(), None);
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Reading {
-    value: f32,
-    valid: bool,
-}
+#[derive(Clone, Copy, Debug)]
+pub struct Reading(f32);
 
 impl Reading {
     /// A reading without a value.
-    pub const INVALID: Self = Self {
-        value: 0.0,
-        valid: false,
-    };
+    pub const INVALID: Self = Self(f32::NAN);
 
     /// A reading in SI units. NaN and infinite values become [`Reading::INVALID`].
     pub fn new(value: f32) -> Self {
-        if value.is_finite() {
-            Self { value, valid: true }
-        } else {
-            Self::INVALID
-        }
+        if value.is_finite() { Self(value) } else { Self::INVALID }
     }
 
     /// The value, if it is valid.
     pub fn value(self) -> Option<f32> {
-        self.valid.then_some(self.value)
+        self.is_valid().then_some(self.0)
     }
 
     /// Whether the value may be used.
     pub fn is_valid(self) -> bool {
-        self.valid
+        !self.0.is_nan()
+    }
+
+    /// The value, or NaN: for a comparison that nothing invalid passes.
+    pub(crate) fn value_or_nan(self) -> f32 {
+        self.0
+    }
+}
+
+impl Default for Reading {
+    fn default() -> Self {
+        Self::INVALID
+    }
+}
+
+impl PartialEq for Reading {
+    /// Two invalid readings are equal.
+    fn eq(&self, other: &Self) -> bool {
+        self.value() == other.value()
     }
 }
 

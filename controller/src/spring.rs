@@ -12,7 +12,8 @@
 //!             force step             dF = A (p - p1) = A (p4 - p1) V4 / (V1' + V4)
 //! ```
 //!
-//! The rules for each strut use the pressures extrapolated by 60 ms, to the time at which the valve acts.
+//! The rules for each strut use the pressures extrapolated by 60 ms, to the time at which the valve acts. The pressures of the front
+//! and of the rear axle are looked at in every second tick, in turns: 5 ms are little to a valve that takes 40 to 90 ms.
 //!
 //! - A valve closes when `|x_t|` is below its bound (8 mm). It waits for that up to 150 ms in handling mode and 1 s for
 //!   comfort, and not at all under the roll-over guard.
@@ -24,13 +25,15 @@
 //! The shift that a closing in an emergency traps has no bound. [`Springs::trapped_shift_m`] reports it, and the next opening
 //! releases it.
 
-use oleo_interface::{Absolute, Corners, Gauge, StrutPressures};
+use oleo_interface::tick::TICK_S_F32;
+use oleo_interface::{Absolute, Axle, Corner, Corners, Gauge, Side, StrutPressures, Valve};
 
 use crate::filter::{Derivative, DerivativeState, at_least};
 use crate::plausibility::Trusted;
 use crate::range::{ConfigurationError, within};
 use crate::strategy::Urgency;
 use crate::timing::ticks;
+use crate::valves::ValveCommand;
 use crate::vehicle::VehicleDescription;
 
 /// Time over which pressures are extrapolated, s: the middle of the valves' response times of 40 to 90 ms.
@@ -38,6 +41,8 @@ const AHEAD_S: f32 = 0.06;
 const HANDLING_PATIENCE_TICKS: u16 = ticks(150);
 const COMFORT_PATIENCE_TICKS: u16 = ticks(1_000);
 const DWELL_TICKS: u16 = ticks(500);
+/// Time from one look at an axle's pressures to the next, s.
+const OBSERVATION_S: f32 = 2.0 * TICK_S_F32;
 /// Time after which p4 follows p1 through an opened valve.
 const SETTLE_TICKS: u16 = ticks(200);
 /// Time after which a throttled opening ends even where the pressures stay apart: a sensor's offset must not keep the damper
@@ -102,7 +107,7 @@ impl Parameters {
             gas_volume_1_m3: vehicle.gas_volume_1_m3,
             gas_volume_2_m3: vehicle.gas_volume_2_m3,
             // Slower than the strut speed: 5 kPa steps.
-            pressure_rate: Derivative::from_corner_hz(8.0),
+            pressure_rate: Derivative::sampled(OBSERVATION_S, 8.0),
             trapped_shift_m: tuning.trapped_shift_m,
             opening_step_share: tuning.opening_step_share,
         }
@@ -118,6 +123,8 @@ struct SpringValve {
     since: u16,
     /// Number of ticks for which a change has been wanted; it saturates.
     waiting: u16,
+    /// Whether the filters have seen a pressure.
+    observed: bool,
     p1_rate: DerivativeState,
     p4_rate: DerivativeState,
     trapped_shift_m: f32,
@@ -148,6 +155,8 @@ struct SpringValve {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Springs {
     valves: Corners<SpringValve>,
+    /// Whether the pressures of the rear axle are the next to be looked at.
+    rear_is_next: bool,
 }
 
 impl Springs {
@@ -189,8 +198,13 @@ impl Springs {
     }
 
     fn observe(&mut self, c: &Parameters, trusted: &Trusted, wanted: Corners<bool>) {
-        for (corner, valve) in self.valves.iter_mut() {
-            valve.observe(c, &trusted.pressure[corner], trusted.charge[corner], wanted[corner]);
+        for (valve, wanted) in self.valves.each_mut().zip(wanted).into_array() {
+            valve.wait(wanted);
+        }
+        let axle = if self.rear_is_next { Axle::Rear } else { Axle::Front };
+        self.rear_is_next = !self.rear_is_next;
+        for corner in Side::ALL.map(|side| axle.corner(side)) {
+            self.valves[corner].observe(c, &trusted.pressure[corner], trusted.charge[corner]);
         }
     }
 
@@ -199,11 +213,26 @@ impl Springs {
         self.valves.each_ref().map(|valve| valve.throttled)
     }
 
-    /// Corners at which valve 3 has been open for so long that p4 follows p1.
-    pub fn settled_open(&self) -> Corners<bool> {
-        self.valves
-            .each_ref()
-            .map(|valve| valve.open && valve.since >= SETTLE_TICKS && !valve.throttled)
+    /// The signals of the bypass valves, with those of valve 3 as they are to be. Valve 2 stays closed where valve 3 opens throttled,
+    /// and also where it is closed: there it has no effect, and a valve that is not energised does not wear.
+    pub fn applied_to(&self, bypass: ValveCommand) -> ValveCommand {
+        let (mut open, mut closed) = (0, 0);
+        for (corner, valve) in self.valves.iter() {
+            let bit = |valve| 1 << ValveCommand::bit(corner, valve);
+            if valve.open {
+                open |= bit(Valve::Spring);
+            }
+            if !valve.open || valve.throttled {
+                closed |= bit(Valve::Bypass2);
+            }
+        }
+        ValveCommand::from_word((bypass.word() | open) & !closed)
+    }
+
+    /// Whether valve 3 of a corner has been open for so long that p4 follows p1.
+    pub fn is_settled_open(&self, corner: Corner) -> bool {
+        let valve = &self.valves[corner];
+        valve.open && valve.since >= SETTLE_TICKS && !valve.throttled
     }
 
     /// Shift of the ride height by the oil behind each closed valve 3, m, positive where the corner is lower. Where the valve
@@ -221,13 +250,23 @@ impl SpringValve {
         self.throttled = false;
     }
 
-    fn observe(&mut self, c: &Parameters, pressure: &StrutPressures<Gauge<f32>>, charge: Absolute<f32>, wanted: bool) {
+    /// One tick of waiting, or of rest.
+    fn wait(&mut self, wanted: bool) {
         self.since = self.since.saturating_add(1);
         self.waiting = if wanted == self.open {
             0
         } else {
             self.waiting.saturating_add(1)
         };
+    }
+
+    /// Takes over what the pressures say, once in [`OBSERVATION_S`].
+    fn observe(&mut self, c: &Parameters, pressure: &StrutPressures<Gauge<f32>>, charge: Absolute<f32>) {
+        if !self.observed {
+            self.observed = true;
+            self.p1_rate = DerivativeState::at_rest(pressure.p1.pa());
+            self.p4_rate = DerivativeState::at_rest(pressure.p4.pa());
+        }
         let (v1, v2) = (c.gas_volume_1_m3, c.gas_volume_2_m3);
         let ahead = |p: Gauge<f32>, rate: &mut DerivativeState| {
             let later = p.absolute() + AHEAD_S * c.pressure_rate.step(rate, p.pa());

@@ -4,12 +4,12 @@
 //! is wanted, let the mode machine take out what it does not permit, and limit how often valves switch. Nothing else keeps state
 //! between ticks.
 
-use oleo_interface::{Corners, StrutValves, Valve};
+use oleo_interface::{Corners, Valve};
 
 use crate::configuration::Configuration;
 use crate::dwell::Dwell;
 use crate::estimate::{self, Estimate};
-use crate::failsafe::{self, FaultCode, Health, Mode};
+use crate::failsafe::{self, FaultCode, Mode};
 use crate::plausibility;
 use crate::reading::Inputs;
 use crate::spring::Springs;
@@ -40,6 +40,20 @@ impl State {
     /// Before the first tick: valves closed, mode start-up.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Latches the safe state: from the next tick on all valves stay closed, for this cause. A restart that must not end the latched
+    /// mode begins with it.
+    ///
+    /// ```
+    /// use oleo_controller::{Configuration, FaultCode, Inputs, Mode, State, tick};
+    /// let mut state = State::new();
+    /// state.latch(FaultCode::Solenoid);
+    /// let outputs = tick(&Configuration::defender110(), &mut state, &Inputs::default());
+    /// assert_eq!((outputs.mode, outputs.fault), (Mode::Latched, FaultCode::Solenoid));
+    /// ```
+    pub fn latch(&mut self, cause: FaultCode) {
+        self.failsafe = failsafe::State::latched(cause);
     }
 }
 
@@ -91,10 +105,12 @@ pub struct Outputs {
 /// let outputs = core::iter::repeat_with(|| tick(&configuration, &mut state, &inputs)).nth(100);
 /// assert_eq!(outputs.map(|outputs| outputs.command), Some(ValveCommand::SAFE));
 /// ```
+#[inline(never)]
 pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
+    let compared = state.plausibility.turn();
     let context = plausibility::Context {
-        spring_settled_open: state.springs.settled_open(),
-        spring_commanded_closed: state.switching.command().corners().map(|strut| !strut[Valve::Spring]),
+        spring_settled_open: state.springs.is_settled_open(compared),
+        spring_commanded_closed: !state.switching.command().is_open(compared, Valve::Spring),
         learning: !state.failsafe.was_normal(),
     };
     let trusted = state.plausibility.step(&c.plausibility, inputs, &context);
@@ -103,8 +119,8 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     // Before the first complete set of readings there is nothing to estimate from, and the filters must not start at zero
     // load.
     let mut estimate = Estimate::default();
-    if state.failsafe.was_normal() || health == Health::default() {
-        estimate = state.estimate.step(&c.estimate, &trusted);
+    if state.failsafe.was_normal() || health.is_good() {
+        estimate = state.estimate.step(&c.estimate, trusted);
         if !estimate.is_finite() {
             health.cause = FaultCode::Internal;
             estimate = Estimate::default();
@@ -112,28 +128,17 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     }
 
     let mode = state.failsafe.step(&health);
-    let demand = state.strategy.step(&c.strategy, &estimate, &trusted);
-    let springs = if mode == Mode::Normal {
-        let wanted = demand.valves.corners().map(|strut| strut[Valve::Spring]);
+    let demand = state.strategy.step(&c.strategy, &estimate, trusted);
+    if mode == Mode::Normal {
+        let wanted = Corners::from_fn(|corner| demand.valves.is_open(corner, Valve::Spring));
         let load_n = &estimate.static_load_n;
-        state.springs.step(&c.spring, &trusted, load_n, wanted, demand.urgency)
+        state.springs.step(&c.spring, trusted, load_n, wanted, demand.urgency);
     } else {
-        state.springs.forced_closed(&c.spring, &trusted);
-        Corners::splat(false)
-    };
+        state.springs.forced_closed(&c.spring, trusted);
+    }
     let bypass = state.dwell.step(demand.valves, demand.urgency == Urgency::Emergency);
-
-    // Valve 2 has no effect behind a closed valve 3, and a valve that is not energised does not wear.
-    let valve_2 = springs
-        .zip(state.springs.throttled())
-        .map(|(open, throttled)| open && !throttled);
-    let struts = bypass
-        .corners()
-        .zip(springs.zip(valve_2))
-        .map(|(bypass, (spring, valve_2))| {
-            StrutValves::new(bypass[Valve::Bypass1], bypass[Valve::Bypass2] && valve_2, spring)
-        });
-    let permitted = failsafe::permitted(mode, state.failsafe.restricted(), ValveCommand::from_corners(struts));
+    let decided = state.springs.applied_to(bypass);
+    let permitted = failsafe::permitted(mode, state.failsafe.restricted(), decided);
     let command = state.switching.step(permitted);
     Outputs {
         command,

@@ -2,8 +2,11 @@
 //!
 //! The controller is told no speed, but both axles drive over the same road. The signs of the strut speeds above 3 Hz, in which
 //! the road is and the body's motion is not, agree best at that delay. For every delay at once, agreement of the rear sign with
-//! the front signs of the last 128 ticks is one exclusive-or, and the 128 sums are counted bit by bit in ten words ("vertical
-//! counters"), so that a tick costs the same few instructions whatever the number of delays.
+//! the front signs of the last 128 ticks is one exclusive-or. The 128 sums are counted bit by bit, bit `n` of all of them in one
+//! word. A full adder adds the agreements of both sides to bit 0; its carries wait until there are two of them, which are then
+//! added to bit 1 by the next full adder, and so on. So bit `n` is touched in every `2^n`th tick, and a tick needs two additions on
+//! average, whatever the number of delays ("carry-save", as in the population count of Harley and Seal: Warren, Hacker's Delight,
+//! 2nd edition, section 5-1).
 //!
 //! A window of 1.28 s gives 512 comparisons of two sides. On classes B to E and Belgian block at 40 to 80 km/h the greatest
 //! agreement is 0.62 to 0.96, and it lies within a tick of the truth whenever it is above 0.72 (`docs/controller.md`). For
@@ -19,7 +22,9 @@ use crate::filter::LowPass;
 /// Frequency above which strut speeds are compared, Hz.
 const CORNER_HZ: f32 = 3.0;
 /// Ticks compared before a delay is chosen.
-const WINDOW_TICKS: u16 = 256;
+const WINDOW_TICKS: u16 = 1 << (PLACES - 1);
+/// Binary places of the counters, without the carry out of the last one: two agreements in each tick of the window.
+const PLACES: usize = 9;
 /// Delays that are looked for, a bit each: 12 to 120 ticks, which are 168 down to 17 km/h at a wheelbase of 2.8 m.
 const DELAYS: u128 = (1 << 121) - (1 << 12);
 /// Least number of agreements, of two in each tick, that is more than chance: a fraction of 0.72.
@@ -44,15 +49,47 @@ impl Parameters {
     }
 }
 
+/// One binary place of the number of agreements at every delay: bit `k` of each word is about a delay of `k` ticks.
+#[derive(Clone, Copy, Debug, Default)]
+struct Place {
+    /// The place itself.
+    sum: u128,
+    /// A carry that waits for the next one; at the end of a window, the carry out of the place.
+    carry: u128,
+}
+
+/// What is known of the greatest number of agreements, while the counters are looked at from their highest place.
+#[derive(Clone, Copy, Debug)]
+struct Judgement {
+    /// Delays of which the places so far are the greatest.
+    best: u128,
+    /// Those places.
+    agreements: u16,
+    /// Number of places that have been looked at.
+    looked_at: u8,
+}
+
+impl Default for Judgement {
+    fn default() -> Self {
+        Self {
+            best: DELAYS,
+            agreements: 0,
+            looked_at: 0,
+        }
+    }
+}
+
 /// Signs, counters and the delay found last.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct State {
     body: Corners<f32>,
     /// Signs at the front, left and right: bit `k` is that of `k` ticks ago.
     front: [u128; 2],
-    /// Bit `k` of plane `n` is bit `n` of the number of agreements at a delay of `k` ticks.
-    planes: [u128; 10],
+    /// Place `n` holds bit `n` of the number of agreements.
+    places: [Place; PLACES],
+    /// Ticks since the start, until the history is full; then its length and the ticks of the window.
     ticks: u16,
+    judgement: Judgement,
     delay: Option<u8>,
     unclear: u8,
 }
@@ -63,34 +100,50 @@ impl State {
         let bodies = self.body.each_mut().zip(strut_speed_m_s);
         let upward = bodies.map(|(body, speed)| speed > c.body.step(body, speed));
         let Axles { front, rear } = upward.by_axle();
-        self.ticks += 1;
-        for ((history, front), rear) in self.front.iter_mut().zip([front.0, front.1]).zip([rear.0, rear.1]) {
-            *history = *history << 1 | u128::from(front);
-            // A window begins when the history is full, or what was before the start would be counted.
-            if self.ticks > HISTORY as u16 {
-                count(&mut self.planes, if rear { *history } else { !*history });
-            }
-        }
-        if self.ticks == HISTORY as u16 + WINDOW_TICKS {
-            self.ticks = HISTORY as u16;
+        let [left, right] = &mut self.front;
+        *left = *left << 1 | u128::from(front.0);
+        *right = *right << 1 | u128::from(front.1);
+        // A window begins when the history is full, or what was before the start would be counted.
+        let Some(tick) = self.ticks.checked_sub(HISTORY as u16) else {
+            self.ticks += 1;
+            return None;
+        };
+        if tick < WINDOW_TICKS {
+            // Front signs where the rear one is upward, and their inverse where it is not.
+            let agreeing = |rear: bool, front: u128| front ^ u128::from(rear).wrapping_sub(1);
+            count(
+                &mut self.places,
+                tick,
+                [agreeing(rear.0, *left), agreeing(rear.1, *right)],
+            );
+            self.ticks += 1;
+        } else {
+            // The places are judged one in a tick, from the highest, while nothing is counted.
             self.judge();
-            self.planes = [0; 10];
         }
         self.delay
     }
 
-    /// Chooses the delay of greatest agreement.
+    /// Looks at the next lower place of the counters; after the lowest, chooses the delay of greatest agreement and begins a window.
     fn judge(&mut self) {
-        let mut best = DELAYS;
-        let mut agreements = 0;
-        for plane in self.planes.iter().rev() {
-            let with = best & plane;
-            agreements = agreements << 1 | u16::from(with != 0);
+        let Judgement {
+            best,
+            agreements,
+            looked_at,
+        } = &mut self.judgement;
+        // After a whole window no carry waits, but for the one out of the last place, which is the highest bit.
+        let [.., last] = &self.places;
+        let mut downwards = core::iter::once(&last.carry).chain(self.places.iter().rev().map(|place| &place.sum));
+        if let Some(bit) = downwards.nth(usize::from(*looked_at)) {
+            let with = *best & bit;
+            *agreements = *agreements << 1 | u16::from(with != 0);
             if with != 0 {
-                best = with;
+                *best = with;
             }
+            *looked_at += 1;
+            return;
         }
-        if agreements >= LEAST_AGREEMENTS {
+        if *agreements >= LEAST_AGREEMENTS {
             self.delay = Some(best.trailing_zeros() as u8);
             self.unclear = 0;
         } else {
@@ -99,16 +152,23 @@ impl State {
                 self.delay = None;
             }
         }
+        self.judgement = Judgement::default();
+        self.places = [Place::default(); PLACES];
+        self.ticks = HISTORY as u16;
     }
 }
 
-/// Adds one to the counter of every delay whose bit is set.
-fn count(planes: &mut [u128; 10], agreeing: u128) {
-    let mut carry = agreeing;
-    for plane in planes {
-        let next = *plane & carry;
-        *plane ^= carry;
-        carry = next;
+/// Adds the agreements of both sides in a tick, 0 to 255, of the window to the counters.
+fn count(places: &mut [Place; PLACES], tick: u16, both: [u128; 2]) {
+    let [mut a, mut b] = both;
+    for (n, place) in places.iter_mut().enumerate() {
+        let carry = (place.sum & a) | (b & (place.sum | a));
+        place.sum ^= a ^ b;
+        if tick >> n & 1 == 0 {
+            place.carry = carry;
+            return;
+        }
+        (a, b) = (place.carry, carry);
     }
 }
 
@@ -174,14 +234,35 @@ mod tests {
         assert_eq!(found, [Some(30), Some(50), None]);
     }
 
+    /// Every fourth delay agrees on the left in each tick and on the right in every third one, or less.
     #[test]
     fn counters_count() {
-        let mut planes = [0; 10];
-        for n in 0..512u128 {
-            count(&mut planes, 1 | (n % 2) << 127);
+        let mut places = [Place::default(); PLACES];
+        let mut expected = [0_u16; HISTORY];
+        for tick in 0..WINDOW_TICKS {
+            let mut both = [0_u128; 2];
+            for (delay, expected) in expected.iter_mut().enumerate() {
+                let agrees = [delay % 4 == 0, (usize::from(tick) * (delay + 1)) % 3 == 0];
+                for (word, agrees) in both.iter_mut().zip(agrees) {
+                    *word |= u128::from(agrees) << delay;
+                    *expected += u16::from(agrees);
+                }
+            }
+            both[1] |= 1 << 2; // delay 2 agrees always on the right
+            count(&mut places, tick, both);
         }
-        assert_eq!(planes[9], 1);
-        assert_eq!(planes[8], 1 << 127);
-        assert_eq!(planes[0..8], [0; 8]);
+        expected[2] = WINDOW_TICKS;
+        for (delay, expected) in expected.into_iter().enumerate() {
+            let bit = |word: u128| (word >> delay & 1) as u16;
+            let mut counted = bit(places[PLACES - 1].carry) << PLACES;
+            for (n, place) in places.iter().enumerate() {
+                counted |= bit(place.sum) << n;
+            }
+            assert_eq!(counted, expected, "delay {delay}");
+        }
+        let mut all = [Place::default(); PLACES];
+        (0..WINDOW_TICKS).for_each(|tick| count(&mut all, tick, [u128::MAX; 2]));
+        assert_eq!(all[PLACES - 1].carry, u128::MAX, "512 agreements are bit 9 alone");
+        assert!(all.iter().all(|place| place.sum == 0));
     }
 }

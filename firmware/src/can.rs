@@ -4,7 +4,9 @@
 //! the bus may send, and its choice of a mailbox has branches that the linker cannot prove to be unreachable. This driver does
 //! what the controller needs: it sends data frames with standard identifiers in the given order, and receives through FIFO 0.
 
-use embedded_can::{ErrorKind, Id, StandardId};
+use crate::clock::is_soon;
+use crate::frame::Frame;
+use embedded_can::{ErrorKind, StandardId};
 use stm32f4::stm32f405::{CAN1, GPIOB, RCC, can1};
 
 /// Time quanta a bit: 1 (sync) + 11 + 2, sample point at 85.7 %.
@@ -12,14 +14,6 @@ pub const QUANTA: u32 = 1 + SEGMENT_1 + SEGMENT_2;
 const SEGMENT_1: u32 = 11;
 const SEGMENT_2: u32 = 2;
 const JUMP: u32 = 1;
-
-/// A classic data frame with up to eight bytes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Frame {
-    id: Id,
-    length: u8,
-    data: [u8; 8],
-}
 
 /// What the peripheral can report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,8 +29,8 @@ pub struct Can {
 
 impl Can {
     /// Takes pins and peripheral and joins the bus at `bit_rate`, bit/s. It returns at once; the peripheral becomes active by
-    /// itself after eleven recessive bits, and again after bus-off.
-    pub fn start(registers: CAN1, _pins: GPIOB, rcc: &RCC, apb1_hz: u32, bit_rate: u32) -> Self {
+    /// itself after eleven recessive bits, and again after bus-off. `None` if the peripheral does not answer.
+    pub fn start(registers: CAN1, _pins: GPIOB, rcc: &RCC, apb1_hz: u32, bit_rate: u32) -> Option<Self> {
         connect_pins(rcc);
         rcc.apb1enr().modify(|_, w| w.can1en().enabled());
         rcc.apb1rstr().modify(|_, w| w.can1rst().reset());
@@ -44,7 +38,9 @@ impl Can {
 
         // After reset it sleeps; initialisation is only entered awake.
         registers.mcr().modify(|_, w| w.sleep().clear_bit().inrq().set_bit());
-        while registers.msr().read().inak().bit_is_clear() {}
+        if !is_soon(|| registers.msr().read().inak().bit_is_set()) {
+            return None;
+        }
         // Automatic recovery from bus-off; frames leave in the order of the requests, not of the mailboxes.
         registers.mcr().modify(|_, w| w.abom().set_bit().txfp().set_bit());
         let prescaler = (apb1_hz / (bit_rate.max(1) * QUANTA)).clamp(1, 1024);
@@ -55,7 +51,26 @@ impl Can {
         });
         accept_all(&registers);
         registers.mcr().modify(|_, w| w.inrq().clear_bit());
-        Can { registers }
+        Some(Can { registers })
+    }
+}
+
+/// The error state of the peripheral.
+pub struct Errors {
+    /// The whole error register (RM0090, section 32.9.2, `CAN_ESR`).
+    pub bits: u32,
+    /// Whether the peripheral has left the bus. It comes back by itself.
+    pub is_off: bool,
+}
+
+impl Can {
+    /// The error state now.
+    pub fn errors(&self) -> Errors {
+        let register = self.registers.esr().read();
+        Errors {
+            bits: register.bits(),
+            is_off: register.boff().bit_is_set(),
+        }
     }
 }
 
@@ -65,25 +80,20 @@ impl embedded_can::nb::Can for Can {
 
     /// Puts the frame into a free mailbox; `WouldBlock` while there is none. Never displaces a waiting frame.
     fn transmit(&mut self, frame: &Frame) -> nb::Result<Option<Frame>, Error> {
-        let Id::Standard(id) = frame.id else {
-            return Ok(None); // `Frame::new` makes none
-        };
+        let (id, length, [a, b, c, d, e, f, g, h]) = frame.parts();
         let status = self.registers.tsr().read();
         let free = [status.tme0().bit(), status.tme1().bit(), status.tme2().bit()];
         let mailboxes = self.registers.tx_iter();
         let Some((mailbox, _)) = mailboxes.zip(free).find(|(_, free)| *free) else {
             return Err(nb::Error::WouldBlock);
         };
-        let [a, b, c, d, e, f, g, h] = frame.data;
         #[allow(unsafe_code)]
         // SAFETY: an empty mailbox may be written; every pattern of data and length 0..=8 is valid.
         unsafe {
-            mailbox.tdtr().write(|w| w.bits(u32::from(frame.length)));
+            mailbox.tdtr().write(|w| w.bits(u32::from(length)));
             mailbox.tdlr().write(|w| w.bits(u32::from_le_bytes([a, b, c, d])));
             mailbox.tdhr().write(|w| w.bits(u32::from_le_bytes([e, f, g, h])));
-            mailbox
-                .tir()
-                .write(|w| w.bits(u32::from(id.as_raw()) << 21).txrq().set_bit());
+            mailbox.tir().write(|w| w.bits(u32::from(id) << 21).txrq().set_bit());
         }
         Ok(None)
     }
@@ -120,13 +130,8 @@ fn read_mailbox(mailbox: &can1::RX) -> Option<Frame> {
     let id = StandardId::new(identifier.stid().bits())?;
     let [a, b, c, d] = mailbox.rdlr().read().bits().to_le_bytes();
     let [e, f, g, h] = mailbox.rdhr().read().bits().to_le_bytes();
-    // A length code of 9 to 15 is legal on the wire and means 8 (ISO 11898-1).
-    let length = mailbox.rdtr().read().dlc().bits().min(8);
-    Some(Frame {
-        id: Id::Standard(id),
-        length,
-        data: [a, b, c, d, e, f, g, h],
-    })
+    let length = mailbox.rdtr().read().dlc().bits();
+    Some(Frame::received(id, length, [a, b, c, d, e, f, g, h]))
 }
 
 /// Filter bank 0 with 32 bits and mask 0 lets everything into FIFO 0. The controller knows its identifiers, and other frames cost it
@@ -160,47 +165,5 @@ fn connect_pins(rcc: &RCC) {
 impl embedded_can::Error for Error {
     fn kind(&self) -> ErrorKind {
         ErrorKind::Overrun
-    }
-}
-
-impl embedded_can::Frame for Frame {
-    /// `None` for extended identifiers and more than eight bytes: the controller's bus has neither.
-    fn new(id: impl Into<Id>, data: &[u8]) -> Option<Self> {
-        let id = id.into();
-        let length = u8::try_from(data.len()).ok().filter(|length| *length <= 8)?;
-        let mut bytes = [0; 8];
-        for (to, from) in bytes.iter_mut().zip(data) {
-            *to = *from;
-        }
-        matches!(id, Id::Standard(_)).then_some(Frame {
-            id,
-            length,
-            data: bytes,
-        })
-    }
-
-    /// Always `None`: nobody here sends remote frames.
-    fn new_remote(_id: impl Into<Id>, _dlc: usize) -> Option<Self> {
-        None
-    }
-
-    fn is_extended(&self) -> bool {
-        false
-    }
-
-    fn is_remote_frame(&self) -> bool {
-        false
-    }
-
-    fn id(&self) -> Id {
-        self.id
-    }
-
-    fn dlc(&self) -> usize {
-        usize::from(self.length)
-    }
-
-    fn data(&self) -> &[u8] {
-        self.data.get(..self.dlc()).unwrap_or(&[])
     }
 }

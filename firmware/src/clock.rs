@@ -1,41 +1,73 @@
 //! Sets up the clock tree: CAN needs the accuracy of the crystal, and the tick needs a fast processor.
 //!
 //! 8 MHz crystal -> PLL -> 168 MHz core, 42 MHz APB1 (CAN), 84 MHz APB2 (RM0090, section 7; flash wait states table 10).
+//!
+//! No wait is without an end. If the crystal does not start, the PLL runs from the internal oscillator (HSI, 16 MHz, 1 % at room
+//! temperature), which a bus of 500 kbit/s with short lines may or may not tolerate; the board reports it. If the PLL does not lock
+//! either, the core stays at 16 MHz, where the bit rate of the bus cannot be made.
 
+use crate::watchdog::Watchdog;
 use stm32f4::stm32f405::{FLASH, PWR, RCC};
 
 /// Frequency of the core clock, Hz.
-pub const CORE_HZ: u32 = CRYSTAL_HZ / PLL_M * PLL_N / 2;
-/// Clock of the CAN peripheral (APB1), Hz.
-pub const APB1_HZ: u32 = CORE_HZ / 4;
+pub const CORE_HZ: u32 = 168_000_000;
 
-const CRYSTAL_HZ: u32 = 8_000_000;
-const PLL_M: u32 = 4;
+/// Clock of the PLL's phase comparison, Hz.
+const COMPARISON_HZ: u32 = 2_000_000;
 const PLL_N: u32 = 168;
+const CRYSTAL_M: u32 = 8_000_000 / COMPARISON_HZ;
+const INTERNAL_M: u32 = 16_000_000 / COMPARISON_HZ;
 /// 168 MHz at 2.7 V to 3.6 V: five wait states.
 const FLASH_WAIT_STATES: u8 = 5;
+/// Longest wait for an oscillator, the PLL or the switch between clocks, in reads of the register: some 5 ms at 16 MHz and ten cycles
+/// a read. A crystal starts within 2 ms (datasheet, table 41), the PLL within 0.3 ms. The watchdog runs already, and is fed between two
+/// waits.
+const PATIENCE: u32 = 8_000;
 
-const _: () = assert!(CORE_HZ == 168_000_000 && CRYSTAL_HZ / PLL_M == 2_000_000);
+const _: () = assert!(COMPARISON_HZ * PLL_N / 2 == CORE_HZ);
 
-/// Switches the core to the PLL of the crystal. The watchdog must run already: if the crystal is broken, the board then resets
-/// again and again with the solenoids off, instead of hanging.
-pub fn run_from_crystal(rcc: &RCC, flash: &FLASH, pwr: &PWR) {
+/// What the clock tree runs from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The crystal, through the PLL: 168 MHz.
+    Crystal,
+    /// The internal oscillator, through the PLL: 168 MHz, but 1 % off. The crystal has not started.
+    Internal,
+    /// The internal oscillator alone: 16 MHz. The PLL has not locked.
+    InternalWithoutPll,
+}
+
+/// Waits until something is so, with an end; returns whether it is.
+pub fn is_soon(ready: impl Fn() -> bool) -> bool {
+    (0..PATIENCE).any(|_| ready())
+}
+
+/// Switches the core to the PLL of the crystal, or to the best that there is.
+pub fn start(rcc: &RCC, flash: &FLASH, pwr: &PWR, watchdog: &mut Watchdog) -> Source {
     rcc.apb1enr().modify(|_, w| w.pwren().enabled());
     pwr.cr().modify(|_, w| w.vos().set_bit());
 
     rcc.cr().modify(|_, w| w.hseon().on());
-    while rcc.cr().read().hserdy().is_not_ready() {}
+    let crystal = is_soon(|| rcc.cr().read().hserdy().is_ready());
+    watchdog.feed();
 
     #[allow(unsafe_code)]
     rcc.pllcfgr().write(|w| {
-        w.pllsrc().hse();
+        if crystal {
+            w.pllsrc().hse();
+        } else {
+            w.pllsrc().hsi();
+        }
         w.pllp().div2();
-        // SAFETY: M = 4 and N = 168 are within the limits of RM0090, section 7.3.2 (2..63, 50..432).
-        unsafe { w.pllm().bits(PLL_M as u8).plln().bits(PLL_N as u16) }
+        let m = if crystal { CRYSTAL_M } else { INTERNAL_M };
+        // SAFETY: M = 4 or 8 and N = 168 are within the limits of RM0090, section 7.3.2 (2..63, 50..432).
+        unsafe { w.pllm().bits(m as u8).plln().bits(PLL_N as u16) }
     });
     rcc.cr().modify(|_, w| w.pllon().on());
-    while rcc.cr().read().pllrdy().is_not_ready() {}
-
+    if !is_soon(|| rcc.cr().read().pllrdy().is_ready()) {
+        return Source::InternalWithoutPll;
+    }
+    watchdog.feed();
     flash.acr().write(|w| {
         w.prften().set_bit();
         w.icen().set_bit();
@@ -48,5 +80,8 @@ pub fn run_from_crystal(rcc: &RCC, flash: &FLASH, pwr: &PWR) {
         w.ppre2().div2();
         w.sw().pll()
     });
-    while !rcc.cfgr().read().sws().is_pll() {}
+    if !is_soon(|| rcc.cfgr().read().sws().is_pll()) {
+        return Source::InternalWithoutPll;
+    }
+    if crystal { Source::Crystal } else { Source::Internal }
 }

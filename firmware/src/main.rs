@@ -9,64 +9,101 @@
 //! Nothing waits, and there are no interrupts: the tick takes well under 100 us, and the three-deep receive FIFO of the
 //! peripheral lasts for 0.6 ms at 500 kbit/s. A loop that stops for any reason no longer feeds the watchdog, which then
 //! resets the board. At reset, and on any fault, the solenoids are off, which is a stiff spring and high damping.
+//!
+//! With the feature `slcan` the same image speaks CAN as text over USART1, and the frames at the other end of the line say when 5 ms
+//! are over (`slcan`): that image runs on an emulated board.
 #![no_std]
 #![no_main]
 
+#[cfg(not(feature = "slcan"))]
 mod can;
 mod clock;
 mod fault;
+mod frame;
+mod report;
+mod reset;
+#[cfg(feature = "slcan")]
+mod slcan;
 mod solenoid;
+#[cfg_attr(feature = "slcan", path = "emulated.rs")]
+#[cfg_attr(not(feature = "slcan"), path = "vehicle.rs")]
+mod surroundings;
 mod watchdog;
 
-use cortex_m::peripheral::{SCB, SYST, syst::SystClkSource};
+use cortex_m::{peripheral::SCB, singleton};
 use cortex_m_rt::entry;
-use oleo_controller::{Configuration, Node, Port, Solenoids};
-use oleo_interface::tick::TICK_MS;
+use oleo_controller::{Configuration, FaultCode, Mode, Node, Port, Solenoids};
+use report::BOARD;
 use stm32f4::stm32f405::Peripherals;
 
-/// The vehicle's suspension bus, bit/s.
-const BIT_RATE: u32 = 500_000;
-/// Core clock cycles of a tick, less one, as SysTick wants it.
-const TICK_RELOAD: u32 = clock::CORE_HZ / 1000 * TICK_MS - 1;
-
-const _: () = assert!(TICK_RELOAD < 1 << 24, "SysTick has 24 bits");
-const _: () = assert!(
-    clock::APB1_HZ.is_multiple_of(BIT_RATE * can::QUANTA),
-    "the bit rate must divide the peripheral's clock: other nodes do not tolerate a bit rate that is off by one per cent"
-);
+type Controller = Port<surroundings::Bus>;
 
 #[entry]
 fn main() -> ! {
     let (Some(board), Some(core)) = (Peripherals::take(), cortex_m::Peripherals::take()) else {
         SCB::sys_reset()
     };
-    let Ok(mut solenoids) = Solenoids::new(solenoid::take(board.GPIOE, &board.RCC)) else {
+    let Ok(solenoids) = Solenoids::new(solenoid::take(board.GPIOE, &board.RCC)) else {
         SCB::sys_reset()
     };
     let mut watchdog = watchdog::Watchdog::start(board.IWDG);
-    clock::run_from_crystal(&board.RCC, &board.FLASH, &board.PWR);
-    let can = can::Can::start(board.CAN1, board.GPIOB, &board.RCC, clock::APB1_HZ, BIT_RATE);
-    let mut port = Port::new(can, Node::new(Configuration::defender110()));
-    let mut systick = core.SYST;
-    start_ticks(&mut systick);
+    let causes = reset::causes(&board.RCC);
+    let (memory, latch) = reset::Memory::open(board.RTC, &board.RCC, &board.PWR, reset::is_power_on(causes));
+    let source = clock::start(&board.RCC, &board.FLASH, &board.PWR, &mut watchdog);
+    let (buses, ports) = ((board.CAN1, board.USART1), (board.GPIOA, board.GPIOB));
+    let Some((bus, pace)) = surroundings::start(buses, ports, core.SYST, &board.RCC, source) else {
+        SCB::sys_reset()
+    };
+    report::set(&BOARD.reset_causes, causes);
+    report::set(&BOARD.clock_source, report::number(source));
+    report::set(&BOARD.latch_before_reset, latch.map_or(0, |cause| cause.raw().into()));
+    report::set(
+        &BOARD.brown_out_level,
+        board.FLASH.optcr().read().bor_lev().bits().into(),
+    );
+    let Some(port) = controller(bus, latch) else {
+        SCB::sys_reset()
+    };
+    run(port, pace, solenoids, watchdog, memory)
+}
 
+/// The controller, in a static: it is large, and the stack of the loop is to be small.
+#[inline(never)]
+fn controller(bus: surroundings::Bus, latch: Option<FaultCode>) -> Option<&'static mut Controller> {
+    let port = singleton!(: Controller = Port::new(bus, Node::new(Configuration::defender110())))?;
+    if let Some(cause) = latch {
+        port.latch(cause);
+    }
+    Some(port)
+}
+
+/// Ticks for ever.
+#[inline(never)]
+fn run(
+    port: &mut Controller,
+    mut pace: surroundings::Pace,
+    mut solenoids: Solenoids<solenoid::Solenoid>,
+    mut watchdog: watchdog::Watchdog,
+    mut memory: reset::Memory,
+) -> ! {
     loop {
         port.poll();
-        if systick.has_wrapped() {
+        if pace.is_over(port.can_mut()) {
             let outputs = port.tick();
             if solenoids.drive(outputs.command).is_err() {
                 port.report_solenoid_failure();
             }
+            if outputs.mode == Mode::Latched {
+                memory.keep(outputs.fault);
+            }
+            let heard = port.node().counters();
+            pace.end_tick(port.can_mut(), &heard);
+            let counters = port.counters();
+            report::set(&BOARD.port_errors, counters.errors);
+            report::set(&BOARD.port_dropped, counters.dropped);
             watchdog.feed();
             #[cfg(feature = "deliberate-panic")]
             assert!(port.counters().dropped == 0);
         }
     }
-}
-
-fn start_ticks(systick: &mut SYST) {
-    systick.set_clock_source(SystClkSource::Core);
-    systick.set_reload(TICK_RELOAD);
-    systick.clear_current();
-    systick.enable_counter();
 }

@@ -27,7 +27,7 @@ impl Watchdog {
         watchdog
     }
 
-    /// Says that a tick has completed. It is called in one place only.
+    /// Says that a tick has completed, or a step of the start.
     pub fn feed(&mut self) {
         self.registers.kr().write(|w| w.key().variant(KEY::Feed));
     }

@@ -14,6 +14,7 @@
 //!
 //! * [`bus`] contains the buses and the decorators around them; [`sync`] and [`handshake`] synchronise two nodes; [`clock`] paces a
 //!   run in real time.
+//! * [`emulator`] runs a firmware image on an emulated board, whose frames are compared with those of the controller in this process.
 //! * [`scenario`] describes what is driven, which faults occur and which checks must be met; [`run`] turns a scenario into a recording.
 //! * [`metrics`] and [`output`] turn a recording into figures and files; [`bit_timing`] computes when a wire would have carried each
 //!   frame.
@@ -26,6 +27,7 @@ pub mod clock;
 pub mod comparison;
 pub mod controller_node;
 pub mod description;
+pub mod emulator;
 pub mod frame;
 pub mod handshake;
 pub mod instruments;

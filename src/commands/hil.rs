@@ -36,6 +36,7 @@ Examples:
   oleo hil --manoeuvre lane-change-2 --driver hard --load laden --road flat
   oleo hil --bus socketcan:vcan0                            send the frames over SocketCAN
   oleo hil --clock realtime --duration 5                    run in real time
+  oleo hil --firmware oleo-firmware                         run the controller as an image on an emulated board
   oleo hil --node controller --bus socketcan:vcan0          run the two nodes as two processes,
   oleo hil --node plant --bus socketcan:vcan0 --out run     which may be started in either order
 
@@ -97,6 +98,10 @@ pub struct Args {
     /// Run only this node; the other node must run as another process on the same bus
     #[arg(long, value_parser = by_name::<Role>())]
     node: Option<Role>,
+    /// Firmware image that is the controller, on an emulated board (needs qemu-system-arm): the ELF file of `cargo build --release
+    /// --features slcan` in firmware/. Every frame that it sends is compared with that of the controller in this process
+    #[arg(long, value_name = "IMAGE.elf", conflicts_with_all = ["node", "bus", "clock", "strategy", "damper_policy", "strut", "vehicle", "handling"])]
+    firmware: Option<PathBuf>,
     /// Number of threads for the two nodes, 1 or 2 (real time always uses 2)
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=2))]
     threads: u8,
@@ -112,6 +117,9 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         return list();
     }
     let scenario = chosen(&args)?;
+    if args.firmware.is_some() {
+        suits_image(&scenario)?;
+    }
     if args.node == Some(Role::Controller) {
         return controller(&scenario, args.out);
     }
@@ -134,12 +142,33 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         progress.set(ticks.into());
         !graceful.as_ref().is_some_and(Graceful::requested)
     };
-    let outcome = match args.node {
-        Some(_) => run::plant_alone(&scenario, vehicle, &mut watch)?,
-        None => run::both(&scenario, vehicle, args.threads.into(), &mut watch)?,
+    let outcome = match (&args.firmware, args.node) {
+        (Some(image), _) => run::with_firmware(&scenario, vehicle, image, &mut watch)?,
+        (None, Some(_)) => run::plant_alone(&scenario, vehicle, &mut watch)?,
+        (None, None) => run::both(&scenario, vehicle, args.threads.into(), &mut watch)?,
     };
     drop(progress);
     report(&scenario, &outcome, staged)
+}
+
+/// Whether a scenario drives what the controller in a firmware image is configured for.
+fn suits_image(scenario: &Scenario) -> Result<(), Failure> {
+    const DEFAULT: &str = "defender110";
+    let differs = if scenario.strategy != Strategy::default() {
+        "strategy"
+    } else if [&scenario.vehicle, &scenario.handling, &scenario.strut].map(String::as_str) != [DEFAULT; 3] {
+        "vehicle, handling or strut"
+    } else if scenario.clock != Clock::Lockstep {
+        "clock"
+    } else if scenario.bus != BusAddress::InProcess {
+        "bus"
+    } else {
+        return Ok(());
+    };
+    Err(Failure::new(format!(
+        "--firmware: the scenario {} sets {differs}, which an image has of its own: leave it out of the scenario",
+        scenario.name
+    )))
 }
 
 fn list() -> Result<ExitCode, Failure> {

@@ -1,10 +1,11 @@
 """What a firmware image takes: flash, RAM and the deepest stack, read from its ELF file.
 
-    image.py IMAGE --flash BYTES --ram BYTES [--root FUNCTION]...
+    image.py IMAGE --flash BYTES --ram BYTES [--root FUNCTION]... [--stack BYTES]
 
 Flash and RAM are sums over the loaded sections. The stack is the longest way through the call graph: frame sizes from
 `.stack_sizes` (rustc's -Z emit-stack-sizes), edges from the disassembly. Recursion has no depth and a call through a
-register no known end: both are said, and fail. Exit status 1 where something does not fit.
+register no known end: both are said, and fail. Exit status 1 where something does not
+fit, or the stack is deeper than `--stack` permits.
 """
 
 import argparse
@@ -89,6 +90,7 @@ def main():
     parser.add_argument("--flash", type=int, required=True)
     parser.add_argument("--ram", type=int, required=True)
     parser.add_argument("--root", action="append", default=[])
+    parser.add_argument("--stack", type=int)
     arguments = parser.parse_args()
     image = open(arguments.image, "rb").read()
     sections = read_sections(image)
@@ -112,6 +114,8 @@ def main():
         print(f"deepest stack {total} B with an exception frame ({unknown} functions without a frame size counted as 0)")
     if flash > arguments.flash or ram + total > arguments.ram:
         sys.exit("error: does not fit")
+    if arguments.stack is not None and total > arguments.stack:
+        sys.exit(f"error: the stack may take {arguments.stack} B")
 
 
 if __name__ == "__main__":

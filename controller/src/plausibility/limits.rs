@@ -1,11 +1,19 @@
 //! The range of plausible readings, and the fastest plausible change.
 
-/// Range of a reading, both ends included, and its largest change within a tick, in the reading's unit.
+/// Range of a reading, both ends included, with 0 in it, and its largest change within a tick, in the reading's unit.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     pub least: f32,
     pub most: f32,
     pub step: f32,
+}
+
+impl Limits {
+    /// Whether a value is within the range. NaN is not.
+    pub fn hold(&self, value: f32) -> bool {
+        // Positive numbers compare as their bits do, and most values are positive: one integer comparison finds those in range.
+        value.to_bits() <= self.most.to_bits() || (value >= self.least && value <= self.most)
+    }
 }
 
 /// Limits of a displacement, m. Struts have 120 mm of jounce and 180 mm of rebound travel; 6 m/s is three times the design

@@ -10,13 +10,14 @@
 //! which holds for any valve position and any load, also with oil trapped behind valve 3. The charge pressure `k` is not
 //! configured. It is learnt from the same equation while the controller starts, and then follows the gas temperature slowly
 //! (60 s). The residual, lagged by 1 s, is expected to stay within 25 mm (gas that is 30 K warmer: 10 % of 0.255 m). At 40 mm for
-//! 40 ticks the displacement reading is called wrong (until it is below 25 mm again; the charge is not learnt meanwhile), and so it is if the charge is outside 0.75 to 1.3 of what it was at the start,
+//! 0.2 s the displacement reading is called wrong (until it is below 25 mm again; the charge is not learnt meanwhile), and so it is if the charge is outside 0.75 to 1.3 of what it was at the start,
 //! or outside 0.3 to 15 MPa, which no suspension has.
 
 use oleo_interface::{Absolute, Gauge, StrutPressures};
 
 use super::oil_motion::OilMotion;
-use super::verdict::{Verdicts, blame};
+use super::turn::{TURN_S, turns};
+use super::verdict::{Place, Verdicts};
 use crate::failsafe::FaultCode;
 use crate::filter::{LowPass, at_least};
 use crate::vehicle::VehicleDescription;
@@ -24,7 +25,7 @@ use crate::vehicle::VehicleDescription;
 const WRONG_M: f32 = 0.04;
 /// Residual below which a displacement that was called wrong is believed again.
 const RIGHT_M: f32 = 0.025;
-const CONFIRM_TICKS: u8 = 40;
+const CONFIRM_TURNS: u8 = turns(200);
 const CHARGE_PA: (f32, f32) = (0.3e6, 15.0e6);
 /// Smallest and largest share of the charge at the start. Gas that is 30 K warmer gives 1.1; the rest is leakage, or a sensor that
 /// drifts more slowly than the charge is learnt.
@@ -52,9 +53,9 @@ impl Parameters {
             per_piston_area: 1.0 / vehicle.piston_area_m2,
             gas_volume_1_m3: vehicle.gas_volume_1_m3,
             gas_volume_2_m3: vehicle.gas_volume_2_m3,
-            residual: LowPass::from_time_constant_s(1.0),
-            charge_start: LowPass::from_time_constant_s(0.02),
-            charge_drift: LowPass::from_time_constant_s(60.0),
+            residual: LowPass::sampled(TURN_S, 1.0),
+            charge_start: LowPass::sampled(TURN_S, 0.05),
+            charge_drift: LowPass::sampled(TURN_S, 60.0),
         }
     }
 }
@@ -73,7 +74,7 @@ pub struct OilBalance {
 }
 
 impl OilBalance {
-    /// One tick; returns the charge pressure as learnt so far.
+    /// One turn; returns the charge pressure as learnt so far.
     pub fn step(
         &mut self,
         c: &Parameters,
@@ -83,9 +84,7 @@ impl OilBalance {
         verdict: &mut Verdicts,
     ) -> Absolute<f32> {
         let mut motion = None;
-        let measured = [verdict.displacement, verdict.pressure.p2, verdict.pressure.p4]
-            .iter()
-            .all(|&fault| fault == FaultCode::None);
+        let measured = [Place::DISPLACEMENT, Place::P2, Place::P4].map(|place| verdict.is_good(place)) == [true; 3];
         if measured {
             let (v1, v2) = (c.gas_volume_1_m3, c.gas_volume_2_m3);
             let least = |p: Gauge<f32>| at_least(p.absolute().pa(), LEAST_PA);
@@ -115,22 +114,22 @@ impl OilBalance {
                 || self.charge_pa < CHARGE_PA.0
                 || self.charge_pa > CHARGE_PA.1;
             self.wrong = if wrong {
-                self.wrong.saturating_add(1).min(CONFIRM_TICKS)
+                self.wrong.saturating_add(1).min(CONFIRM_TURNS)
             } else if !self.flagged || self.residual_m.abs() < RIGHT_M {
                 self.wrong.saturating_sub(1)
             } else {
                 self.wrong
             };
-            if self.wrong == CONFIRM_TICKS {
+            if self.wrong == CONFIRM_TURNS {
                 self.flagged = true;
             } else if self.wrong == 0 {
                 self.flagged = false;
             }
         }
         if self.flagged {
-            blame(&mut verdict.displacement, FaultCode::OilBalance);
+            verdict.blame(Place::DISPLACEMENT, FaultCode::OilBalance);
         }
-        self.motion.step(motion, &mut verdict.displacement);
+        self.motion.step(motion, verdict);
         Absolute(self.charge_pa)
     }
 }

@@ -11,11 +11,12 @@
 //! which the gas says at least 25 mm, the displacement is called wrong; below 0.6 in one it is believed again. On a smooth road
 //! nothing moves, and nothing can be concluded. False alarms and detection times: `docs/safety.md`.
 
-use super::verdict::blame;
+use super::span::Span;
+use super::turn::turns;
+use super::verdict::{Place, Verdicts};
 use crate::failsafe::FaultCode;
-use crate::timing::ticks;
 
-const WINDOW_TICKS: u16 = ticks(500);
+const WINDOW_TURNS: u8 = turns(500);
 /// Number of windows that must agree.
 const WINDOWS: u8 = 4;
 /// Least span of the displacement that follows from the gas, m.
@@ -24,36 +25,10 @@ const MOVING_M: f32 = 0.025;
 const WRONG_SHARE: f32 = 0.93;
 const RIGHT_SHARE: f32 = 0.6;
 
-#[derive(Clone, Copy, Debug)]
-struct Span {
-    least: f32,
-    most: f32,
-}
-
-impl Span {
-    const EMPTY: Self = Self {
-        least: f32::MAX,
-        most: f32::MIN,
-    };
-
-    fn add(&mut self, value: f32) {
-        if value < self.least {
-            self.least = value;
-        }
-        if value > self.most {
-            self.most = value;
-        }
-    }
-
-    fn width(&self) -> f32 {
-        self.most - self.least
-    }
-}
-
 /// State of the comparison for one strut.
 #[derive(Clone, Copy, Debug)]
 pub struct OilMotion {
-    ticks: u16,
+    turns: u8,
     residual: Span,
     from_gas: Span,
     wrong_windows: u8,
@@ -63,7 +38,7 @@ pub struct OilMotion {
 impl Default for OilMotion {
     fn default() -> Self {
         Self {
-            ticks: 0,
+            turns: 0,
             residual: Span::EMPTY,
             from_gas: Span::EMPTY,
             wrong_windows: 0,
@@ -73,14 +48,14 @@ impl Default for OilMotion {
 }
 
 impl OilMotion {
-    /// One tick with a displacement and what it says beyond the gas, m, if both are measured.
-    pub fn step(&mut self, measured: Option<(f32, f32)>, displacement: &mut FaultCode) {
+    /// One turn with a displacement and what it says beyond the gas, m, if both are measured.
+    pub fn step(&mut self, measured: Option<(f32, f32)>, verdict: &mut Verdicts) {
         match measured {
             Some((displacement_m, residual_m)) => {
                 self.residual.add(residual_m);
                 self.from_gas.add(displacement_m - residual_m);
-                self.ticks = self.ticks.saturating_add(1);
-                if self.ticks >= WINDOW_TICKS {
+                self.turns = self.turns.saturating_add(1);
+                if self.turns >= WINDOW_TURNS {
                     self.end_of_window();
                 }
             }
@@ -88,12 +63,12 @@ impl OilMotion {
             None => self.begin_window(),
         }
         if self.flagged {
-            blame(displacement, FaultCode::OilBalance);
+            verdict.blame(Place::DISPLACEMENT, FaultCode::OilBalance);
         }
     }
 
     fn begin_window(&mut self) {
-        self.ticks = 0;
+        self.turns = 0;
         self.residual = Span::EMPTY;
         self.from_gas = Span::EMPTY;
     }
@@ -116,19 +91,19 @@ impl OilMotion {
 
 #[cfg(test)]
 mod tests {
+    use super::super::turn::TURN_S;
     use super::*;
-    use oleo_interface::tick::TICK_S_F32;
 
-    /// Tick in which a reading that is `says` of the true displacement is called wrong, at 1.3 Hz and 20 mm either way. The gas says
+    /// Turn in which a reading that is `says` of the true displacement is called wrong, at 1.3 Hz and 20 mm either way. The gas says
     /// 1.4 times the truth, as it does where it has no time to exchange heat.
     fn found(says: impl Fn(f32) -> f32) -> Option<u16> {
         let mut motion = OilMotion::default();
-        (0..1000).find(|tick| {
-            let true_m = 0.02 * libm::sinf(2.0 * core::f32::consts::PI * 1.3 * f32::from(*tick) * TICK_S_F32);
+        (0..1000).find(|turn| {
+            let true_m = 0.02 * libm::sinf(2.0 * core::f32::consts::PI * 1.3 * f32::from(*turn) * TURN_S);
             let reading = says(true_m);
-            let mut verdict = FaultCode::None;
+            let mut verdict = Verdicts::GOOD;
             motion.step(Some((reading, reading - 1.4 * true_m)), &mut verdict);
-            verdict != FaultCode::None
+            verdict != Verdicts::GOOD
         })
     }
 
@@ -136,7 +111,7 @@ mod tests {
     fn gas_without_heat_exchange_is_no_fault_and_frozen_and_reversed_readings_are() {
         assert_eq!(found(|x| x), None);
         assert_eq!(found(|x| 1.4 * x), None);
-        let four_windows = Some(4 * WINDOW_TICKS - 1);
+        let four_windows = Some(4 * u16::from(WINDOW_TURNS) - 1);
         assert_eq!(found(|_| 0.01), four_windows);
         assert_eq!(found(|x| -x), four_windows);
         assert_eq!(found(|x| 3.0 * x), four_windows);
@@ -146,15 +121,15 @@ mod tests {
     fn a_verdict_needs_motion_and_its_end_too() {
         let mut motion = OilMotion::default();
         let mut window = |residual_m: f32, moved_m: f32| {
-            let mut verdict = FaultCode::None;
-            for tick in 0..WINDOW_TICKS {
-                let up = f32::from(tick % 2);
+            let mut verdict = Verdicts::GOOD;
+            for turn in 0..WINDOW_TURNS {
+                let up = f32::from(turn % 2);
                 motion.step(Some((up * (moved_m + residual_m), up * residual_m)), &mut verdict);
             }
             // The verdict as it stands after the window.
-            verdict = FaultCode::None;
+            verdict = Verdicts::GOOD;
             motion.step(None, &mut verdict);
-            verdict != FaultCode::None
+            verdict != Verdicts::GOOD
         };
         assert!((0..10).all(|_| !window(0.02, 0.02)), "too little motion");
         let verdicts: [bool; 4] = core::array::from_fn(|_| window(0.03, 0.03));

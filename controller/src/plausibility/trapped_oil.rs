@@ -10,13 +10,14 @@
 
 use oleo_interface::{Gauge, StrutPressures};
 
-use super::verdict::{Verdicts, blame};
+use super::span::Span;
+use super::turn::turns;
+use super::verdict::{Place, Verdicts};
 use crate::failsafe::FaultCode;
-use crate::timing::ticks;
 
-const WINDOW_TICKS: u16 = ticks(500);
+const WINDOW_TURNS: u8 = turns(500);
 /// Time after which a valve that was told to close is closed (40 to 90 ms) and the pressures have settled.
-const CLOSED_TICKS: u16 = ticks(300);
+const CLOSED_TURNS: u8 = turns(300);
 const WINDOWS: u8 = 2;
 const MOVED_PA: f32 = 0.15e6;
 const MOVED_SHARE: f32 = 1.0 / 3.0;
@@ -24,47 +25,63 @@ const SHAKEN_PA: f32 = 0.5e6;
 const STILL_SHARE: f32 = 0.1;
 
 /// State of the check for one strut.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub struct TrappedOil {
-    closed: u16,
-    ticks: u16,
-    p3: (f32, f32),
-    p4: (f32, f32),
+    closed: u8,
+    turns: u8,
+    p3: Span,
+    p4: Span,
     wrong_windows: u8,
     flagged: bool,
 }
 
+impl Default for TrappedOil {
+    fn default() -> Self {
+        Self {
+            closed: 0,
+            turns: 0,
+            p3: Span::EMPTY,
+            p4: Span::EMPTY,
+            wrong_windows: 0,
+            flagged: false,
+        }
+    }
+}
+
 impl TrappedOil {
-    /// One tick; `commanded_closed` says whether valve 3 was told to be closed in the last tick.
+    /// One turn; `commanded_closed` says whether valve 3 was told to be closed in the last tick. An opening between two turns is
+    /// not seen: it is shorter than any valve takes to open.
     pub fn step(&mut self, pressure: &StrutPressures<Gauge<f32>>, commanded_closed: bool, verdict: &mut Verdicts) {
-        let healthy = verdict.pressure.p3 == FaultCode::None && verdict.pressure.p4 == FaultCode::None;
+        let healthy = verdict.is_good(Place::P3) && verdict.is_good(Place::P4);
         self.closed = if commanded_closed {
             self.closed.saturating_add(1)
         } else {
             0
         };
-        if !healthy || self.closed < CLOSED_TICKS {
-            self.ticks = 0;
+        if !healthy || self.closed < CLOSED_TURNS {
+            self.begin_window();
         } else {
-            let (p3, p4) = (pressure.p3.pa(), pressure.p4.pa());
-            if self.ticks == 0 {
-                (self.p3, self.p4) = ((p3, p3), (p4, p4));
-            }
-            widen(&mut self.p3, p3);
-            widen(&mut self.p4, p4);
-            self.ticks = self.ticks.saturating_add(1);
-            if self.ticks >= WINDOW_TICKS {
-                self.ticks = 0;
+            self.p3.add(pressure.p3.pa());
+            self.p4.add(pressure.p4.pa());
+            self.turns = self.turns.saturating_add(1);
+            if self.turns >= WINDOW_TURNS {
                 self.end_of_window();
+                self.begin_window();
             }
         }
         if self.flagged {
-            blame(&mut verdict.pressure.p4, FaultCode::ValveStuck);
+            verdict.blame(Place::P4, FaultCode::ValveStuck);
         }
     }
 
+    fn begin_window(&mut self) {
+        self.turns = 0;
+        self.p3 = Span::EMPTY;
+        self.p4 = Span::EMPTY;
+    }
+
     fn end_of_window(&mut self) {
-        let (p3, p4) = (self.p3.1 - self.p3.0, self.p4.1 - self.p4.0);
+        let (p3, p4) = (self.p3.width(), self.p4.width());
         if p4 > MOVED_PA && p4 > MOVED_SHARE * p3 {
             self.wrong_windows = self.wrong_windows.saturating_add(1);
             self.flagged |= self.wrong_windows >= WINDOWS;
@@ -77,38 +94,28 @@ impl TrappedOil {
     }
 }
 
-/// Makes a range from its smallest to its largest value hold another value.
-fn widen(range: &mut (f32, f32), value: f32) {
-    if value < range.0 {
-        range.0 = value;
-    }
-    if value > range.1 {
-        range.1 = value;
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::turn::TURN_S;
     use super::*;
-    use oleo_interface::tick::TICK_S_F32;
 
-    /// First tick in which the valve is called stuck, where p3 swings by 0.5 MPa at 1.3 Hz and p4 by a share of that.
+    /// First turn in which the valve is called stuck, where p3 swings by 0.5 MPa at 1.3 Hz and p4 by a share of that.
     fn found(check: &mut TrappedOil, share: f32, closed: bool) -> Option<u16> {
-        (0..1000).find(|tick| {
-            let swing = 0.5e6 * libm::sinf(2.0 * core::f32::consts::PI * 1.3 * f32::from(*tick) * TICK_S_F32);
+        (0..1000).find(|turn| {
+            let swing = 0.5e6 * libm::sinf(2.0 * core::f32::consts::PI * 1.3 * f32::from(*turn) * TURN_S);
             let pressure = StrutPressures {
                 p4: Gauge(2.0e6 + share * swing),
                 ..StrutPressures::splat(Gauge(2.0e6 + swing))
             };
-            let mut verdict = Verdicts::default();
+            let mut verdict = Verdicts::GOOD;
             check.step(&pressure, closed, &mut verdict);
-            verdict.pressure.p4 == FaultCode::ValveStuck
+            verdict.gravest() == FaultCode::ValveStuck
         })
     }
 
     #[test]
     fn p4_that_follows_through_a_closed_valve() {
-        let two_windows = Some(CLOSED_TICKS + 2 * WINDOW_TICKS - 2);
+        let two_windows = Some(u16::from(CLOSED_TURNS + 2 * WINDOW_TURNS - 2));
         assert_eq!(found(&mut TrappedOil::default(), 1.0, true), two_windows);
         assert_eq!(found(&mut TrappedOil::default(), 0.5, true), two_windows);
         assert_eq!(found(&mut TrappedOil::default(), 0.05, true), None, "trapped");
@@ -123,16 +130,16 @@ mod tests {
         for _ in 0..2 {
             found(&mut check, 0.02, true);
         }
-        let mut verdict = Verdicts::default();
-        for _ in 0..CLOSED_TICKS + 2 * WINDOW_TICKS {
-            let swing = 0.5e6 * libm::sinf(0.04 * f32::from(check.ticks));
+        let mut verdict = Verdicts::GOOD;
+        for turn in 0..CLOSED_TURNS + 2 * WINDOW_TURNS {
+            let swing = 0.5e6 * libm::sinf(0.16 * f32::from(turn));
             let pressure = StrutPressures {
                 p4: Gauge(2.0e6),
                 ..StrutPressures::splat(Gauge(2.0e6 + swing))
             };
-            verdict = Verdicts::default();
+            verdict = Verdicts::GOOD;
             check.step(&pressure, true, &mut verdict);
         }
-        assert_eq!(verdict.pressure.p4, FaultCode::None);
+        assert_eq!(verdict, Verdicts::GOOD);
     }
 }

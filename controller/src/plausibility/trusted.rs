@@ -3,7 +3,7 @@
 use oleo_interface::{Absolute, Corners, Gauge, StrutPressures};
 
 use super::limits::DISPLACEMENT;
-use super::verdict::Verdicts;
+use super::verdict::{Place, Verdicts};
 use crate::failsafe::{FaultCode, Health};
 use crate::reading::Inputs;
 use crate::sensor_message::MessageSet;
@@ -27,16 +27,13 @@ pub struct Trusted {
 impl Trusted {
     /// Sums up the verdicts for the mode machine.
     pub(super) fn judge(&mut self, verdicts: &Corners<Verdicts>, inputs: &Inputs) {
+        self.health = Health::default();
+        self.invalid_readings = 0;
         let mut cause = FaultCode::None;
-        for (corner, verdict) in verdicts.iter() {
-            if *verdict == Verdicts::default() {
-                continue;
-            }
-            for fault in verdict.all().filter(|&fault| fault != FaultCode::None) {
-                self.health.affected[corner] = true;
-                self.invalid_readings = self.invalid_readings.saturating_add(1);
-                cause = cause.max(fault);
-            }
+        for (corner, verdict) in verdicts.iter().filter(|(_, verdict)| **verdict != Verdicts::GOOD) {
+            self.health.affected[corner] = true;
+            self.invalid_readings = self.invalid_readings.saturating_add(verdict.count());
+            cause = cause.max(verdict.gravest());
         }
         if inputs.lost_messages == MessageSet::ALL {
             cause = FaultCode::BusSilent;
@@ -52,39 +49,41 @@ impl Trusted {
         self.health.cause = cause;
     }
 
-    /// Replaces what was found wrong.
-    pub(super) fn substitute(&mut self, verdicts: &Corners<Verdicts>) {
-        let good = verdicts
-            .each_ref()
-            .map(|verdict| verdict.displacement == FaultCode::None);
-        let [fl, fr, rl, rr] = self.displacement_m.into_array();
+    /// Takes over the last good readings, and replaces those that were found wrong.
+    pub(super) fn substitute(&mut self, measured: &Self, verdicts: &Corners<Verdicts>) {
+        let good = verdicts.map(|verdict| verdict.is_good(Place::DISPLACEMENT));
+        let [fl, fr, rl, rr] = measured.displacement_m.into_array();
         // The body is rigid: left and right differ equally at both axles.
+        let within = |x: f32| x.clamp(DISPLACEMENT.least, DISPLACEMENT.most);
         self.displacement_m = Corners::from_array(match good.into_array() {
-            [false, true, true, true] => [fr + rl - rr, fr, rl, rr],
-            [true, false, true, true] => [fl, fl + rr - rl, rl, rr],
-            [true, true, false, true] => [fl, fr, rr + fl - fr, rr],
-            [true, true, true, false] => [fl, fr, rl, rl + fr - fl],
+            [false, true, true, true] => [within(fr + rl - rr), fr, rl, rr],
+            [true, false, true, true] => [fl, within(fl + rr - rl), rl, rr],
+            [true, true, false, true] => [fl, fr, within(rr + fl - fr), rr],
+            [true, true, true, false] => [fl, fr, rl, within(rl + fr - fl)],
             _ => [fl, fr, rl, rr],
-        })
-        .map(|x| x.clamp(DISPLACEMENT.least, DISPLACEMENT.most));
-        for (corner, verdict) in verdicts.iter() {
-            let pressure = &mut self.pressure[corner];
-            let good = verdict.pressure.map(|fault| fault == FaultCode::None);
-            let main = if good.p1 {
-                pressure.p1
-            } else if good.p2 {
-                pressure.p2
-            } else if good.p3 {
-                pressure.p3
+        });
+        let pressures = self.pressure.each_mut().zip(measured.pressure.each_ref());
+        for ((pressure, measured), verdict) in pressures.zip(*verdicts).into_array() {
+            *pressure = *measured;
+            if verdict.pressures_are_good() {
+                continue;
+            }
+            let good = |place| verdict.is_good(place);
+            pressure.p1 = if good(Place::P1) {
+                measured.p1
+            } else if good(Place::P2) {
+                measured.p2
+            } else if good(Place::P3) {
+                measured.p3
             } else {
-                pressure.p1
+                measured.p1
             };
-            *pressure = StrutPressures {
-                p1: main,
-                p2: if good.p2 { pressure.p2 } else { main },
-                p3: if good.p3 { pressure.p3 } else { main },
-                p4: pressure.p4,
-            };
+            if !good(Place::P2) {
+                pressure.p2 = pressure.p1;
+            }
+            if !good(Place::P3) {
+                pressure.p3 = pressure.p1;
+            }
         }
     }
 }

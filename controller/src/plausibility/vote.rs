@@ -3,12 +3,13 @@
 //! At rest p1, p2 and p3 are equal, and p4 too behind an open valve 3, because dampers and orifices cause a pressure drop only
 //! while oil moves. In motion the *means* over a second still agree, except for the asymmetry of the damper packs (rebound takes
 //! about twice as much as jounce, estimated 0.4 MPa at 0.5 m/s). So lagged pressures are compared, and one that differs by more
-//! than 1 MPa from two that agree is wrong. An offset of `d` is seen after `tau ln(d / (d - 1 MPa))` and 40 ticks of
+//! than 1 MPa from two that agree is wrong. An offset of `d` is seen after `tau ln(d / (d - 1 MPa))` and 0.2 s of
 //! confirmation, which is 1.1 s for 1.7 MPa and 0.5 s for 4 MPa. This check does not see offsets below 1 MPa.
 
 use oleo_interface::{Gauge, PressurePoint, StrutPressures};
 
-use super::verdict::{Verdicts, blame};
+use super::turn::{TURN_S, turns};
+use super::verdict::{Place, Verdicts};
 use crate::failsafe::FaultCode;
 use crate::filter::LowPass;
 
@@ -16,7 +17,7 @@ const DISAGREE_PA: f32 = 1.0e6;
 /// A pressure that was outvoted is believed again when it is this near to another one. For p4 that takes an open valve 3: a
 /// verdict about it stays until it can be compared again.
 const AGREE_PA: f32 = 0.6e6;
-const CONFIRM_TICKS: u8 = 40;
+const CONFIRM_TURNS: u8 = turns(200);
 
 /// The lag of the compared pressures.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +28,7 @@ pub struct Parameters {
 impl Default for Parameters {
     fn default() -> Self {
         Self {
-            lag: LowPass::from_time_constant_s(1.0),
+            lag: LowPass::sampled(TURN_S, 1.0),
         }
     }
 }
@@ -42,7 +43,7 @@ pub struct Vote {
 }
 
 impl Vote {
-    /// One tick. `p4_follows` says whether valve 3 has been open for so long that p4 follows p1.
+    /// One turn. `p4_follows` says whether valve 3 has been open for so long that p4 follows p1.
     pub fn step(
         &mut self,
         parameters: &Parameters,
@@ -50,7 +51,7 @@ impl Vote {
         p4_follows: bool,
         verdict: &mut Verdicts,
     ) {
-        let healthy = verdict.pressure == StrutPressures::splat(FaultCode::None);
+        let healthy = verdict.pressures_are_good();
         if !healthy {
             // A replaced value says nothing about the others: start again when all four are measured. A verdict that was
             // reached before stays.
@@ -77,7 +78,7 @@ impl Vote {
             p3: d13 && d23 && !d12,
             p4: p4_follows && apart(p4, p3) && !(d13 && d23),
         };
-        // Most ticks end here: no pressure is or was outvoted. A flag falls when its count reaches 0, so none is set.
+        // Most turns end here: no pressure is or was outvoted. A flag falls when its count reaches 0, so none is set.
         if self.outvoted == StrutPressures::splat(0) && !(healthy && wrong != StrutPressures::splat(false)) {
             return;
         }
@@ -92,20 +93,20 @@ impl Vote {
             let (count, flagged) = (&mut self.outvoted[point], &mut self.flagged[point]);
             if healthy {
                 *count = if wrong[point] {
-                    count.saturating_add(1).min(CONFIRM_TICKS)
+                    count.saturating_add(1).min(CONFIRM_TURNS)
                 } else if !*flagged || agrees[point] {
                     count.saturating_sub(1)
                 } else {
                     *count
                 };
-                if *count == CONFIRM_TICKS {
+                if *count == CONFIRM_TURNS {
                     *flagged = true;
                 } else if *count == 0 {
                     *flagged = false;
                 }
             }
             if *flagged {
-                blame(&mut verdict.pressure[point], FaultCode::SensorVote);
+                verdict.blame(Place::of(point), FaultCode::SensorVote);
             }
         }
     }
@@ -123,17 +124,16 @@ mod tests {
     use super::*;
 
     fn outvoted(verdict: &Verdicts) -> bool {
-        verdict.all().any(|fault| fault == FaultCode::SensorVote)
+        verdict.gravest() == FaultCode::SensorVote
     }
 
-    /// The first tick in which a pressure is outvoted, on a strut that is shaken through closed dampers: p1 swings by 2 MPa
+    /// The first turn in which a pressure is outvoted, on a strut that is shaken through closed dampers: p1 swings by 2 MPa
     /// about p2 at 8 Hz, and p3 has an offset.
-    fn shaken(vote: &mut Vote, ticks: core::ops::Range<u16>, offset_pa: f32) -> Option<u16> {
+    fn shaken(vote: &mut Vote, turns: core::ops::Range<u16>, offset_pa: f32) -> Option<u16> {
         let parameters = Parameters::default();
-        for tick in ticks {
-            let swing = 2.0e6
-                * libm::cosf(2.0 * core::f32::consts::PI * 8.0 * f32::from(tick) * oleo_interface::tick::TICK_S_F32);
-            let mut verdict = Verdicts::default();
+        for turn in turns {
+            let swing = 2.0e6 * libm::cosf(2.0 * core::f32::consts::PI * 8.0 * f32::from(turn) * TURN_S);
+            let mut verdict = Verdicts::GOOD;
             let pressure = StrutPressures {
                 p1: 4.0e6 + swing,
                 p2: 4.0e6,
@@ -142,7 +142,7 @@ mod tests {
             };
             vote.step(&parameters, &pressure.map(Gauge), false, &mut verdict);
             if outvoted(&verdict) {
-                return Some(tick);
+                return Some(turn);
             }
         }
         None
@@ -161,36 +161,36 @@ mod tests {
         let parameters = Parameters::default();
         let mut vote = Vote::default();
         assert_eq!(shaken(&mut vote, 0..500, 0.0), None);
-        let mut silent = Verdicts {
-            pressure: StrutPressures::splat(FaultCode::MessageLost),
-            ..Verdicts::default()
-        };
+        let mut silent = Verdicts::GOOD;
+        for point in PressurePoint::ALL {
+            silent.blame(Place::of(point), FaultCode::MessageLost);
+        }
         vote.step(&parameters, &StrutPressures::default(), false, &mut silent);
         assert_eq!(shaken(&mut vote, 0..1000, 0.0), None);
     }
 
     #[test]
     fn an_offset_is_seen_within_the_documented_time() {
-        // tau ln(d / (d - 1 MPa)) with tau = 1 s, and 40 ticks: 217 ticks for 1.7 MPa.
+        // tau ln(d / (d - 1 MPa)) with tau = 1 s, and 0.2 s: 1.09 s for 1.7 MPa.
         let seen = shaken(&mut Vote::default(), 0..1000, 1.7e6);
-        assert!(seen.is_some_and(|tick| (200..300).contains(&tick)), "{seen:?}");
+        assert!(seen.is_some_and(|turn| (50..75).contains(&turn)), "{seen:?}");
     }
 
     #[test]
     fn oil_trapped_behind_valve_3_is_no_disagreement_when_the_valve_has_opened() {
         let parameters = Parameters::default();
         let mut vote = Vote::default();
-        for tick in 0..1500 {
+        for turn in 0..375 {
             // Trapped 3 MPa apart for 2.5 s; equal once the valve is settled open.
-            let open = tick >= 500;
+            let open = turn >= 125;
             let p4 = if open { 4.0e6 } else { 7.0e6 };
-            let mut verdict = Verdicts::default();
+            let mut verdict = Verdicts::GOOD;
             let pressure = StrutPressures {
                 p4,
                 ..StrutPressures::splat(4.0e6)
             };
             vote.step(&parameters, &pressure.map(Gauge), open, &mut verdict);
-            assert!(!outvoted(&verdict), "tick {tick}");
+            assert!(!outvoted(&verdict), "turn {turn}");
         }
     }
 }

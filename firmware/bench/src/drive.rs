@@ -1,14 +1,21 @@
 //! A synthetic drive: sensor readings for each tick that are bit-identical on every machine.
 //!
 //! It is not a model of a vehicle, which would need f64 and std, but it gives each part of the controller work: four struts on a
-//! rough road, a slalom on a smooth one, sensor noise, and at the end readings that are missing or wrong. The gas follows the
-//! struts' valves by the report's isothermal law. It uses only integer arithmetic and +, -, *, / of f32, which have the same bits
+//! rough road, a slalom on a smooth one, sensor noise, and at the end readings that are missing or wrong; the last
+//! of these come as storms that hit all readings at once. The gas follows the struts' valves by the report's isothermal law. It uses only integer arithmetic and +, -, *, / of f32, which have the same bits
 //! everywhere.
 
 use oleo_controller::{Absolute, Corner, Corners, Gauge, Inputs, Reading, Side, StrutPressures, Valve, ValveCommand};
 
-/// Ticks until the drive ends: 15 s.
-pub const TICKS: u16 = 3_000;
+/// Ticks until the drive ends: 20 s.
+pub const TICKS: u16 = 4_000;
+
+/// From here on, a storm of faults that comes and goes: each reading is missing, out of range or far from the last one in one
+/// of four ticks.
+const STORM: core::ops::Range<u16> = 3_000..4_000;
+const STORM_PERIOD: u16 = 250;
+/// Ticks of each period in which the storm rages.
+const STORM_TICKS: u16 = 40;
 
 /// From here on slalom, 4 s a period.
 const SLALOM: core::ops::Range<u16> = 1_000..2_200;
@@ -74,10 +81,29 @@ impl Drive {
             // A reading that comes and goes; a broken wire; a pressure that no strut can have.
             2_300..2_320 if tick.is_multiple_of(3) => inputs.displacement[Corner::FrontRight] = Reading::INVALID,
             2_500..2_510 => inputs.pressure[Corner::RearLeft].p1 = Reading::new(f32::NAN),
-            2_800.. => inputs.pressure[Corner::RearRight].p2 = Reading::new(9.0e7),
+            2_800..3_000 => inputs.pressure[Corner::RearRight].p2 = Reading::new(9.0e7),
             _ => {}
         }
+        if STORM.contains(&tick) && tick % STORM_PERIOD < STORM_TICKS {
+            for corner in Corner::ALL {
+                self.damage(&mut inputs.displacement[corner], 0.2);
+                for reading in inputs.pressure[corner].each_mut().into_array() {
+                    self.damage(reading, 30.0e6);
+                }
+            }
+        }
         inputs
+    }
+
+    /// Makes one of four readings wrong, in one of three ways.
+    fn damage(&mut self, reading: &mut Reading, far: f32) {
+        let kind = self.noise();
+        *reading = match kind {
+            -1.0..-0.8 => Reading::INVALID,
+            -0.8..-0.7 => Reading::new(far),
+            -0.7..-0.5 => Reading::new(10.0 * far),
+            _ => return,
+        };
     }
 
     /// Pressures of a strut without damping.

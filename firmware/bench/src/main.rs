@@ -19,8 +19,8 @@ use machine::{Counter, leave, say};
 use oleo_controller::can::Frame;
 use oleo_controller::{Configuration, Inputs, Node, Outputs, PlantEnd, State, ValveCommand, tick};
 
-/// Goal for the tick, instructions on the Cortex-M4F.
-const GOAL: u32 = 3_000;
+/// Largest permitted median and largest permitted value of the tick, instructions on the Cortex-M4F.
+const BUDGET: (u32, u32) = (2_240, 3_520);
 
 #[cfg_attr(target_os = "none", cortex_m_rt::entry)]
 fn main() -> ! {
@@ -71,15 +71,27 @@ fn main() -> ! {
     for (name, costs) in ["tick", "node tick", "receive six frames"].into_iter().zip(&mut costs) {
         costs.sort_unstable();
         let (min, median, max) = (costs[0], costs[costs.len() / 2], costs[costs.len() - 1]);
+        let mean = costs.iter().sum::<u32>() / u32::from(TICKS);
         if max > 0 {
-            say!("{}: {} min, {} median, {} max instructions", name, min, median, max);
-            within &= name != "tick" || max <= GOAL;
+            say!(
+                "{}: {} min, {} median, {} mean, {} max instructions",
+                name,
+                min,
+                median,
+                mean,
+                max
+            );
+            within &= name != "tick" || (median <= BUDGET.0 && max <= BUDGET.1);
         }
     }
     if !within {
-        say!("above the goal of {} instructions a tick", GOAL);
+        say!(
+            "above the budget of {} (median) and {} (max) instructions a tick",
+            BUDGET.0,
+            BUDGET.1
+        );
     }
-    leave(true)
+    leave(within)
 }
 
 /// The pure function, on its own in the image so that a profiler finds it.

@@ -11,6 +11,7 @@
 //! the wire. Frames of [`crate::sync`], which keep two nodes in step and would not exist in a vehicle, pass through both unchanged.
 
 mod address;
+mod compared;
 mod faults;
 mod in_process;
 mod recorder;
@@ -22,6 +23,7 @@ mod trace;
 use std::time::Duration;
 
 pub use address::{AddressError, BusAddress};
+pub use compared::Compared;
 pub use faults::{Disturbance, FaultInjector, Injection, InjectionCounts, Target};
 pub use in_process::{InProcess, in_process_pair};
 pub use serial_line::SerialLine;
@@ -51,6 +53,16 @@ pub enum BusError {
         action: &'static str,
         /// The error of the operating system.
         source: std::io::Error,
+    },
+    /// The controller at the other end does not decide as the one in this process.
+    #[error("tick {tick}: the controller under test sent {sent}, the same controller in this process {expected}")]
+    Differs {
+        /// Number of the tick.
+        tick: u32,
+        /// The frame that came, as a line of slcan.
+        sent: String,
+        /// The frame that should have come.
+        expected: String,
     },
     /// The other end is gone for good.
     #[error("{bus}: the other end has closed the connection")]
@@ -96,6 +108,24 @@ pub trait Bus: Send {
 
     /// Counters since the start.
     fn counters(&self) -> BusCounters;
+}
+
+impl<B: Bus + ?Sized> Bus for &mut B {
+    fn begin_tick(&mut self, tick: u32) {
+        (**self).begin_tick(tick);
+    }
+
+    fn send(&mut self, frame: &Frame) -> Result<(), BusError> {
+        (**self).send(frame)
+    }
+
+    fn receive(&mut self, wait: Duration) -> Result<Option<Frame>, BusError> {
+        (**self).receive(wait)
+    }
+
+    fn counters(&self) -> BusCounters {
+        (**self).counters()
+    }
 }
 
 impl<B: Bus + ?Sized> Bus for Box<B> {

@@ -78,17 +78,23 @@ impl SerialLine {
                 .map_err(|e| refused(format!("cannot set the line to raw mode: {e}")))?;
             file.into()
         };
-        let mut opened = Self {
+        let mut opened = Self::over(line, bus);
+        opened.write(OPEN_CHANNEL)?;
+        Ok(opened)
+    }
+
+    /// Over a line that is open already and does not block, with the name by which errors speak of it. The other end is told
+    /// nothing.
+    pub(crate) fn over(line: OwnedFd, name: String) -> Self {
+        Self {
             line,
-            name: bus,
+            name,
             decoder: Decoder::default(),
             bytes: [0; 512],
             next: 0,
             filled: 0,
             counters: BusCounters::default(),
-        };
-        opened.write(OPEN_CHANNEL)?;
-        Ok(opened)
+        }
     }
 
     fn io(&self, action: &'static str, errno: Errno) -> BusError {

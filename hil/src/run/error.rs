@@ -4,6 +4,7 @@ use oleo_controller::ConfigurationError;
 use oleo_interface::tick::TICK_S;
 
 use crate::bus::BusError;
+use crate::emulator::EmulatorError;
 use crate::handshake::HandshakeError;
 use crate::scenario::file::DEFENDER;
 
@@ -34,6 +35,9 @@ pub enum RunError {
     /// The bus failed before or during the run.
     #[error(transparent)]
     Bus(#[from] BusError),
+    /// The firmware image does not run.
+    #[error(transparent)]
+    Emulator(#[from] EmulatorError),
     /// The two nodes did not find each other, or want different runs.
     #[error(transparent)]
     Handshake(#[from] HandshakeError),

@@ -5,6 +5,7 @@
 //! | lockstep, 1 thread | both | taking turns |
 //! | lockstep, 2 threads | both | each for the other's `TickDone` |
 //! | lockstep, `--node` | one | the same, across processes |
+//! | lockstep, `--firmware` | the plant; the controller is an image on an emulated board | the same |
 //! | real time | both (2 threads) or one | nobody: each keeps its deadlines |
 //!
 //! The first three give the same commands, bit for bit. A partner that stays silent for the scenario's `partner_timeout_s` is
@@ -19,13 +20,15 @@ mod plant;
 mod plant_loop;
 mod waiting;
 
+use std::path::Path;
 use std::time::Instant;
 
 use crc::{CRC_16_IBM_3740, Crc};
 use oleo_controller::{Builder, Configuration};
 
-use crate::bus::{Bus, BusAddress, in_process_pair};
+use crate::bus::{Bus, BusAddress, Compared, in_process_pair};
 use crate::controller_node::{ControllerNode, Heard};
+use crate::emulator::Emulator;
 use crate::handshake::handshake;
 use crate::plant_node::PlantNode;
 use crate::scenario::{Clock, Scenario};
@@ -115,6 +118,20 @@ pub fn plant_alone(scenario: &Scenario, vehicle: Vehicle, watch: Watch) -> Resul
     } else {
         plant_loop::in_lockstep(&mut plant, scenario, &mut || Ok(()), watch)?
     };
+    Ok(end.outcome(plant, Vec::new(), started))
+}
+
+/// Runs the plant; the controller is a firmware image on an emulated board. What it sends is compared with what the same controller
+/// in this process sends, frame by frame.
+///
+/// # Errors
+/// See [`RunError`]; among others the first frame that differs.
+pub fn with_firmware(scenario: &Scenario, vehicle: Vehicle, image: &Path, watch: Watch) -> Result<Outcome, RunError> {
+    let mut emulator = Emulator::start(image)?;
+    let bus = Compared::new(emulator.bus(), Configuration::defender110());
+    let mut plant = PlantNode::new(bus, scenario, vehicle, false);
+    let started = Instant::now();
+    let end = plant_loop::in_lockstep(&mut plant, scenario, &mut || Ok(()), watch)?;
     Ok(end.outcome(plant, Vec::new(), started))
 }
 

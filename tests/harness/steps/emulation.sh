@@ -3,8 +3,8 @@
 . tests/harness/lib.sh
 . tests/harness/cross.sh
 
-cross_find || { skip "controller on an emulated board" "$cross_how"; exit 0; }
-need qemu-system-arm qemu-system-arm || { skip "controller on an emulated board" "no qemu-system-arm"; exit 0; }
+cross_find || { must_not_skip "controller on an emulated board" "$cross_how"; exit 0; }
+need qemu-system-arm qemu-system-arm || { must_not_skip "controller on an emulated board" "no qemu-system-arm"; exit 0; }
 check "benchmark builds for the board" cross_cargo build --release -p oleo-bench || exit 0
 check "benchmark builds for the host" host_bench || exit 0
 

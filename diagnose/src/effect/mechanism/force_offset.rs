@@ -43,7 +43,7 @@ impl ActsOn<Mechanism> for ForceOffset {
             return vec![];
         }
         let force = excitation.force_n;
-        let offset = Parameter::linear("force_N", 0.0, 0.01 * force, (-force, force));
+        let offset = Parameter::departure("force_N", 0.01 * force, (-force, force));
         vec![Candidate::new(self.id(), excitation.site.clone(), vec![offset])]
     }
 

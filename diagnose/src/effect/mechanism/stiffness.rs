@@ -42,8 +42,9 @@ impl ActsOn<Mechanism> for Stiffness {
         if model.stiffness.is_some() {
             return vec![];
         }
+        // No passive spring pushes away from its rest.
         let most = excitation.force_n / excitation.stroke_m;
-        let stiffness = Parameter::linear("stiffness_N_m", 0.0, 0.02 * most, (-5.0 * most, 5.0 * most));
+        let stiffness = Parameter::amount("stiffness_N_m", 0.02 * most, 5.0 * most);
         // A gas spring is a stiffness too: the two are forms of one effect.
         vec![Candidate::new(self.id(), excitation.site.clone(), vec![stiffness]).in_place_of(EffectId::Stiffness)]
     }

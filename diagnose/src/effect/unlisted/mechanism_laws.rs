@@ -88,7 +88,7 @@ impl ActsOn<Mechanism> for Laws {
     fn candidates(&self, _model: &MechanismEffects, excitation: &excitation::Mechanism) -> Vec<Candidate> {
         let candidate = |law: &Law| {
             let most = 5.0 * excitation.force_n / (law.largest)(excitation);
-            let number = Parameter::linear(law.key, 0.0, 0.004 * most, (-most, most));
+            let number = Parameter::departure(law.key, 0.004 * most, (-most, most));
             Candidate::new(EffectId::Unlisted, excitation.site.clone(), vec![number]).labelled(law.words.label)
         };
         let is_drive = excitation.site == Site::Drive;

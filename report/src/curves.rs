@@ -3,7 +3,7 @@
 
 use plotly::Scatter;
 use plotly::Trace;
-use plotly::common::{DashType, ErrorData, ErrorType, Line, LineShape, Marker, Mode};
+use plotly::common::{DashType, ErrorData, ErrorType, Line, LineShape, Marker, Mode, Position};
 use serde_json::{Value, json};
 
 use crate::axis::{Axis, escape_plotly};
@@ -30,6 +30,8 @@ pub enum Style {
     Points,
     /// Markers joined by a line, for few points in an order (the path of an optimiser).
     LineAndPoints,
+    /// Markers with the name of the series at the first one, for few points that must be told apart.
+    NamedPoints,
 }
 
 /// One or several stacked panels over a shared horizontal axis; see the example in the crate's documentation.
@@ -120,7 +122,7 @@ impl Curves {
     pub fn series(&mut self, style: Style, name: &str, x: &[f64], y: &[f64]) -> &mut Self {
         let colour = self.colour_of(name);
         let (x, y) = match style {
-            Style::Points | Style::LineAndPoints => (x.into(), y.into()),
+            Style::Points | Style::LineAndPoints | Style::NamedPoints => (x.into(), y.into()),
             _ => extrema_by_bucket(x, y, BUCKETS),
         };
         let series = Series {
@@ -277,6 +279,7 @@ impl Series {
         let mode = match self.style {
             Style::Points => Mode::Markers,
             Style::LineAndPoints => Mode::LinesMarkers,
+            Style::NamedPoints => Mode::MarkersText,
             _ => Mode::Lines,
         };
         let name = escape_plotly(&self.name);
@@ -288,6 +291,12 @@ impl Series {
             .line(line.width(1.5).color(colour))
             .marker(Marker::new().size(6).color(colour))
             .y_axis(y_axis);
+        if self.style == Style::NamedPoints {
+            trace = trace
+                .text_array(vec![name.as_str()])
+                .text_position(Position::TopCenter)
+                .clip_on_axis(false);
+        }
         if let Some((above, below)) = self.interval {
             trace = trace.error_y(
                 ErrorData::new(ErrorType::Data)

@@ -48,6 +48,9 @@ const CONTROLLERS: [(&str, Strategy, DamperPolicy); 5] = [
     ("ride-handling-sh-add", Strategy::RideHandling, DamperPolicy::ShAdd),
 ];
 
+/// What the names of the controllers that decide by running RMS begin with: one series of the picture.
+const RUNNING_RMS: &str = "ride-handling";
+
 /// What was compared, and the result.
 struct Comparison {
     groups: Vec<Group>,
@@ -239,12 +242,28 @@ fn page(comparison: &Comparison, own: &Scores, [ride, roll, goals]: &[Table; 3])
              class C. Lower left is better. A fixed setting lies on the arc from soft to stiff; the oracle knows when a manoeuvre begins.",
         );
         let panel = figure.panel(Axis::new("Peak roll over all valves closed", ""));
+        let mut drawn: Vec<(String, Vec<f64>, Vec<f64>)> = Vec::new();
         for (number, setting) in settings.iter().enumerate() {
-            let point = (
-                comparison::mean_ratio(&means.ride, number, soft),
-                comparison::mean_ratio(&flat_and_c, number, stiff),
-            );
-            panel.series(Style::Points, &setting.name(), &[point.0], &[point.1]);
+            let name = setting.name();
+            let ride = comparison::mean_ratio(&means.ride, number, soft);
+            let roll = comparison::mean_ratio(&flat_and_c, number, stiff);
+            // A closed valve 3 takes no flow, so that valve 2 makes no difference behind it: one point, two names.
+            let at_the_same = |(_, x, y): &&mut (String, Vec<f64>, Vec<f64>)| x == &[ride] && y == &[roll];
+            if let Some((names, ..)) = drawn.iter_mut().find(at_the_same) {
+                *names = format!("{names}, {name}");
+            } else if let Some((names, x, y)) = drawn
+                .iter_mut()
+                .find(|(names, ..)| name.starts_with(RUNNING_RMS) && names.starts_with(RUNNING_RMS))
+            {
+                *names = format!("{RUNNING_RMS} with four damper policies");
+                x.push(ride);
+                y.push(roll);
+            } else {
+                drawn.push((name, vec![ride], vec![roll]));
+            }
+        }
+        for (name, x, y) in drawn {
+            panel.series(Style::NamedPoints, &name, &x, &y);
         }
         page.section("Ride against roll").figure(figure);
     }

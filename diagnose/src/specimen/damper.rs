@@ -134,12 +134,7 @@ impl SingleOutput for Damper {
     }
 
     fn states(&self, _recording: &Recording, index: usize) -> Vec<StateSeries> {
-        let motion = &self.motions[index];
-        vec![
-            StateSeries::new(State::Displacement, motion.displacement_m.clone()),
-            StateSeries::new(State::Speed, motion.speed_m_s.clone()),
-            StateSeries::new(State::Acceleration, motion.acceleration_m_s2.clone()),
-        ]
+        mechanism::states(&self.motions[index])
     }
 
     fn remarks(&self, _recordings: &[Recording]) -> Vec<String> {

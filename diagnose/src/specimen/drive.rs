@@ -16,7 +16,7 @@ use crate::error::DiagnoseError;
 use crate::excitation::{self, Channels};
 use crate::parameter::Parameter;
 use crate::recording::{ColumnKind, ColumnSpec, GapPolicy, Recording};
-use crate::vocabulary::{Column, Place, Site, SpecimenKind, State};
+use crate::vocabulary::{Column, Place, Site, SpecimenKind};
 
 /// Relative tolerances of mass and viscous friction where the model states none.
 const TOLERANCE: f64 = 0.1;
@@ -129,12 +129,7 @@ impl SingleOutput for Drive {
     }
 
     fn states(&self, _recording: &Recording, index: usize) -> Vec<StateSeries> {
-        let motion = &self.motions[index];
-        vec![
-            StateSeries::new(State::Displacement, motion.displacement_m.clone()),
-            StateSeries::new(State::Speed, motion.speed_m_s.clone()),
-            StateSeries::new(State::Acceleration, motion.acceleration_m_s2.clone()),
-        ]
+        mechanism::states(&self.motions[index])
     }
 
     fn remarks(&self, _recordings: &[Recording]) -> Vec<String> {

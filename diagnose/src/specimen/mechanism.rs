@@ -4,10 +4,11 @@ use oleo_plant_sim::specimen::{MechanismEffects, SmoothedMotion};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use super::channel::StateSeries;
 use super::hypothesis::Hypothesis;
 use crate::effect::{ALL, Candidate, of, sensor};
 use crate::excitation;
-use crate::vocabulary::EffectId;
+use crate::vocabulary::{EffectId, State};
 
 /// Everything that the model may lack: physics, laws without a name, then the compared instrument.
 pub fn candidates(model: &MechanismEffects, excitation: &excitation::Mechanism) -> Vec<Candidate> {
@@ -31,6 +32,15 @@ pub fn put(effects: &mut MechanismEffects, candidates: &[Candidate], hypothesis:
             effect.put(effects, candidate, values);
         }
     }
+}
+
+/// The states of a motion in which a misfit is looked for.
+pub fn states(motion: &SmoothedMotion) -> Vec<StateSeries> {
+    vec![
+        StateSeries::new(State::Displacement, motion.displacement_m.clone()),
+        StateSeries::new(State::Speed, motion.speed_m_s.clone()),
+        StateSeries::new(State::Acceleration, motion.acceleration_m_s2.clone()),
+    ]
 }
 
 /// Seed of the noise that is added to a motion; fixed, so that a report is the same every time.

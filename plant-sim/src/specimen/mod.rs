@@ -8,11 +8,13 @@ mod cylinder;
 mod gas_spring;
 mod mechanism;
 mod name;
+mod smoothed_motion;
 
-pub use cylinder::{CylinderChamber, CylinderEffects, CylinderModel, CylinderSeal, SmoothedMotion, smooth_motion};
+pub use cylinder::{CylinderChamber, CylinderEffects, CylinderModel, CylinderSeal};
 pub use gas_spring::{GasHeatTransferTerm, GasProcess, GasSpringEffects, GasSpringGas, GasSpringModel, SpringChamber};
 pub use mechanism::{
     Backlash, CoulombFriction, Damper, DamperModel, Drive, DriveModel, ForceOffset, Inertia, MechanismEffects,
     ParallelGasSpring, PreslidingFriction, SmoothYield, Stiffness, StribeckFriction, UnnamedForces, WINDOW_S,
 };
 pub use name::{SpecimenName, specimen_name};
+pub use smoothed_motion::{SmoothedMotion, smooth_motion};

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::effects::MechanismEffects;
 use crate::model_file::instruments::{check_noise, check_noise_is_complete, check_tolerance};
 use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
-use crate::specimen::cylinder::{SmoothedMotion, smooth_motion};
 use crate::specimen::name::SpecimenName;
+use crate::specimen::smoothed_motion::{SmoothedMotion, mean_interval_s, smooth_motion};
 use crate::strut::SensorEffect;
 
 /// What the model of every damper has.
@@ -109,13 +109,7 @@ impl DamperModel {
     /// The motion of a recording, freed of noise.
     #[must_use]
     pub fn motion(time_s: &[f64], displacement_m: &[f64]) -> SmoothedMotion {
-        let steps = (time_s.len().max(2) - 1) as f64;
-        let interval = time_s
-            .last()
-            .zip(time_s.first())
-            .map_or(0.0, |(end, begin)| end - begin)
-            / steps;
-        smooth_motion(time_s, displacement_m, SMOOTHING_SAMPLES * interval)
+        smooth_motion(time_s, displacement_m, SMOOTHING_SAMPLES * mean_interval_s(time_s))
     }
 
     /// Force on the damper at every sample of a motion, before the load cell, N. Presliding friction begins without force.

@@ -11,8 +11,8 @@ use serde::{Deserialize, Serialize};
 use super::effects::MechanismEffects;
 use crate::model_file::instruments::{check_noise, check_noise_is_complete, check_tolerance};
 use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
-use crate::specimen::cylinder::{SmoothedMotion, smooth_motion};
 use crate::specimen::name::SpecimenName;
+use crate::specimen::smoothed_motion::{SmoothedMotion, mean_interval_s, smooth_motion};
 use crate::strut::{SensorEffect, TermId};
 
 /// What the model of every drive has.
@@ -132,13 +132,11 @@ impl DriveModel {
     /// The measured motion, freed of noise: where the windows begin.
     #[must_use]
     pub fn motion(time_s: &[f64], position_m: &[f64]) -> SmoothedMotion {
-        let steps = (time_s.len().max(2) - 1) as f64;
-        let interval = time_s
-            .last()
-            .zip(time_s.first())
-            .map_or(0.0, |(end, begin)| end - begin)
-            / steps;
-        smooth_motion(time_s, position_m, SMOOTHING_S.max(SMOOTHING_SAMPLES * interval))
+        smooth_motion(
+            time_s,
+            position_m,
+            SMOOTHING_S.max(SMOOTHING_SAMPLES * mean_interval_s(time_s)),
+        )
     }
 
     /// True position at every sample, m, from the force (N) and the measured motion at the start of each window.

@@ -292,6 +292,10 @@ fn studies_of_the_controller_refuse_what_cannot_be() {
     let folder = tempfile::tempdir().expect("a folder");
     for (arguments, expected) in [
         (
+            &["study", "control", "--first-seed", "0"][..],
+            "--first-seed 0: give a number from 1 to 1000000",
+        ),
+        (
             &["study", "control", "--seeds", "0"][..],
             "--seeds 0: give a number from 1 to 1000",
         ),

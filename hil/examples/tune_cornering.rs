@@ -5,7 +5,7 @@
 //! ```
 //!
 //! The number is that of seeds. Drives with all valves open are recorded as the controller's estimates, for seeds from 1 to tune on and
-//! from 101 to report on: straight ahead for 20 s on five roads at three speeds, and two lane changes and a step of steer on each road. The
+//! from 1001 to report on: straight ahead for 20 s on five roads at three speeds, and two lane changes and a step of steer on each road. The
 //! optimiser (Nelder and Mead's simplex, crate `argmin`) varies four thresholds from the built-in ones. The cost is the mean delay after a
 //! manoeuvre has begun (at most 3 s), in s, and 0.1 times the square of the false decisions a kilometre, averaged over road and speed.
 
@@ -162,11 +162,11 @@ fn main() {
         .run()
         .expect("a cost that cannot fail");
     let found = end.state().get_best_param().cloned().unwrap_or_else(|| start.clone());
-    let reported_on = record(&bench, 101..=100 + seeds);
+    let reported_on = record(&bench, 1001..=1000 + seeds);
     for (name, (before, after)) in NAMES.iter().zip(start.iter().zip(&found)) {
         println!("{name:<28} built in {before:.2}, found {after:.2}");
     }
-    for (what, drives) in [("seeds tuned on", &tuned_on), ("seeds from 101", &reported_on)] {
+    for (what, drives) in [("seeds tuned on", &tuned_on), ("seeds from 1001", &reported_on)] {
         let [before, after] = [&start, &found].map(|x| judge(&bench, drives, x).unwrap_or_default());
         println!(
             "\n{what}: cost built in {:.3} s, found {:.3} s",

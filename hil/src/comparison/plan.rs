@@ -10,7 +10,9 @@ const STEP_RAD: f64 = 0.06;
 /// How much is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extent {
-    /// Seeds of roads and sensors, from 1.
+    /// First seed of roads and sensors.
+    pub first_seed: u64,
+    /// Number of seeds.
     pub seeds: u64,
     /// Duration of a drive straight ahead, s.
     pub straight_s: f64,
@@ -31,7 +33,8 @@ pub struct Group {
 
 impl Group {
     fn new(road: &'static str, extent: &Extent, case: impl Fn(u64) -> DriveCase) -> Self {
-        let cases: Vec<DriveCase> = (1..=extent.seeds).map(case).collect();
+        let seeds = extent.first_seed..extent.first_seed + extent.seeds;
+        let cases: Vec<DriveCase> = seeds.map(case).collect();
         let name = cases.first().map_or_else(String::new, |case| {
             let km_h = 3.6 * case.manoeuvre.initial_speed_m_s();
             format!("{} on {road}, {km_h:.0} km/h", case.manoeuvre_name())

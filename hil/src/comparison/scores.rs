@@ -262,6 +262,7 @@ mod tests {
     #[test]
     fn ratios_are_the_worst_of_their_roads() {
         let groups = groups(&Extent {
+            first_seed: 1,
             seeds: 2,
             straight_s: 10.0,
             quick: true,

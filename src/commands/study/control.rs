@@ -23,6 +23,9 @@ pub struct Args {
     /// Number of seeds of roads and sensors, 1 to 1000
     #[arg(long, value_name = "N", default_value_t = 8)]
     seeds: u64,
+    /// First seed, 1 to 1000000; the controller was tuned with seeds below 1000 in view
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    first_seed: u64,
     /// Duration of a drive straight ahead, s, 5 to 600; the first 3 s are not scored
     #[arg(long, value_name = "S", default_value_t = 20.0, allow_negative_numbers = true)]
     duration_s: f64,
@@ -68,6 +71,12 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
             args.seeds
         )));
     }
+    if !(1..=1_000_000).contains(&args.first_seed) {
+        return Err(Failure::new(format!(
+            "--first-seed {}: give a number from 1 to 1000000",
+            args.first_seed
+        )));
+    }
     if !(5.0..=600.0).contains(&args.duration_s) {
         return Err(Failure::new(format!(
             "--duration-s {}: give a value from 5 to 600",
@@ -103,6 +112,7 @@ fn comparison(args: &Args, bench: &Bench, records: &Records) -> Result<Compariso
         .collect::<Result<_, Failure>>()?;
     let settings = settings(controllers);
     let groups = groups(&Extent {
+        first_seed: args.first_seed,
         seeds: args.seeds,
         straight_s: args.duration_s,
         quick: args.quick,
@@ -202,6 +212,7 @@ fn write(out: &mut OutputDirectory, comparison: &Comparison, own: &Scores, table
             "valve_changes_per_km": own.valve_changes_per_km,
             "valve_life_changes": comparison::VALVE_LIFE_CHANGES,
             "valve_life_km": own.valve_life_km,
+            "first_seed": groups.first().and_then(|group| group.cases.first()).map(|case| case.seed),
             "seeds": groups.iter().map(|group| group.cases.len()).max(),
             "settings": settings.iter().map(Setting::name).collect::<Vec<_>>(),
             "means": means,

@@ -16,7 +16,8 @@
 //!
 //! The errors of the two bands are only weakly correlated, so that both together tell a bend sooner than each alone. A lane change
 //! crosses zero in between, hence 1.5 s. It also exceeds the bounds by far soon after its beginning, which a false decision hardly
-//! ever does, and so a false one costs little ride. The multiples were found by an optimiser (docs/controller.md).
+//! ever does, and so a false one costs little ride. docs/controller.md says where the multiples come
+//! from.
 
 use crate::estimate::Estimate;
 use crate::filter::{LowPass, at_least};
@@ -76,7 +77,7 @@ impl Default for Tuning {
     fn default() -> Self {
         Self {
             floor_m_s2: 0.5,        // measured: docs/controller.md
-            witness_multiple: 1.05, // found by an optimiser: docs/controller.md
+            witness_multiple: 1.05, // tuned: docs/controller.md
             plain_witness_multiple: 3.9,
             lift_off_m_s2: 0.67,
             own_multiple: 4.0,

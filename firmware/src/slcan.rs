@@ -7,6 +7,7 @@
 //! Nothing is lost on an emulated line, so there is no error to report. A line that is no frame is skipped.
 
 use crate::frame::Frame;
+use crc::{CRC_16_IBM_3740, Crc, NoTable};
 use embedded_can::StandardId;
 use stm32f4::stm32f405::{GPIOA, RCC, USART1};
 
@@ -14,10 +15,14 @@ use stm32f4::stm32f405::{GPIOA, RCC, USART1};
 const PLANT_ID: u32 = 0x1FFF_01E0;
 const OWN_ID: u32 = 0x1FFF_01E1;
 /// Kinds of such frames, in their first byte.
-const HELLO: u8 = 1;
-const TICK_DONE: u8 = 2;
-const END: u8 = 3;
-const TALLY: u8 = 4;
+const HELLO: u8 = 0x30;
+const TICK_DONE: u8 = 0x31;
+const END: u8 = 0x32;
+const LOSSES: u8 = 0x33;
+const TALLY: u8 = 0x34;
+/// Check value of such a frame over sender, session (four zeros: there is one board on the line), kind and content. Without a table,
+/// which would be longer than all else here.
+const CHECK: Crc<u16, NoTable> = Crc::<u16, NoTable>::new(&CRC_16_IBM_3740);
 /// Longest line that is read: `T`, eight digits, a length and eight bytes.
 const LONGEST: usize = 1 + 8 + 1 + 16;
 /// Rate of the line, bit/s.
@@ -29,8 +34,8 @@ pub struct Slcan {
     line: [u8; LONGEST],
     length: usize,
     /// Number of the tick that the plant has ended and that was not answered yet.
-    due: Option<u32>,
-    sent: u16,
+    due: Option<[u8; 3]>,
+    sent: u32,
     e2e_errors: u16,
 }
 
@@ -57,7 +62,7 @@ impl Slcan {
             sent: 0,
             e2e_errors: 0,
         };
-        line.write_sync([HELLO, 0, 0, 0, 0, 0, 0, 0]);
+        line.write_sync(HELLO, [0; 5]);
         line
     }
 
@@ -69,15 +74,16 @@ impl Slcan {
     /// Tells the plant that its tick is answered. The number of frames that have failed their end-to-end check is for the end of the run.
     pub fn end_tick(&mut self, e2e_errors: u32) {
         self.e2e_errors = u16::try_from(e2e_errors).unwrap_or(u16::MAX);
-        let Some(tick) = self.due.take() else { return };
-        let ([s0, s1], [t0, t1, t2, t3]) = (self.sent.to_le_bytes(), tick.to_le_bytes());
-        self.write_sync([TICK_DONE, 0, s0, s1, t0, t1, t2, t3]);
+        let Some([t0, t1, t2]) = self.due.take() else { return };
+        let [s0, s1, ..] = self.sent.to_le_bytes();
+        self.write_sync(TICK_DONE, [t0, t1, t2, s0, s1]);
     }
 
-    fn write_sync(&mut self, data: [u8; 8]) {
+    fn write_sync(&mut self, kind: u8, content: [u8; 5]) {
+        let ([c0, c1], [a, b, c, d, e]) = (check(OWN_ID, kind, content), content);
         self.write(b'T');
         self.write_hex(OWN_ID, 8);
-        self.write_data(8, data);
+        self.write_data(8, [kind, c0, c1, a, b, c, d, e]);
     }
 
     fn write_data(&mut self, length: u8, data: [u8; 8]) {
@@ -120,12 +126,16 @@ impl Slcan {
                 Some(Frame::received(StandardId::new(id as u16)?, length, data))
             }
             b'T' => {
-                let (id, _, [kind, _, _, _, t0, t1, t2, t3]) = parse(rest, 8)?;
+                let (id, _, [kind, c0, c1, a, b, c, d, e]) = parse(rest, 8)?;
+                if [c0, c1] != check(PLANT_ID, kind, [a, b, c, d, e]) {
+                    return None;
+                }
                 match (id, kind) {
-                    (PLANT_ID, TICK_DONE) => self.due = Some(u32::from_le_bytes([t0, t1, t2, t3])),
+                    (PLANT_ID, TICK_DONE) => self.due = Some([a, b, c]),
                     (PLANT_ID, END) => {
-                        let ([s0, s1], [e0, e1]) = (self.sent.to_le_bytes(), self.e2e_errors.to_le_bytes());
-                        self.write_sync([TALLY, 0, s0, s1, 0, 0, e0, e1]);
+                        let ([s0, s1, s2, s3], [e0, e1]) = (self.sent.to_le_bytes(), self.e2e_errors.to_le_bytes());
+                        self.write_sync(LOSSES, [0, 0, 0, e0, e1]);
+                        self.write_sync(TALLY, [s0, s1, s2, s3, 0]);
                     }
                     _ => {}
                 }
@@ -134,6 +144,15 @@ impl Slcan {
             _ => None,
         }
     }
+}
+
+/// Check value of a frame that keeps two nodes in step.
+fn check(id: u32, kind: u8, content: [u8; 5]) -> [u8; 2] {
+    let mut digest = CHECK.digest();
+    digest.update(&id.to_le_bytes());
+    digest.update(&[0, 0, 0, 0, kind]);
+    digest.update(&content);
+    digest.finalize().to_le_bytes()
 }
 
 /// Identifier, length and data of a line without its first letter.

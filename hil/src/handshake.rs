@@ -2,10 +2,11 @@
 //!
 //! Each repeats its `Hello` until it has received the other's and knows that its own was received.
 
+use std::hash::{BuildHasher, Hasher, RandomState};
 use std::time::{Duration, Instant};
 
 use crate::bus::{Bus, BusError};
-use crate::sync::{Role, Sync, Terms};
+use crate::sync::{Decoded, Role, Session, Sync, Terms};
 
 /// Why two nodes did not start a run together.
 #[derive(Debug, thiserror::Error)]
@@ -38,7 +39,7 @@ pub enum HandshakeError {
 /// Pause between two `Hello`s.
 const HELLO_PERIOD: Duration = Duration::from_millis(50);
 
-/// Finds the partner, whichever was started first.
+/// Finds the partner, whichever was started first. Returns the session, in which all further frames are.
 ///
 /// # Errors
 /// The partner did not answer within `patience`, wants another run, or the bus failed.
@@ -48,9 +49,11 @@ pub fn handshake(
     role: Role,
     terms: Terms,
     patience: Duration,
-) -> Result<(), HandshakeError> {
+) -> Result<Session, HandshakeError> {
     let partner = role.other();
     let started = Instant::now();
+    let mut session = Session::of(role, drawn());
+    let number = session.number(role);
     let (mut heard, mut is_heard) = (false, false);
     while !(heard && is_heard) {
         if started.elapsed() > patience {
@@ -60,15 +63,19 @@ pub fn handshake(
                 waited_s: patience.as_secs_f64(),
             });
         }
-        bus.send(&Sync::Hello { terms, heard }.encode(role))?;
+        bus.send(&Sync::Hello { terms, heard, number }.encode(role, session))?;
         let pause = Instant::now() + HELLO_PERIOD;
         while !(heard && is_heard) {
             let left = pause.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                break;
+            }
             let Some(frame) = bus.receive(left)? else { break };
-            let Some(Sync::Hello {
+            let Decoded::Partner(Sync::Hello {
                 terms: theirs,
                 heard: theirs_heard,
-            }) = Sync::decode(&frame, partner)
+                number: theirs_number,
+            }) = Sync::decode(&frame, partner, session)
             else {
                 continue;
             };
@@ -80,12 +87,17 @@ pub fn handshake(
             if theirs.strategy != terms.strategy {
                 return Err(differs("strategy"));
             }
-            if theirs.clock != terms.clock {
+            if theirs.real_time != terms.real_time {
                 return Err(differs("clock"));
             }
             if theirs.vehicle != terms.vehicle {
                 return Err(differs("vehicle"));
             }
+            // A node that is started again while this one waits has another number, and has not heard this one.
+            if heard && theirs_number != session.number(partner) {
+                (heard, is_heard) = (false, false);
+            }
+            session = session.with(partner, theirs_number);
             is_heard |= theirs_heard;
             if !std::mem::replace(&mut heard, true) {
                 break; // say so at once
@@ -93,8 +105,15 @@ pub fn handshake(
         }
     }
     // The partner may not know yet that its own `Hello` was received.
-    bus.send(&Sync::Hello { terms, heard: true }.encode(role))?;
-    Ok(())
+    let heard = true;
+    bus.send(&Sync::Hello { terms, heard, number }.encode(role, session))?;
+    Ok(session)
+}
+
+/// A number that another start of a node hardly has again. It is in no result. The standard library seeds its hash maps from the
+/// operating system's randomness.
+fn drawn() -> u16 {
+    RandomState::new().build_hasher().finish() as u16
 }
 
 #[cfg(test)]
@@ -105,17 +124,20 @@ mod tests {
     fn nodes_find_each_other_in_either_order() {
         let terms = Terms {
             strategy: 2,
-            clock: 0,
+            real_time: false,
             vehicle: 7,
         };
         for late in [Role::Plant, Role::Controller] {
             let (mut a, mut b) = crate::bus::in_process_pair();
             std::thread::scope(|scope| {
-                let early = scope
-                    .spawn(move || handshake(&mut a, "x", late.other(), terms, Duration::from_secs(20)).map(|()| a));
+                let early = scope.spawn(move || {
+                    let session = handshake(&mut a, "x", late.other(), terms, Duration::from_secs(20));
+                    // The end lives until the other node has read from it.
+                    (session, a)
+                });
                 std::thread::sleep(Duration::from_millis(120));
-                handshake(&mut b, "x", late, terms, Duration::from_secs(20)).unwrap();
-                early.join().unwrap().unwrap();
+                let session = handshake(&mut b, "x", late, terms, Duration::from_secs(20)).unwrap();
+                assert_eq!(early.join().unwrap().0.unwrap(), session);
             });
         }
     }
@@ -124,7 +146,7 @@ mod tests {
     fn a_node_alone_or_with_other_terms_says_so() {
         let terms = Terms {
             strategy: 2,
-            clock: 0,
+            real_time: false,
             vehicle: 7,
         };
         let (mut a, mut b) = crate::bus::in_process_pair();
@@ -137,14 +159,21 @@ mod tests {
         );
         for (others, what) in [
             (Terms { strategy: 1, ..terms }, "another strategy"),
-            (Terms { clock: 1, ..terms }, "another clock"),
+            (
+                Terms {
+                    real_time: true,
+                    ..terms
+                },
+                "another clock",
+            ),
             (Terms { vehicle: 8, ..terms }, "another vehicle"),
         ] {
             let hello = Sync::Hello {
                 terms: others,
                 heard: false,
+                number: 5,
             };
-            b.send(&hello.encode(Role::Controller)).unwrap();
+            b.send(&hello.encode(Role::Controller, Session::default())).unwrap();
             let other = handshake(&mut a, "x", Role::Plant, terms, Duration::from_secs(9)).unwrap_err();
             assert!(other.to_string().contains(what), "{other}");
         }

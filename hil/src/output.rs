@@ -3,7 +3,7 @@
 //! They are written through [`OutputDirectory`], so that all of them appear or none. Between two runs of one scenario only wall-clock
 //! figures differ; everything else has the same bytes.
 
-use oleo_controller::ValveCommand;
+use oleo_controller::{Mode, ValveCommand};
 use oleo_interface::tick::TICK_S;
 use oleo_report::{OutputDirectory, OutputError};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
@@ -15,8 +15,8 @@ use crate::clock::Lateness;
 use crate::metrics::Metrics;
 use crate::record::command_hash;
 use crate::run::Outcome;
-use crate::scenario::Scenario;
 use crate::scenario::check::{Figure, Metric};
+use crate::scenario::{Clock, Scenario};
 use crate::time_series;
 
 /// Outcome of one check.
@@ -71,6 +71,8 @@ pub struct Summary {
     pub bus_frames_lost: u64,
     /// Number of frames with other identifiers, which are ignored.
     pub foreign_frames: u64,
+    /// Number of frames that keep two nodes in step but belonged to another run; they are ignored.
+    pub foreign_sync_frames: u64,
     /// Number of frames that failed their end-to-end check, at either end.
     pub e2e_errors: u64,
     /// Fraction of time for which a wire of 500 kbit/s would be busy, 0 to 1.
@@ -114,6 +116,10 @@ pub struct Summary {
     pub ticks_to_recover: Option<f64>,
     /// Tick in which a silent controller was taken to be gone.
     pub controller_lost_at_tick: Option<u32>,
+    /// Number of times that the controller's process was started again and let in.
+    pub controller_rejoined: u32,
+    /// How the bus failed, if that has ended the run.
+    pub bus_failure: Option<String>,
     /// Whether the run was stopped from outside.
     pub interrupted: bool,
     /// In real time: how each node met its deadlines.
@@ -224,6 +230,7 @@ impl Summary {
             frames_lost: metrics.frames_lost,
             bus_frames_lost: metrics.bus_frames_lost,
             foreign_frames: outcome.plant.foreign_frames,
+            foreign_sync_frames: outcome.plant.foreign_sync_frames,
             e2e_errors: metrics.e2e_errors,
             bus_load_500k: metrics.wires[0].utilisation,
             bus_load_1m: metrics.wires[1].utilisation,
@@ -245,6 +252,8 @@ impl Summary {
             ticks_to_closed: number(Metric::TicksToClosed),
             ticks_to_recover: number(Metric::TicksToRecover),
             controller_lost_at_tick: outcome.controller_lost_at,
+            controller_rejoined: outcome.plant.controller_rejoined,
+            bus_failure: outcome.bus_failure.as_ref().map(ToString::to_string),
             interrupted: outcome.interrupted,
             lateness: outcome
                 .lateness
@@ -254,13 +263,13 @@ impl Summary {
                     lateness: lateness.clone(),
                 })
                 .collect(),
-            checks: check_outcomes(scenario, metrics),
+            checks: check_outcomes(scenario, outcome, metrics),
         }
     }
 
-    /// Whether every check is met.
+    /// Whether every check is met, and the bus has not failed.
     pub fn passed(&self) -> bool {
-        self.checks.iter().all(|check| check.passed)
+        self.bus_failure.is_none() && self.checks.iter().all(|check| check.passed)
     }
 }
 
@@ -275,8 +284,46 @@ fn valve_switches(metrics: &Metrics) -> [u64; 12] {
     edges
 }
 
-fn check_outcomes(scenario: &Scenario, metrics: &Metrics) -> Vec<CheckOutcome> {
-    let outcome = |check: &crate::scenario::Check| {
+/// Largest fraction of ticks in which a node may overrun its deadline in real time.
+const MOST_OVERRUNS: f64 = 0.01;
+/// Number of ticks from which on a run in real time must have left start-up: one second.
+const STARTED_TICKS: u32 = 200;
+
+/// What a run in real time must do whatever its scenario checks. Otherwise it has shown nothing.
+fn real_time_outcomes(outcome: &Outcome, metrics: &Metrics) -> Vec<CheckOutcome> {
+    let mut outcomes: Vec<CheckOutcome> = outcome
+        .lateness
+        .iter()
+        .map(|(role, late)| {
+            let fraction = late.overruns as f64 / late.ticks.max(1) as f64;
+            CheckOutcome {
+                name: format!(
+                    "overruns of the {} <= {} % of ticks",
+                    role.name(),
+                    100.0 * MOST_OVERRUNS
+                ),
+                passed: fraction <= MOST_OVERRUNS,
+                figure: format!("{} %", oleo_report::significant(100.0 * fraction, 3)),
+            }
+        })
+        .collect();
+    if metrics.ticks >= STARTED_TICKS {
+        let started = metrics.account.iter().flatten().any(|(mode, _)| *mode != Mode::StartUp);
+        outcomes.push(CheckOutcome {
+            name: "controller leaves start-up".into(),
+            passed: started,
+            figure: if started { "yes" } else { "no" }.into(),
+        });
+    }
+    outcomes
+}
+
+fn check_outcomes(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics) -> Vec<CheckOutcome> {
+    let of_clock = match scenario.clock {
+        Clock::RealTime => real_time_outcomes(outcome, metrics),
+        Clock::Lockstep => Vec::new(),
+    };
+    let of_check = |check: &crate::scenario::Check| {
         let figure = metrics.figure(check.metric);
         CheckOutcome {
             name: check.name(),
@@ -284,7 +331,7 @@ fn check_outcomes(scenario: &Scenario, metrics: &Metrics) -> Vec<CheckOutcome> {
             figure: figure.to_string(),
         }
     };
-    scenario.checks.iter().map(outcome).collect()
+    scenario.checks.iter().map(of_check).chain(of_clock).collect()
 }
 
 fn mode_entries(metrics: &Metrics) -> Vec<ModeEntry> {
@@ -359,7 +406,7 @@ fn candump(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics) -> Vec<u8>
         _ => "vcan0",
     };
     let trace = &outcome.plant.trace;
-    let real_time = scenario.clock == crate::scenario::Clock::RealTime;
+    let real_time = scenario.clock == Clock::RealTime;
     let mut timed: Vec<(u64, usize)> = match real_time {
         true => trace
             .iter()

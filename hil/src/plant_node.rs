@@ -10,10 +10,12 @@ use oleo_plant_sim::course::{Ending, NotFinite, Track};
 
 use crate::Frame;
 use crate::bus::{Bus, BusError, FaultInjector, Trace};
+use crate::deadline::Deadline;
 use crate::instruments::{Instruments, StuckValves};
+use crate::newcomer::Newcomer;
 use crate::record::{Recording, Sample};
 use crate::scenario::Scenario;
-use crate::sync::{Role, Sync};
+use crate::sync::{Decoded, Role, Session, Sync, Terms};
 use crate::vehicle::Vehicle;
 
 /// How the wait for the controller ended.
@@ -21,7 +23,9 @@ use crate::vehicle::Vehicle;
 pub enum Answer {
     /// The controller has done its tick.
     Done,
-    /// Nothing came for as long as was allowed.
+    /// The controller was started again and has been let in; this tick has no answer.
+    Rejoined,
+    /// No answer came within the time that was allowed.
     Nothing,
 }
 
@@ -35,9 +39,22 @@ pub struct PlantNode<B> {
     ticks_without_command: u32,
     recording: Recording,
     tick: u32,
-    controller_sent: u16,
-    tally: (u16, u16),
+    session: Session,
+    /// What a controller that is started again must want; `None` where it cannot be.
+    terms: Option<Terms>,
+    newcomer: Newcomer,
+    rejoined: u32,
+    strangers: u64,
+    /// Messages that had been sent and received when the session began.
+    before: (u64, u64),
+    controller_sent: u64,
+    controller_lost: u32,
+    controller_e2e_errors: u16,
+    ended: bool,
 }
+
+/// The part of a tick's number that a `TickDone` carries.
+const TICK_MASK: u32 = 0xFF_FFFF;
 
 /// Number of frames in a tick, both directions together, for which the trace has memory.
 const FRAMES_PER_TICK: usize = 8;
@@ -60,9 +77,22 @@ impl<B: Bus> PlantNode<B> {
             stuck: StuckValves::new(&scenario.faults),
             ticks_without_command: 0,
             tick: 0,
+            session: Session::default(),
+            terms: None,
+            newcomer: Newcomer::default(),
+            rejoined: 0,
+            strangers: 0,
+            before: (0, 0),
             controller_sent: 0,
-            tally: (0, 0),
+            controller_lost: 0,
+            controller_e2e_errors: 0,
+            ended: false,
         }
+    }
+
+    /// Takes part in a session whose controller is another process, which may be started again.
+    pub fn join(&mut self, session: Session, terms: Terms) {
+        (self.session, self.terms) = (session, Some(terms));
     }
 
     /// Number of completed ticks.
@@ -84,30 +114,74 @@ impl<B: Bus> PlantNode<B> {
 
     /// Tells the controller that all frames of this tick are on the bus.
     pub fn send_done(&mut self) -> Result<(), BusError> {
-        let sent = self.bus.inner().messages_sent() as u16;
-        self.bus
-            .send(&Sync::TickDone { tick: self.tick, sent }.encode(Role::Plant))
+        let sent = self.sent() as u16;
+        self.say(Sync::TickDone { tick: self.tick, sent })
     }
 
-    /// Takes frames until the controller has done this tick, or until none came for `wait`.
+    /// Number of messages sent in this session.
+    fn sent(&self) -> u64 {
+        self.bus.inner().messages_sent() - self.before.0
+    }
+
+    fn say(&mut self, sync: Sync) -> Result<(), BusError> {
+        self.bus.send(&sync.encode(Role::Plant, self.session))
+    }
+
+    /// Takes frames until the controller has done this tick, but for no longer than `wait`, whatever else comes meanwhile.
     pub fn listen(&mut self, wait: Duration) -> Result<Answer, BusError> {
-        while let Some(frame) = self.bus.receive(wait)? {
-            match Sync::decode(&frame, Role::Controller) {
-                Some(Sync::TickDone { tick, sent }) => {
-                    self.controller_sent = sent;
-                    if tick == self.tick {
-                        return Ok(Answer::Done);
+        let mut deadline = Deadline::new(wait);
+        while let Some(left) = deadline.left() {
+            let Some(frame) = self.bus.receive(left)? else { break };
+            match Sync::decode(&frame, Role::Controller, self.session) {
+                Decoded::Partner(sync) => {
+                    if let Some(answer) = self.heed(sync)? {
+                        return Ok(answer);
                     }
                 }
-                Some(Sync::Tally { sent, lost, e2e_errors }) => {
-                    self.controller_sent = sent;
-                    self.tally = (lost, e2e_errors);
-                    return Ok(Answer::Done);
-                }
-                _ => self.take(&frame),
+                Decoded::Stranger => self.strangers += 1,
+                Decoded::Other => self.take(&frame),
             }
         }
         Ok(Answer::Nothing)
+    }
+
+    /// Takes a frame of the exchange. Returns the answer that it completes.
+    fn heed(&mut self, sync: Sync) -> Result<Option<Answer>, BusError> {
+        match sync {
+            Sync::TickDone { tick, sent } if tick == self.tick & TICK_MASK => {
+                // The count is sent modulo 65536, and far fewer messages are in a tick.
+                let more = sent.wrapping_sub(self.controller_sent as u16);
+                self.controller_sent += u64::from(more);
+                self.newcomer.dismiss();
+                return Ok(Some(Answer::Done));
+            }
+            Sync::Losses { lost, e2e_errors } if self.ended => {
+                (self.controller_lost, self.controller_e2e_errors) = (lost, e2e_errors);
+            }
+            Sync::Tally { sent } if self.ended => {
+                self.controller_sent = sent;
+                return Ok(Some(Answer::Done));
+            }
+            Sync::Hello { terms, number, .. } if Some(terms) == self.terms => {
+                if number != self.session.controller && self.newcomer.hello(number) {
+                    self.newcomer.dismiss();
+                    self.session.controller = number;
+                    self.rejoined += 1;
+                    let trace = self.bus.inner();
+                    self.before = (trace.messages_sent(), trace.messages_received());
+                    self.controller_sent = 0;
+                    let number = self.session.plant;
+                    self.say(Sync::Hello {
+                        terms,
+                        heard: true,
+                        number,
+                    })?;
+                    return Ok(Some(Answer::Rejoined));
+                }
+            }
+            _ => self.strangers += 1,
+        }
+        Ok(None)
     }
 
     fn take(&mut self, frame: &Frame) {
@@ -123,7 +197,10 @@ impl<B: Bus> PlantNode<B> {
     pub fn advance(&mut self) -> Result<(), NotFinite> {
         let command = self.end.end_of_tick();
         self.ticks_without_command = match self.end.output().ticks_without_command() {
-            0 => 0,
+            0 => {
+                self.newcomer.dismiss();
+                0
+            }
             _ => self.ticks_without_command.saturating_add(1),
         };
         let energised = self.stuck.energised(self.tick, command);
@@ -147,8 +224,9 @@ impl<B: Bus> PlantNode<B> {
 
     /// Says that the run is over. The controller answers with its tally, which is an [`Answer::Done`].
     pub fn send_end(&mut self) -> Result<(), BusError> {
-        let sent = self.bus.inner().messages_sent() as u16;
-        self.bus.send(&Sync::End { sent }.encode(Role::Plant))
+        self.ended = true;
+        let sent = self.sent();
+        self.say(Sync::End { sent })
     }
 
     /// Number of ticks since a command was last obeyed.
@@ -164,15 +242,17 @@ impl<B: Bus> PlantNode<B> {
     /// Ends the node and returns what it knows.
     pub fn into_result(mut self) -> PlantResult {
         let trace = self.bus.inner_mut();
-        let received = trace.messages_received() as u16;
-        let (lost_by_controller, e2e_by_controller) = self.tally;
-        let bus_lost = u64::from(self.controller_sent.wrapping_sub(received)) + u64::from(lost_by_controller);
+        let received = trace.messages_received() - self.before.1;
+        let lost_here = self.controller_sent.saturating_sub(received);
+        let bus_lost = lost_here + u64::from(self.controller_lost);
         PlantResult {
             frames_sent: trace.messages_sent() + trace.messages_received(),
             bus_frames_lost: bus_lost,
             foreign_frames: trace.foreign(),
+            foreign_sync_frames: self.strangers,
+            controller_rejoined: self.rejoined,
             trace: trace.take_entries(),
-            e2e_errors: u64::from(self.end.output().errors()) + u64::from(e2e_by_controller),
+            e2e_errors: u64::from(self.end.output().errors()) + u64::from(self.controller_e2e_errors),
             injected: self.bus.counts(),
             counters: self.bus.counters(),
             ending: self.vehicle.ending(),
@@ -195,6 +275,10 @@ pub struct PlantResult {
     pub bus_frames_lost: u64,
     /// Number of frames with other identifiers.
     pub foreign_frames: u64,
+    /// Number of frames of [`crate::sync`] that belonged to another run, or to no moment of this one. They were ignored.
+    pub foreign_sync_frames: u64,
+    /// Number of times that the controller was started again during the run.
+    pub controller_rejoined: u32,
     /// Number of frames that failed their end-to-end check, at either end.
     pub e2e_errors: u64,
     /// What the fault injector did to frames.

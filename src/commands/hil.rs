@@ -12,7 +12,7 @@ use oleo_hil::metrics::Metrics;
 use oleo_hil::output::{self, Summary};
 use oleo_hil::record::command_hash;
 use oleo_hil::run::{self, ControllerOutcome, Outcome};
-use oleo_hil::scenario::{self, Clock, Scenario};
+use oleo_hil::scenario::{self, Clock, FaultKind, Scenario};
 use oleo_hil::{page, sync::Role};
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::{CourseSettings, ManoeuvreKind};
@@ -40,7 +40,9 @@ Examples:
   oleo hil --node controller --bus socketcan:vcan0          run the two nodes as two processes,
   oleo hil --node plant --bus socketcan:vcan0 --out run     which may be started in either order
 
-Exit status: 0 if all checks are met, 1 if a check failed or the controller lost the plant, 2 if an input was bad.")]
+Exit status: 0 if all checks are met; 1 if a check failed, the bus failed during the run or the controller lost the plant; 2 if an input
+was bad. A run in real time also fails if a node overran its deadline in more than 1 % of the ticks, or if the controller did not leave
+start-up within a second.")]
 pub struct Args {
     /// Name of a built-in scenario, or path of a scenario file
     #[arg(long, value_name = "FILE|NAME", default_value = "belgian")]
@@ -154,6 +156,16 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
 /// Whether a scenario drives what the controller in a firmware image is configured for.
 fn suits_image(scenario: &Scenario) -> Result<(), Failure> {
     const DEFAULT: &str = "defender110";
+    if scenario
+        .faults
+        .iter()
+        .any(|fault| fault.kind == FaultKind::ControllerRestarted)
+    {
+        return Err(Failure::new(format!(
+            "--firmware: the scenario {} restarts the controller, which the emulated board cannot do in step: take another scenario",
+            scenario.name
+        )));
+    }
     let differs = if scenario.strategy != Strategy::default() {
         "strategy"
     } else if [&scenario.vehicle, &scenario.handling, &scenario.strut].map(String::as_str) != [DEFAULT; 3] {
@@ -265,6 +277,13 @@ fn report(scenario: &Scenario, outcome: &Outcome, staged: Option<OutputDirectory
         let folder = out.commit()?;
         say(&format!("{}\n", folder.join("report.html").display()));
     }
+    if let Some(failure) = &summary.bus_failure {
+        let _ = writeln!(
+            std::io::stderr(),
+            "error: the run ended after {} ticks: {failure}",
+            summary.ticks
+        );
+    }
     Ok(if summary.passed() {
         ExitCode::SUCCESS
     } else {
@@ -311,14 +330,22 @@ fn controller(scenario: &Scenario, out: Option<PathBuf>) -> Result<ExitCode, Fai
         out.json("summary.json", &controller_summary(&ended))?;
         out.commit()?;
     }
-    let Some((last, taken)) = ended.plant_lost else {
+    let Some(lost) = ended.plant_lost else {
         return Ok(ExitCode::SUCCESS);
     };
-    let answer = match taken {
+    let answer = match lost.safe_after {
         Some(ticks) => format!("the controller was in mode safe with all valves closed {ticks} ticks later"),
         None => "the controller was still in mode start-up with all valves closed".into(),
     };
-    let _ = writeln!(std::io::stderr(), "the plant fell silent after tick {last}: {answer}");
+    let last = lost.last_tick;
+    let _ = if lost.restarted {
+        writeln!(
+            std::io::stderr(),
+            "the plant was started again after tick {last}, which is another run: {answer}; start this node again too"
+        )
+    } else {
+        writeln!(std::io::stderr(), "the plant fell silent after tick {last}: {answer}")
+    };
     Ok(ExitCode::FAILURE)
 }
 
@@ -351,8 +378,8 @@ fn controller_summary(ended: &ControllerOutcome) -> ControllerSummary {
         frames_lost: ended.frames_lost,
         e2e_errors: ended.e2e_errors,
         modes: ended.account.iter().map(entry).collect(),
-        plant_lost_after_tick: ended.plant_lost.map(|(last, _)| last),
-        ticks_to_safe: ended.plant_lost.and_then(|(_, taken)| taken),
+        plant_lost_after_tick: ended.plant_lost.map(|lost| lost.last_tick),
+        ticks_to_safe: ended.plant_lost.and_then(|lost| lost.safe_after),
     }
 }
 

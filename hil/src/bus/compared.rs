@@ -10,7 +10,7 @@ use oleo_controller::{Configuration, Node};
 
 use super::{Bus, BusCounters, BusError};
 use crate::Frame;
-use crate::sync::{Role, Sync};
+use crate::sync::{Decoded, Role, Session, Sync};
 
 /// One end of a bus whose other end is a controller.
 pub struct Compared<B> {
@@ -40,7 +40,9 @@ impl<B: Bus> Bus for Compared<B> {
     fn send(&mut self, frame: &Frame) -> Result<(), BusError> {
         if let Some(id) = frame.standard_id() {
             self.node.receive(id, frame.data());
-        } else if let Some(Sync::TickDone { tick, .. }) = Sync::decode(frame, Role::Plant) {
+        } else if let Decoded::Partner(Sync::TickDone { tick, .. }) =
+            Sync::decode(frame, Role::Plant, Session::default())
+        {
             self.tick = tick;
             let (_, frames) = self.node.tick();
             self.expected.extend(frames.into_iter().map(Frame::from));
@@ -53,7 +55,9 @@ impl<B: Bus> Bus for Compared<B> {
         let Some(frame) = received else { return Ok(None) };
         let expected = if frame.standard_id().is_some() {
             self.expected.pop_front()
-        } else if let Some(Sync::TickDone { .. }) = Sync::decode(&frame, Role::Controller) {
+        } else if let Decoded::Partner(Sync::TickDone { .. }) =
+            Sync::decode(&frame, Role::Controller, Session::default())
+        {
             // All frames of the tick have come.
             match self.expected.pop_front() {
                 None => return Ok(received),
@@ -92,7 +96,7 @@ mod tests {
         let mut node = Node::new(configuration);
         for tick in 0..50 {
             near.send(&Frame::whole(standard(0x110), [tick as u8; 8])).unwrap();
-            near.send(&Sync::TickDone { tick, sent: 0 }.encode(Role::Plant))
+            near.send(&Sync::TickDone { tick, sent: 0 }.encode(Role::Plant, Session::default()))
                 .unwrap();
             while let Some(frame) = far.receive(Duration::ZERO).unwrap() {
                 if let Some(id) = frame.standard_id() {
@@ -105,7 +109,7 @@ mod tests {
                 far.send(&if tick == 49 { frame.with_flipped_bit(17) } else { frame })
                     .unwrap();
             }
-            far.send(&Sync::TickDone { tick, sent: 0 }.encode(Role::Controller))
+            far.send(&Sync::TickDone { tick, sent: 0 }.encode(Role::Controller, Session::default()))
                 .unwrap();
             let mut received = Ok(None);
             while let Ok(Some(_)) | Ok(None) = received {

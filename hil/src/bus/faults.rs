@@ -279,7 +279,7 @@ mod tests {
     use super::*;
     use crate::bus::{InProcess, in_process_pair};
     use crate::frame::standard;
-    use crate::sync::{Role, Sync};
+    use crate::sync::{Role, Session, Sync};
 
     fn with(disturbance: Disturbance, target: Target, probability: f64) -> (FaultInjector<InProcess>, InProcess) {
         let (a, b) = in_process_pair();
@@ -302,7 +302,8 @@ mod tests {
         let tick = |tick| {
             bus.begin_tick(tick);
             bus.send(&sensor(tick)).unwrap();
-            bus.send(&Sync::TickDone { tick, sent: 0 }.encode(Role::Plant)).unwrap();
+            let done = Sync::TickDone { tick, sent: 0 };
+            bus.send(&done.encode(Role::Plant, Session::default())).unwrap();
             let arrivals = std::iter::from_fn(|| far.receive(Duration::ZERO).unwrap());
             arrivals.filter(|frame| !crate::sync::is_sync(frame)).collect()
         };

@@ -156,7 +156,8 @@ mod tests {
         let frame = Frame::whole(standard(0x110), [7; 8]);
         a.begin_tick(3);
         a.send(&frame).unwrap();
-        a.send(&sync::Sync::End { sent: 0 }.encode(sync::Role::Plant)).unwrap();
+        let end = sync::Sync::End { sent: 0 }.encode(sync::Role::Plant, sync::Session::default());
+        a.send(&end).unwrap();
         b.send(&frame).unwrap();
         a.begin_tick(4);
         assert_eq!(a.receive(Duration::ZERO).unwrap(), Some(frame));

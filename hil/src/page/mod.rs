@@ -139,6 +139,20 @@ pub fn outcome_table(summary: &Summary) -> Table {
     if let Some(tick) = summary.controller_lost_at_tick {
         row("controller counted as lost in tick", tick.to_string(), "");
     }
+    if summary.controller_rejoined > 0 {
+        row(
+            "controller started again",
+            summary.controller_rejoined.to_string(),
+            "times",
+        );
+    }
+    if summary.foreign_sync_frames > 0 {
+        let count = summary.foreign_sync_frames.to_string();
+        row("sync frames of another run, ignored", count, "");
+    }
+    if let Some(failure) = &summary.bus_failure {
+        row("the run was ended by the bus", failure.clone(), "");
+    }
     for node in &summary.lateness {
         let late = &node.lateness;
         row(

@@ -55,6 +55,7 @@ fn fault_label(fault: &Fault) -> &'static str {
         FaultKind::Message { .. } => "messages disturbed",
         FaultKind::NodeKilled(Role::Plant) => "plant silent",
         FaultKind::NodeKilled(Role::Controller) => "controller silent",
+        FaultKind::ControllerRestarted => "controller in reset",
         FaultKind::Sensor { .. } | FaultKind::SensorsSwapped { .. } => "sensor fault",
         FaultKind::SolenoidStuck { .. } => "solenoid stuck",
     }

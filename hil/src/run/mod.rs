@@ -9,8 +9,10 @@
 //! | real time | both (2 threads) or one | nobody: each keeps its deadlines |
 //!
 //! The first three give the same commands, bit for bit. A partner that stays silent for the scenario's `partner_timeout_s` is
-//! taken to be gone. The plant then drives on with de-energised valves, or ends if the scenario says so; the controller ticks
-//! on until its mode is safe, and ends.
+//! taken to be gone, whatever else is on the bus. The plant then drives on with de-energised valves, or ends if the scenario says so; the
+//! controller ticks on until its mode is safe, and ends. A controller that is started again while the plant waits for it is let in; a
+//! plant that is started again wants another run, so its old controller ends. A bus that fails ends the run, and what was driven
+//! until then is kept.
 
 mod controller_loop;
 mod error;
@@ -34,6 +36,7 @@ use crate::plant_node::PlantNode;
 use crate::scenario::{Clock, Scenario};
 use crate::sync::{Role, Terms};
 use crate::vehicle::Vehicle;
+pub use controller_loop::PlantLost;
 pub use error::RunError;
 pub use outcome::{ControllerOutcome, Outcome};
 pub use parameters::Parameters;
@@ -63,7 +66,12 @@ pub fn both(scenario: &Scenario, vehicle: Vehicle, threads: usize, watch: Watch)
     let (plant_end, controller_end) = both_ends(scenario)?;
     let real_time = scenario.clock == Clock::RealTime;
     let mut plant = PlantNode::new(plant_end, scenario, vehicle, real_time);
-    let mut controller = ControllerNode::new(controller_end, configuration(scenario)?, scenario.ticks as usize);
+    let mut controller = ControllerNode::new(
+        controller_end,
+        configuration(scenario)?,
+        &scenario.faults,
+        scenario.ticks as usize,
+    );
     let started = Instant::now();
     let mut lateness = Vec::new();
     let end = if real_time {
@@ -90,7 +98,7 @@ pub fn both(scenario: &Scenario, vehicle: Vehicle, threads: usize, watch: Watch)
                 controller.send_done()
             }
             Heard::End => controller.send_tally(),
-            Heard::Nothing => Ok(()),
+            Heard::Nothing | Heard::Restarted => Ok(()),
         };
         plant_loop::in_lockstep(&mut plant, scenario, &mut turn, watch)?
     };
@@ -105,13 +113,9 @@ pub fn plant_alone(scenario: &Scenario, vehicle: Vehicle, watch: Watch) -> Resul
     let bus = scenario.bus.open()?.ok_or(RunError::NoOtherProcess)?;
     let real_time = scenario.clock == Clock::RealTime;
     let mut plant = PlantNode::new(bus, scenario, vehicle, real_time);
-    handshake(
-        plant.bus(),
-        &scenario.bus.to_string(),
-        Role::Plant,
-        terms(scenario)?,
-        PATIENCE,
-    )?;
+    let (name, terms) = (scenario.bus.to_string(), terms(scenario)?);
+    let session = handshake(plant.bus(), &name, Role::Plant, terms, PATIENCE)?;
+    plant.join(session, terms);
     let started = Instant::now();
     let end = if real_time {
         plant_loop::in_real_time(&mut plant, scenario, started + TICK, watch)?
@@ -141,14 +145,10 @@ pub fn with_firmware(scenario: &Scenario, vehicle: Vehicle, image: &Path, watch:
 /// See [`RunError`].
 pub fn controller_alone(scenario: &Scenario) -> Result<ControllerOutcome, RunError> {
     let bus = scenario.bus.open()?.ok_or(RunError::NoOtherProcess)?;
-    let mut controller = ControllerNode::new(bus, configuration(scenario)?, scenario.ticks as usize);
-    handshake(
-        controller.bus(),
-        &scenario.bus.to_string(),
-        Role::Controller,
-        terms(scenario)?,
-        PATIENCE,
-    )?;
+    let mut controller = ControllerNode::new(bus, configuration(scenario)?, &scenario.faults, scenario.ticks as usize);
+    let name = scenario.bus.to_string();
+    let session = handshake(controller.bus(), &name, Role::Controller, terms(scenario)?, PATIENCE)?;
+    controller.join(session);
     let started = Instant::now();
     let (lateness, plant_lost) = if scenario.clock == Clock::RealTime {
         let (lateness, lost) =
@@ -193,7 +193,7 @@ fn terms(scenario: &Scenario) -> Result<Terms, RunError> {
     let description = format!("{:?}", Parameters::read(scenario)?.description());
     Ok(Terms {
         strategy: scenario.strategy as u8,
-        clock: scenario.clock as u8,
+        real_time: scenario.clock == Clock::RealTime,
         vehicle: Crc::<u16>::new(&CRC_16_IBM_3740).checksum(description.as_bytes()),
     })
 }
@@ -201,13 +201,15 @@ fn terms(scenario: &Scenario) -> Result<Terms, RunError> {
 #[cfg(test)]
 mod course_tests;
 #[cfg(test)]
+mod resilience_tests;
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::record::command_hash;
     use crate::scenario;
     use std::time::Duration;
 
-    fn short(name: &str, ticks: u32) -> Scenario {
+    pub(super) fn short(name: &str, ticks: u32) -> Scenario {
         Scenario {
             ticks,
             ..scenario::named(name).unwrap()
@@ -276,7 +278,7 @@ mod tests {
         };
         let (a, b) = in_process_pair();
         let mut plant = PlantNode::new(a, &scenario, vehicle(&scenario).unwrap(), false);
-        let mut controller = ControllerNode::new(b, configuration(&scenario).unwrap(), 200);
+        let mut controller = ControllerNode::new(b, configuration(&scenario).unwrap(), &[], 200);
         let mut turns = 0;
         let mut turn = || {
             turns += 1;
@@ -303,7 +305,7 @@ mod tests {
         };
         let (a, b) = in_process_pair();
         let mut plant = PlantNode::new(a, &scenario, vehicle(&scenario).unwrap(), false);
-        let mut controller = ControllerNode::new(b, configuration(&scenario).unwrap(), 200);
+        let mut controller = ControllerNode::new(b, configuration(&scenario).unwrap(), &[], 200);
         for _ in 0..100 {
             plant.send_sensors().unwrap();
             plant.send_done().unwrap();
@@ -314,9 +316,9 @@ mod tests {
             plant.advance().unwrap();
         }
         let lost = controller_loop::in_lockstep(&mut controller, &scenario).unwrap();
-        let (last, taken) = lost.unwrap();
-        assert_eq!(last, 99);
-        assert!(taken.is_some_and(|ticks| ticks <= 5), "{taken:?}");
+        let lost = lost.unwrap();
+        assert_eq!((lost.last_tick, lost.restarted), (99, false));
+        assert!(lost.safe_after.is_some_and(|ticks| ticks <= 5), "{lost:?}");
         assert_eq!(controller.words().last(), Some(&0));
     }
 }

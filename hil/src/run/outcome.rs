@@ -2,6 +2,8 @@
 
 use oleo_controller::{FaultCode, Mode};
 
+use super::controller_loop::PlantLost;
+use crate::bus::BusError;
 use crate::clock::Lateness;
 use crate::plant_node::PlantResult;
 use crate::sync::Role;
@@ -19,6 +21,8 @@ pub struct Outcome {
     pub controller_lost_at: Option<u32>,
     /// Whether the run was stopped from outside.
     pub interrupted: bool,
+    /// How the bus failed, if that has ended the run.
+    pub bus_failure: Option<BusError>,
 }
 
 /// Result of a run of the controller's node alone.
@@ -28,9 +32,8 @@ pub struct ControllerOutcome {
     pub words: Vec<u16>,
     /// Each change of the mode: its tick, the mode and its first cause.
     pub account: Vec<(u32, Mode, FaultCode)>,
-    /// If the plant went silent: its last tick, and the number of ticks from there to a safe mode, `None` if it was not
-    /// reached.
-    pub plant_lost: Option<(u32, Option<u32>)>,
+    /// How the plant was lost, if it was.
+    pub plant_lost: Option<PlantLost>,
     /// Number of frames that failed their end-to-end check.
     pub e2e_errors: u64,
     /// Number of frames that were sent and did not arrive.

@@ -24,6 +24,7 @@ pub(super) struct PlantEnd {
     stopped: Instant,
     pub(super) controller_lost_at: Option<u32>,
     interrupted: bool,
+    bus_failure: Option<BusError>,
     lateness: Option<Lateness>,
 }
 
@@ -41,7 +42,24 @@ impl PlantEnd {
             lateness,
             controller_lost_at: self.controller_lost_at,
             interrupted: self.interrupted,
+            bus_failure: self.bus_failure,
         }
+    }
+}
+
+/// Says that the run is over, to a controller that is there, and takes its answer. A bus that fails now loses no result.
+fn part<B: Bus>(
+    plant: &mut PlantNode<B>,
+    wait: Duration,
+    partner: &mut dyn FnMut() -> Result<(), BusError>,
+) -> Option<BusError> {
+    let parted = plant
+        .send_end()
+        .and_then(|()| partner())
+        .and_then(|()| plant.listen(wait));
+    match parted {
+        Ok(_) | Err(BusError::Closed { .. }) => None,
+        Err(error) => Some(error),
     }
 }
 
@@ -53,7 +71,7 @@ pub(super) fn in_lockstep<B: Bus>(
     watch: Watch,
 ) -> Result<PlantEnd, RunError> {
     let wait = partner_timeout(scenario);
-    let (mut controller_lost_at, mut interrupted) = (None, false);
+    let (mut controller_lost_at, mut interrupted, mut bus_failure) = (None, false, None);
     while plant.tick() < scenario.ticks && !plant.is_over() {
         // If the other end of the bus was closed, the controller is gone too.
         let exchange = |plant: &mut PlantNode<B>, partner: &mut dyn FnMut() -> Result<(), BusError>| {
@@ -64,12 +82,16 @@ pub(super) fn in_lockstep<B: Bus>(
         };
         if controller_lost_at.is_none() {
             match exchange(plant, partner) {
-                Ok(Answer::Done) => {}
+                Ok(Answer::Done | Answer::Rejoined) => {}
                 Ok(Answer::Nothing) | Err(BusError::Closed { .. }) => {
                     controller_lost_at = Some(plant.tick());
                     if scenario.on_controller_loss == OnControllerLoss::End {
                         break;
                     }
+                }
+                Err(error) if plant.tick() > 0 => {
+                    bus_failure = Some(error);
+                    break;
                 }
                 Err(error) => return Err(error.into()),
             }
@@ -81,15 +103,14 @@ pub(super) fn in_lockstep<B: Bus>(
         }
     }
     let stopped = Instant::now();
-    if controller_lost_at.is_none() {
-        plant.send_end()?;
-        partner()?;
-        plant.listen(wait)?;
+    if controller_lost_at.is_none() && bus_failure.is_none() {
+        bus_failure = part(plant, wait, partner);
     }
     Ok(PlantEnd {
         stopped,
         controller_lost_at,
         interrupted,
+        bus_failure,
         lateness: None,
     })
 }
@@ -102,20 +123,25 @@ pub(super) fn in_real_time<B: Bus>(
 ) -> Result<PlantEnd, RunError> {
     let mut clock = RealTime::new(begin, TICK, scenario.ticks as usize);
     let silence = (scenario.partner_timeout_s / TICK_S) as u32;
-    let (mut controller_lost_at, mut interrupted) = (None, false);
+    let (mut controller_lost_at, mut is_gone) = (None, false);
+    let (mut interrupted, mut bus_failure) = (false, None);
     while plant.tick() < scenario.ticks && !plant.is_over() {
         clock.wait(plant.tick());
         // The command that answered the last tick holds from here on: one tick of latency, as on a real bus.
         match plant.listen(Duration::ZERO).and_then(|_| plant.send_sensors()) {
-            Ok(()) => {}
-            Err(BusError::Closed { .. }) => controller_lost_at = controller_lost_at.or(Some(plant.tick())),
+            Ok(()) => is_gone = plant.ticks_without_command() >= silence.max(1),
+            Err(BusError::Closed { .. }) => is_gone = true,
+            Err(error) if plant.tick() > 0 => {
+                bus_failure = Some(error);
+                break;
+            }
             Err(error) => return Err(error.into()),
         }
-        plant.advance()?;
-        if plant.ticks_without_command() >= silence.max(1) {
+        if is_gone {
             controller_lost_at = controller_lost_at.or(Some(plant.tick()));
         }
-        if controller_lost_at.is_some() && scenario.on_controller_loss == OnControllerLoss::End {
+        plant.advance()?;
+        if is_gone && scenario.on_controller_loss == OnControllerLoss::End {
             break;
         }
         if plant.tick().is_multiple_of(WATCH_TICKS) && !watch(plant.tick()) {
@@ -124,14 +150,14 @@ pub(super) fn in_real_time<B: Bus>(
         }
     }
     let stopped = Instant::now();
-    if controller_lost_at.is_none() {
-        plant.send_end()?;
-        plant.listen(partner_timeout(scenario))?;
+    if !is_gone && bus_failure.is_none() {
+        bus_failure = part(plant, partner_timeout(scenario), &mut || Ok(()));
     }
     Ok(PlantEnd {
         stopped,
         controller_lost_at,
         interrupted,
+        bus_failure,
         lateness: Some(clock.lateness()),
     })
 }

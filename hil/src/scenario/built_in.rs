@@ -22,6 +22,7 @@ built_in!(
     "corrupt-burst",
     "killed-plant",
     "killed-controller",
+    "restarted-controller",
     "lossy-bus",
     "nan",
     "out-of-range",

@@ -2,7 +2,8 @@
 //!
 //! Faults of messages (and of whole nodes, which others know by their messages only) become [`Injection`]s of the bus; faults of sensors and
 //! solenoids happen inside the plant. All of them live on the plant's side, so that a run in one process and one in two
-//! suffer the same.
+//! suffer the same. The one exception is a controller that restarts: that happens in the controller's node, which for this needs the
+//! scenario too.
 
 use oleo_interface::{Corner, PressurePoint, Valve};
 
@@ -114,6 +115,8 @@ pub enum FaultKind {
     },
     /// A node is gone: nothing of it is heard, and a plant without its node does not drive its valves.
     NodeKilled(Role),
+    /// The controller is silent for a while and then starts anew, as after a reset: it knows nothing of what was before.
+    ControllerRestarted,
     /// A sensor reports a wrong value.
     Sensor {
         /// The sensor that is affected.
@@ -164,9 +167,10 @@ impl Fault {
             } => (target, probability, disturbance),
             FaultKind::NodeKilled(Role::Plant) => (Target::All, 1.0, Disturbance::Drop),
             FaultKind::NodeKilled(Role::Controller) => (Target::Controller, 1.0, Disturbance::Drop),
-            FaultKind::Sensor { .. } | FaultKind::SensorsSwapped { .. } | FaultKind::SolenoidStuck { .. } => {
-                return None;
-            }
+            FaultKind::ControllerRestarted
+            | FaultKind::Sensor { .. }
+            | FaultKind::SensorsSwapped { .. }
+            | FaultKind::SolenoidStuck { .. } => return None,
         };
         let (from_tick, until_tick) = (self.from_tick, self.until_tick);
         Some(Injection {

@@ -27,6 +27,7 @@ enum Kind {
     Replay,
     Masquerade,
     NodeKilled,
+    NodeRestarted,
     SensorStuck,
     SensorNan,
     SensorOutOfRange,
@@ -143,6 +144,15 @@ impl FaultEntry {
                 Some(Node::Controller) => Role::Controller,
                 None => return Err(self.needs("node", "\"plant\"")),
             }),
+            Kind::NodeRestarted => match self.node.take() {
+                Some(Node::Controller) if self.for_s.is_some() => FaultKind::ControllerRestarted,
+                Some(Node::Controller) => return Err(self.needs("for_s", "0.2")),
+                Some(Node::Plant) => {
+                    let what = "is \"plant\", which begins another run when it restarts: must be \"controller\"";
+                    return Err(InvalidValue::new("node", what));
+                }
+                None => return Err(self.needs("node", "\"controller\"")),
+            },
             Kind::SensorStuck => self.sensor(SensorFault::Stuck)?,
             Kind::SensorNan => self.sensor(SensorFault::NotANumber)?,
             Kind::SensorOutOfRange => {

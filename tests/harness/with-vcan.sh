@@ -78,8 +78,17 @@ mkdir "$work/uml"; : > "$work/stdout"; : > "$work/stderr"
 memory=$work
 free_mib=$(df --output=avail --block-size=1M /dev/shm 2>/dev/null | tail -n 1)
 if [ "${free_mib:-0}" -gt 1100 ] && ! findmnt -no OPTIONS /dev/shm | grep -q noexec; then memory=/dev/shm; fi
+# On processors with AMX the kernel needs a library at its side (see there). OLEO_UML_XSTATE=1 takes it along anywhere.
+preload=
+if [ -n "${OLEO_UML_XSTATE:-}" ] || grep -qw amx_tile /proc/cpuinfo; then
+    preload=$work/uml_xstate.so
+    if ! cc -shared -fPIC -O2 -o "$preload" "$(dirname "$0")/uml_xstate.c" 2> "$work/cc"; then
+        echo "with-vcan: this processor has AMX, and there is no C compiler for User-Mode Linux's cure: $(head -n 1 "$work/cc")" >&2
+        exit "$SKIP"
+    fi
+fi
 # `setsid` makes the kernel and all its processes one group, so that a hang ends whole.
-TMPDIR=$memory setsid linux.uml mem=1G root=/dev/root rootfstype=hostfs rootflags=/ rw "init=$work/init" "uml_dir=$work/uml/" \
+LD_PRELOAD=$preload TMPDIR=$memory setsid linux.uml mem=1G root=/dev/root rootfstype=hostfs rootflags=/ rw "init=$work/init" "uml_dir=$work/uml/" \
     con=null con0=null,fd:1 quiet < /dev/null > "$work/console" 2>&1 &
 kernel=$!
 trap 'kill -KILL -- "-$kernel" 2>/dev/null; exit 130' INT TERM

@@ -7,14 +7,10 @@ libtest "bad recordings" cargo test --locked --release --test diagnose_bad_recor
 libtest "dampers and drives" cargo test --locked --release --test diagnose_mechanisms
 
 if [ ! -d $folder ]; then
-    skip "recordings" "no folder $folder beside this checkout"
+    must_not_skip "recordings" "no folder $folder beside this checkout"
     exit 0
 fi
 echo "   $(find $folder -name '*.csv' | wc -l) recordings, $(find $folder -name model.toml | wc -l) models"
-if [ -f tests/recordings.rs ]; then
-    libtest "recordings" cargo test --locked --release --test recordings -- --show-output
-else
-    skip "recordings" "no tests/recordings.rs yet"
-fi
+libtest "recordings" cargo test --locked --release --test recordings -- --show-output
 libtest "real hardware" cargo test --locked --release --test diagnose_real -- --show-output
 exit 0

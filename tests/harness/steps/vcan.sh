@@ -8,7 +8,19 @@ OLEO_VCAN_BY=namespace "$with_vcan" true > /dev/null 2>&1 || packages user-mode-
 
 # shellcheck disable=SC2016
 loopback='candump -n 1 vcan0 > "$0" & sleep 0.3; cansend vcan0 123#DEADBEEF; wait $!; grep "DE AD BE EF" "$0"'
-check "frames cross vcan0" "$with_vcan" bash -c "$loopback" "$OLEO_LOGS/candump" || exit 0
+if "$with_vcan" true > "$OLEO_LOGS/vcan.log" 2>&1; then
+    check "frames cross vcan0" "$with_vcan" bash -c "$loopback" "$OLEO_LOGS/candump" || exit 0
+else
+    must_not_skip "vcan" "$(tail -n 1 "$OLEO_LOGS/vcan.log")"
+    exit 0
+fi
+
+# Where the processor has AMX, the emulated kernel needs a library. Elsewhere it must do no harm.
+if ! OLEO_VCAN_BY=namespace "$with_vcan" true > /dev/null 2>&1; then
+    # shellcheck disable=SC2016
+    check "frames cross vcan0 with the library for AMX" \
+        env OLEO_UML_XSTATE=1 "$with_vcan" bash -c "$loopback" "$OLEO_LOGS/candump"
+fi
 
 # Built out here, run in there: the emulated kernel has no network and one processor.
 cargo test --locked --release --test vcan --no-run > "$OLEO_LOGS/vcan.build.log" 2>&1

@@ -591,3 +591,38 @@ fn laws_of_seal_gas_and_chamber() {
     (0..1000).for_each(|_| _ = strut.advance(0.0, 0.1, SOFT));
     close(gas(&strut) - before, 1e-6, 1e-3);
 }
+
+#[test]
+fn laws_over_time_and_acceleration() {
+    let static_pa = absolute(slow_pressure(&bare(), 0.0, STIFF));
+    let with = |law: UnlistedLaw| {
+        let mut model = bare();
+        model.effects.unlisted = vec![law];
+        Strut::at_rest(&model, STIFF).unwrap()
+    };
+    // Nothing moves, so the gas pressure falls as the law says.
+    let time = LawArgument::Time;
+    let mut leaking = with(law(LawPlace::Accumulator1, time, [0.0, 10.0], [1.0, 0.9]));
+    let out = (0..100).map(|_| leaking.advance(0.0, 0.1, STIFF)).last().unwrap();
+    close(absolute(out.pressure_pa[0]), 0.9 * static_pa, 1e-4);
+
+    let mut losing = with(law(LawPlace::MainChamberLoss, time, [0.0, 10.0], [0.0, 2e-8]));
+    let before = losing.gas()[0].volume_m3;
+    (0..100).for_each(|_| _ = losing.advance(0.0, 0.1, STIFF));
+    close(losing.gas()[0].volume_m3 - before, 1e-7, 2e-3);
+
+    // 12 kg between load cell and oil, at 3 m/s2.
+    let mass = law(
+        LawPlace::MainSeal,
+        LawArgument::Acceleration,
+        [-100.0, 100.0],
+        [-1200.0, 1200.0],
+    );
+    let (mut heavy, mut light) = (with(mass), Strut::at_rest(&bare(), STIFF).unwrap());
+    for k in 0..20 {
+        let (from, to) = (0.01 * f64::from(k), 0.01 * f64::from(k + 1));
+        let (at, from, to) = (1.5 * to * to, 3.0 * from, 3.0 * to);
+        let [heavy, light] = [&mut heavy, &mut light].map(|s| s.advance_with_speeds(at, from, to, 0.01, STIFF).force_n);
+        close(heavy - light, 36.0, 1e-9);
+    }
+}

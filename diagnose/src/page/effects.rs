@@ -110,6 +110,8 @@ fn argument(depends_on: LawArgument) -> (&'static str, &'static str) {
     match depends_on {
         LawArgument::Displacement => ("displacement", "m"),
         LawArgument::Speed => ("speed", "m/s"),
+        LawArgument::Acceleration => ("acceleration", "m/s2"),
+        LawArgument::Time => ("time since the start", "s"),
         LawArgument::P1 => ("p1", "Pa"),
         LawArgument::Flow => ("flow", "m3/s"),
         LawArgument::PressureDrop => ("pressure drop", "Pa"),
@@ -125,10 +127,10 @@ fn value(law: &UnlistedLaw) -> (&'static str, &'static str) {
         LawPlace::MainChamber => ("volume", "m3"),
         LawPlace::MainChamberLoss => ("flow out of the chamber", "m3/s"),
         LawPlace::Path1 | LawPlace::Path2 => ("pressure drop", "Pa"),
-        LawPlace::BesidePack1 | LawPlace::BesidePack2 if law.depends_on == LawArgument::Displacement => {
-            ("flow coefficient", "m3/s/sqrt(Pa)")
+        LawPlace::BesidePack1 | LawPlace::BesidePack2 if law.depends_on == LawArgument::PressureDrop => {
+            ("flow", "m3/s")
         }
-        LawPlace::BesidePack1 | LawPlace::BesidePack2 => ("flow", "m3/s"),
+        LawPlace::BesidePack1 | LawPlace::BesidePack2 => ("flow coefficient", "m3/s/sqrt(Pa)"),
         LawPlace::Pack1 | LawPlace::Pack2 => ("factor on the pressure drop", ""),
         LawPlace::Valve1 | LawPlace::Valve2 | LawPlace::Valve3 | LawPlace::Valves => ("factor on the flow", ""),
         LawPlace::Accumulator1 | LawPlace::Accumulator2 => ("factor on the gas pressure", ""),

@@ -13,7 +13,7 @@ use super::gas::GasState;
 use super::model::StrutModel;
 use super::motion::{Cubic, Segment};
 use super::network::{LastSolution, Network, StageEnd, State};
-use super::rod_forces::{RodForces, RodState};
+use super::rod_forces::{Acceleration, RodForces, RodState};
 use super::terms::{DampingFade, Mount, ValveTransition, total_response_s};
 use super::valve::ValveMotion;
 
@@ -64,6 +64,7 @@ pub struct Strut {
     time_s: f64,
     actuator_m: f64,
     speed_m_s: f64,
+    acceleration: Acceleration,
     /// Displacement that the speeds given to the network add up to. The difference to the true one is made good in the
     /// next step, so that no oil is gained or lost over an hour.
     supplied_m: f64,
@@ -116,6 +117,7 @@ impl Strut {
             time_s: 0.0,
             actuator_m: displacement_m,
             speed_m_s: 0.0,
+            acceleration: Acceleration::default(),
             supplied_m: displacement_m,
             state,
             last: LastSolution::default(),
@@ -180,6 +182,7 @@ impl Strut {
         self.time_s = start_s + duration_s;
         self.actuator_m = displacement_m;
         self.speed_m_s = to_m_s;
+        self.acceleration.follow(to_m_s - from_m_s, duration_s);
         self.output()
     }
 
@@ -233,6 +236,7 @@ impl Strut {
         let mut at = StageEnd {
             duration_s: hg,
             since_last_s: hg,
+            time_s: now_s + hg,
             displacement_m: middle.0 - bent_m,
             speed_m_s: middle.1 + owed_m_s,
             opening: self.openings_at(now_s + hg),
@@ -241,6 +245,7 @@ impl Strut {
         let first = self.network.stage(&self.state, &at, &mut self.last);
         let base = self.state.blend(&first.state, (1.0 - GAMMA) / GAMMA);
         at.since_last_s = h - hg;
+        at.time_s = now_s + h;
         at.displacement_m = end.0 - bent_m;
         at.speed_m_s = end.1 + owed_m_s;
         // Sampled a nanosecond before the end: an opening that steps there belongs to the next step.
@@ -268,8 +273,10 @@ impl Strut {
         RodState {
             displacement_m: self.actuator_m,
             speed_m_s: self.speed_m_s,
+            acceleration: self.acceleration,
             p1_pa,
             oil_force_n: self.network.chamber.area_m2 * p1_pa,
+            time_s: self.time_s,
         }
     }
 

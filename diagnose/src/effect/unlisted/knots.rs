@@ -70,3 +70,10 @@ pub const CHAMBER_PA: &[f64] = &[
 ];
 /// Gas volume over the static one.
 pub const RELATIVE_VOLUME: &[f64] = &[0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0];
+/// Acceleration, m/s2: a line.
+pub const ACCELERATION_M_S2: &[f64] = &[-100.0, 100.0];
+/// Time since the start, s: dense enough for an exponential of 0.1 s and more.
+pub const TIME_S: &[f64] = &[
+    0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0, 40.0, 56.0, 80.0,
+    110.0, 160.0, 220.0, 320.0, 450.0, 640.0, 900.0, 1300.0, 1800.0, 2600.0, 3600.0,
+];

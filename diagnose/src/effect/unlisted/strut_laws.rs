@@ -3,12 +3,17 @@
 //! A new row is a new law to search for; a new dependence or place is one of plant-sim's ([`LawArgument`], [`LawPlace`]).
 
 use oleo_interface::Valve;
-use oleo_plant_sim::strut::LawArgument::{Displacement, Flow, P1, PressureDrop, RelativeVolume, Speed};
+use oleo_plant_sim::strut::LawArgument::{
+    Acceleration, Displacement, Flow, P1, PressureDrop, RelativeVolume, Speed, Time,
+};
 use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
 
-use super::forms::{Added, Bell, Choke, Factor, Form, Grid, Level, Rising};
+use super::forms::{
+    Added, Bell, Choke, Factor, Form, Grid, Level, Proportional, Rising, SettlingAdded, SettlingFactor, SettlingLevel,
+};
 use super::knots::{
-    CHAMBER_PA, FLOW_M3_S, GROOVE_M, P1_PA, PACK_PA, RELATIVE_VOLUME, SPEED_M_S, STROKE_M, TRAVEL_M, VALVE_PA,
+    ACCELERATION_M_S2, CHAMBER_PA, FLOW_M3_S, GROOVE_M, P1_PA, PACK_PA, RELATIVE_VOLUME, SPEED_M_S, STROKE_M, TIME_S,
+    TRAVEL_M, VALVE_PA,
 };
 use crate::effect::candidate::Candidate;
 use crate::vocabulary::{Branch, EffectId, Site};
@@ -227,6 +232,86 @@ const LAWS: &[Law] = &[
         RELATIVE_VOLUME,
         0.01,
     ),
+    law(
+        "force over acceleration",
+        Site::MainSeal,
+        (LawPlace::MainSeal, Acceleration),
+        &Proportional("moving_mass_kg"),
+        ACCELERATION_M_S2,
+        2.0,
+    ),
+    law(
+        "force over time",
+        Site::MainSeal,
+        (LawPlace::MainSeal, Time),
+        &SettlingAdded("end_force_N"),
+        TIME_S,
+        20.0,
+    ),
+    law(
+        "friction over time",
+        Site::MainSeal,
+        (LawPlace::MainSealFriction, Time),
+        &SettlingLevel("end_friction_N"),
+        TIME_S,
+        20.0,
+    ),
+    law(
+        "oil lost over time",
+        Site::MainChamber,
+        (LawPlace::MainChamberLoss, Time),
+        &SettlingLevel("end_flow_m3_s"),
+        TIME_S,
+        1e-9,
+    ),
+    law(
+        "opening beside pack 1 over time",
+        Site::Path(Branch::First),
+        (LawPlace::BesidePack1, Time),
+        &SettlingLevel("end_flow_coefficient"),
+        TIME_S,
+        1e-7,
+    ),
+    law(
+        "opening beside pack 2 over time",
+        Site::Path(Branch::Second),
+        (LawPlace::BesidePack2, Time),
+        &SettlingLevel("end_flow_coefficient"),
+        TIME_S,
+        1e-7,
+    ),
+    law(
+        "strength of pack 1 over time",
+        Site::Path(Branch::First),
+        (LawPlace::Pack1, Time),
+        &SettlingFactor,
+        TIME_S,
+        0.05,
+    ),
+    law(
+        "strength of pack 2 over time",
+        Site::Path(Branch::Second),
+        (LawPlace::Pack2, Time),
+        &SettlingFactor,
+        TIME_S,
+        0.05,
+    ),
+    law(
+        "gas pressure over time, accumulator 1",
+        Site::Accumulator(Branch::First),
+        (LawPlace::Accumulator1, Time),
+        &SettlingFactor,
+        TIME_S,
+        0.01,
+    ),
+    law(
+        "gas pressure over time, accumulator 2",
+        Site::Accumulator(Branch::Second),
+        (LawPlace::Accumulator2, Time),
+        &SettlingFactor,
+        TIME_S,
+        0.01,
+    ),
 ];
 
 impl Law {
@@ -246,7 +331,7 @@ pub fn candidates() -> Vec<Candidate> {
     let candidate = |law: &Law| {
         Candidate::new(EffectId::Unlisted, law.site.clone(), law.form.parameters(&law.grid()))
             .labelled(law.label)
-            .starting_at(law.form.starts())
+            .starting_at(law.form.starts(&law.grid()))
             .in_place_of(EffectId::Unlisted)
     };
     LAWS.iter().map(candidate).collect()

@@ -22,7 +22,7 @@ struct Law {
     value: fn(f64, f64, &Drawn, f64) -> f64,
 }
 
-const LAWS: [Law; 7] = [
+const LAWS: [Law; 12] = [
     Law {
         site: Site::Path(Branch::First),
         place: LawPlace::Path1,
@@ -72,6 +72,41 @@ const LAWS: [Law; 7] = [
         end: 1.3e7,
         value: saturating_valve,
     },
+    Law {
+        site: Site::MainSeal,
+        place: LawPlace::MainSeal,
+        depends_on: LawArgument::Acceleration,
+        end: 100.0,
+        value: moving_mass,
+    },
+    Law {
+        site: Site::MainChamber,
+        place: LawPlace::MainChamberLoss,
+        depends_on: LawArgument::Time,
+        end: 60.0,
+        value: external_leak,
+    },
+    Law {
+        site: Site::Path(Branch::First),
+        place: LawPlace::Pack1,
+        depends_on: LawArgument::Time,
+        end: 60.0,
+        value: clogging_pack,
+    },
+    Law {
+        site: Site::Accumulator(Branch::First),
+        place: LawPlace::Accumulator1,
+        depends_on: LawArgument::Time,
+        end: 60.0,
+        value: leaking_gas,
+    },
+    Law {
+        site: Site::Accumulator(Branch::Second),
+        place: LawPlace::Accumulator2,
+        depends_on: LawArgument::Time,
+        end: 60.0,
+        value: leaking_gas,
+    },
 ];
 
 /// Pressure drop over flow squared, Pa: 3 MPa at 2 l/s at most.
@@ -100,6 +135,26 @@ fn groove(displacement: f64, _end: f64, drawn: &Drawn, amount: f64) -> f64 {
 /// Fraction left of a flow over the root of the drop, which approaches a constant one.
 fn saturating_valve(drop: f64, end: f64, _drawn: &Drawn, amount: f64) -> f64 {
     1.0 / (1.0 + 30.0 * amount * drop.abs() / end).sqrt()
+}
+
+/// Force over acceleration, N: a mass of 60 kg at most between load cell and oil.
+fn moving_mass(acceleration: f64, _end: f64, _drawn: &Drawn, amount: f64) -> f64 {
+    amount * 60.0 * acceleration
+}
+
+/// Flow out of the strut over time, m3/s, through a crack that opens in a drawn time: 2e-7 at most.
+fn external_leak(time: f64, end: f64, drawn: &Drawn, amount: f64) -> f64 {
+    amount * 2e-7 * (time.max(0.0) / (end * (0.1 + drawn.shape[0]))).min(1.0)
+}
+
+/// Factor on the drop of a pack over time: it clogs at a constant rate, to twice the drop within a minute at most.
+fn clogging_pack(time: f64, end: f64, _drawn: &Drawn, amount: f64) -> f64 {
+    1.0 + amount * time.max(0.0) / end
+}
+
+/// Factor on a gas pressure over time: gas that escapes at a rate in proportion to what is left, half within a minute at most.
+fn leaking_gas(time: f64, end: f64, _drawn: &Drawn, amount: f64) -> f64 {
+    libm::exp(-0.7 * amount * time.max(0.0) / end)
 }
 
 /// How many laws there are to draw from.

@@ -62,15 +62,11 @@ impl Chamber {
         }
     }
 
-    /// Flow that the piston supplies to the chamber at a speed (m/s), less what the chamber loses at the gauge pressure
-    /// from which the stage starts, m3/s.
+    /// Flow that the piston supplies to the chamber at a speed (m/s), less what the chamber loses at the time (s) and at the
+    /// gauge pressure from which the stage starts, m3/s.
     #[inline(always)]
-    pub fn supply_m3_s(&self, speed_m_s: f64, p1_pa: f64) -> f64 {
-        let supply = self.area_m2 * speed_m_s;
-        match self.laws.loss(p1_pa) {
-            Some(loss) => supply - loss,
-            None => supply,
-        }
+    pub fn supply_m3_s(&self, speed_m_s: f64, p1_pa: f64, time_s: f64) -> f64 {
+        self.area_m2 * speed_m_s - self.laws.loss(p1_pa, time_s)
     }
 
     /// Volume that the chamber holds at a gauge pressure beyond what it holds at static pressure, m3, and its derivative.

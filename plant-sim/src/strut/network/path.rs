@@ -35,6 +35,7 @@ pub(super) struct Path {
 /// Where a path starts from in a stage, and what does not change while the stage is solved.
 pub(super) struct PathStart<'a> {
     duration_s: f64,
+    time_s: f64,
     gas: GasState,
     shear: f64,
     /// What the pack's drop is divided by.
@@ -120,10 +121,11 @@ impl Path {
         let bypass = at.opening[which.bypass_valve()] * self.valve_coefficient;
         PathStart {
             duration_s: at.duration_s,
+            time_s: at.time_s,
             gas: which.of(base.gas),
             shear: which.of(base.shear),
-            weakening: self.fade.weakening(which.of(base.heat_j)) * self.laws.weakening(at.displacement_m),
-            beside_pack: bypass + self.leak_coefficient + self.laws.groove(at.displacement_m),
+            weakening: self.fade.weakening(which.of(base.heat_j)) * self.laws.weakening(at.displacement_m, at.time_s),
+            beside_pack: bypass + self.leak_coefficient + self.laws.groove(at.displacement_m, at.time_s),
             bypass,
             transition_pa,
             real,
@@ -153,7 +155,8 @@ impl Path {
     pub fn answer_to_flow(&self, start: &PathStart<'_>, flow: f64, flow_slope: f64) -> PathAnswer {
         let step = self.gas.implicit(start.gas, start.duration_s, flow, start.real);
         let (mut oil_pa, mut oil_slope) = (step.pressure.gauge().pa(), step.pressure_by_flow);
-        if let Some(factor) = self.laws.gas_factor(step.state.volume_m3 / self.static_gas_m3) {
+        let relative_volume = step.state.volume_m3 / self.static_gas_m3;
+        if let Some(factor) = self.laws.gas_factor(relative_volume, start.time_s) {
             oil_pa = Absolute(factor * step.pressure.pa()).gauge().pa();
             oil_slope *= factor;
         }

@@ -72,7 +72,7 @@ impl Network {
         inverse_c3: f64,
         last: &mut LastSolution,
     ) -> Stage {
-        let supply = self.chamber.supply_m3_s(at.speed_m_s, base.p1_pa);
+        let supply = self.chamber.supply_m3_s(at.speed_m_s, base.p1_pa, at.time_s);
         let explained = last.explained::<CONNECTED>(supply);
         let [mut d1, mut d2] = last.predicted::<CONNECTED>(explained, at.since_last_s);
         let [path1, path2] = &self.paths;

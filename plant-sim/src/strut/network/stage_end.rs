@@ -9,6 +9,8 @@ pub(in crate::strut) struct StageEnd {
     pub duration_s: f64,
     /// Time since the end of the stage that was solved before, s.
     pub since_last_s: f64,
+    /// Time since the start, s.
+    pub time_s: f64,
     /// Displacement of the strut, m.
     pub displacement_m: f64,
     /// Speed of the strut, m/s.

@@ -14,7 +14,7 @@ impl Form for Bell {
         ]
     }
 
-    fn starts(&self) -> Vec<Vec<f64>> {
+    fn starts(&self, _grid: &Grid) -> Vec<Vec<f64>> {
         [-0.03, 0.0, 0.03].map(|x| vec![3e-7, x, 0.012]).to_vec()
     }
 

@@ -13,7 +13,7 @@ impl Form for Choke {
         ]
     }
 
-    fn starts(&self) -> Vec<Vec<f64>> {
+    fn starts(&self, _grid: &Grid) -> Vec<Vec<f64>> {
         vec![vec![3e-7, 1.0], vec![1e-6, 1.0]]
     }
 

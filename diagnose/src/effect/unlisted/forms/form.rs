@@ -29,7 +29,7 @@ pub trait Form: Sync {
     fn parameters(&self, grid: &Grid) -> Vec<Parameter>;
 
     /// Starting points beside "not there": laws that bend far from straight are also tried where they show.
-    fn starts(&self) -> Vec<Vec<f64>> {
+    fn starts(&self, _grid: &Grid) -> Vec<Vec<f64>> {
         vec![]
     }
 

@@ -7,6 +7,8 @@
 //! | `level` | is added and never negative | the value at each knot |
 //! | `factor` | multiplies what is believed; one at rest | logarithmic rises from knot to knot |
 //! | `bell` | is added around one argument | height, position, half width |
+//! | `proportional` | is added and is proportional to its argument | the value at an argument of one |
+//! | `settling` | is added or multiplies, and settles with time | its end, time constant |
 //! | `choke` | multiplies what is believed, and falls with the size of its argument | inverse argument, exponent |
 
 mod added;
@@ -15,8 +17,10 @@ mod choke;
 mod factor;
 mod form;
 mod level;
+mod proportional;
 mod rises;
 mod rising;
+mod settling;
 
 #[cfg(test)]
 mod tests;
@@ -27,4 +31,6 @@ pub use choke::Choke;
 pub use factor::Factor;
 pub use form::{Form, Grid};
 pub use level::Level;
+pub use proportional::Proportional;
 pub use rising::Rising;
+pub use settling::{SettlingAdded, SettlingFactor, SettlingLevel};

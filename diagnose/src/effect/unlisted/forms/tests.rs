@@ -47,11 +47,48 @@ fn a_choke_lets_half_pass_where_its_argument_is_the_inverse() {
 
 #[test]
 fn each_form_has_as_many_numbers_as_its_starts() {
-    let forms: [&dyn Form; 6] = [&Added, &Bell, &Choke, &Factor, &Level, &Rising];
+    let forms: [&dyn Form; 10] = [
+        &Added,
+        &Bell,
+        &Choke,
+        &Factor,
+        &Level,
+        &Proportional("mass_kg"),
+        &Rising,
+        &SettlingAdded("force_N"),
+        &SettlingFactor,
+        &SettlingLevel("flow_m3_s"),
+    ];
     for form in forms {
         let count = form.parameters(&GRID).len();
-        assert!(form.starts().iter().all(|start| start.len() == count));
+        assert!(form.starts(&GRID).iter().all(|start| start.len() == count));
         let absent: Vec<f64> = form.parameters(&GRID).iter().map(|p| p.start).collect();
         assert_eq!(form.values(&GRID, &absent).len(), KNOTS.len());
     }
+}
+
+#[test]
+fn what_settles_has_two_thirds_of_its_end_after_its_time_constant() {
+    const TIMES: &[f64] = &[0.0, 1.0, 5.0, 1000.0];
+    let grid = Grid {
+        knots: TIMES,
+        at_rest: 0.0,
+        visible: 1.0,
+    };
+    let added = SettlingAdded("force_N").values(&grid, &[-30.0, 5.0]);
+    assert_eq!(added[0], 0.0);
+    assert!((added[2] + 30.0 * (1.0 - libm::exp(-1.0))).abs() < 1e-12 && (added[3] + 30.0).abs() < 1e-12);
+    let factor = SettlingFactor.values(&grid, &[libm::log(0.5), 5.0]);
+    assert!(factor[0] == 1.0 && (factor[3] - 0.5).abs() < 1e-12);
+    // A time constant far beyond the recording is a constant rate.
+    let drift = SettlingLevel("flow_m3_s").values(&grid, &[3.0, 3000.0]);
+    assert!((drift[2] / drift[1] - 5.0).abs() < 5e-3);
+}
+
+#[test]
+fn what_is_proportional_goes_through_the_origin() {
+    assert_eq!(
+        Proportional("mass_kg").values(&GRID, &[2.0]),
+        [-4.0, -2.0, 0.0, 2.0, 6.0]
+    );
 }

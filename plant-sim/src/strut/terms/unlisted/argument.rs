@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The measured quantity that an unmodelled law depends on.
+/// The quantity that an unmodelled law depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LawArgument {
@@ -10,6 +10,10 @@ pub enum LawArgument {
     Displacement,
     /// Speed of the strut, m/s, compression positive.
     Speed,
+    /// Acceleration of the strut, m/s2, compression positive.
+    Acceleration,
+    /// Time since the start, s: what leaks, warms or drifts.
+    Time,
     /// Gauge pressure p1 of the main chamber, Pa.
     P1,
     /// Flow of the path, m3/s, out of the main chamber positive.

@@ -5,11 +5,12 @@ use super::law::{UnlistedLaw, law_at};
 use super::place::LawPlace;
 use crate::strut::characteristic::Characteristic;
 
-/// The laws of the main chamber over p1 (gauge, Pa).
+/// The laws of the main chamber over p1 (gauge, Pa) and time (s).
 #[derive(Debug, Clone, Default)]
 pub(in crate::strut) struct ChamberLaws {
     volume: Option<Characteristic>,
     loss: Option<Characteristic>,
+    loss_in_time: Option<Characteristic>,
 }
 
 impl ChamberLaws {
@@ -18,6 +19,7 @@ impl ChamberLaws {
         Self {
             volume: law_at(laws, LawPlace::MainChamber, LawArgument::P1),
             loss: law_at(laws, LawPlace::MainChamberLoss, LawArgument::P1),
+            loss_in_time: law_at(laws, LawPlace::MainChamberLoss, LawArgument::Time),
         }
     }
 
@@ -27,10 +29,11 @@ impl ChamberLaws {
         self.volume.as_ref().map(|law| law.at(p1_pa, &mut 0))
     }
 
-    /// Flow lost at a gauge pressure, m3/s, if there is such a law.
+    /// Flow lost at a gauge pressure and a time, m3/s.
     #[inline]
-    pub fn loss(&self, p1_pa: f64) -> Option<f64> {
-        self.loss.as_ref().map(|law| law.value(p1_pa))
+    pub fn loss(&self, p1_pa: f64, time_s: f64) -> f64 {
+        let by = |law: &Option<Characteristic>, argument| law.as_ref().map_or(0.0, |law| law.value(argument));
+        by(&self.loss, p1_pa) + by(&self.loss_in_time, time_s)
     }
 }
 
@@ -40,16 +43,18 @@ mod tests {
 
     #[test]
     fn each_law_reads_its_own_table() {
-        let law = |place, value: [f64; 2]| UnlistedLaw {
+        let law = |place, depends_on, value: [f64; 2]| UnlistedLaw {
             place,
-            depends_on: LawArgument::P1,
+            depends_on,
             argument: vec![0.0, 1e7],
             value: value.to_vec(),
         };
-        let laws = ChamberLaws::of(&[law(LawPlace::MainChamber, [0.0, 1e-5])]);
+        let laws = ChamberLaws::of(&[law(LawPlace::MainChamber, LawArgument::P1, [0.0, 1e-5])]);
         let (volume, slope) = laws.volume(5e6).unwrap();
-        assert!((volume - 5e-6).abs() < 1e-18 && (slope - 1e-12).abs() < 1e-24 && laws.loss(5e6).is_none());
-        let laws = ChamberLaws::of(&[law(LawPlace::MainChamberLoss, [0.0, 1e-8])]);
-        assert!((laws.loss(5e6).unwrap() - 5e-9).abs() < 1e-20 && laws.volume(5e6).is_none());
+        assert!((volume - 5e-6).abs() < 1e-18 && (slope - 1e-12).abs() < 1e-24 && laws.loss(5e6, 5e6) == 0.0);
+        let [p1, time] = [LawArgument::P1, LawArgument::Time]
+            .map(|over| ChamberLaws::of(&[law(LawPlace::MainChamberLoss, over, [0.0, 1e-8])]));
+        assert!((p1.loss(5e6, 0.0) - 5e-9).abs() < 1e-20 && p1.volume(5e6).is_none());
+        assert!((time.loss(0.0, 5e6) - 5e-9).abs() < 1e-20);
     }
 }

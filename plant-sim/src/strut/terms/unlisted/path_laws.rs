@@ -17,9 +17,12 @@ pub(in crate::strut) struct PathLaws {
     series: Option<Characteristic>,
     parallel: Option<Characteristic>,
     groove: Option<Characteristic>,
+    groove_in_time: Option<Characteristic>,
     strength: Option<Characteristic>,
+    strength_in_time: Option<Characteristic>,
     throttle: Option<Characteristic>,
     gas: Option<Characteristic>,
+    gas_in_time: Option<Characteristic>,
 }
 
 impl PathLaws {
@@ -29,9 +32,12 @@ impl PathLaws {
             series: law_at(laws, LawPlace::in_series(path), LawArgument::Flow),
             parallel: law_at(laws, LawPlace::beside_pack(path), LawArgument::PressureDrop),
             groove: law_at(laws, LawPlace::beside_pack(path), LawArgument::Displacement),
+            groove_in_time: law_at(laws, LawPlace::beside_pack(path), LawArgument::Time),
             strength: law_at(laws, LawPlace::pack(path), LawArgument::Displacement),
+            strength_in_time: law_at(laws, LawPlace::pack(path), LawArgument::Time),
             throttle: throttle(laws, path.pick(LawPlace::Valve1, LawPlace::Valve2)),
             gas: law_at(laws, LawPlace::accumulator(path), LawArgument::RelativeVolume),
+            gas_in_time: law_at(laws, LawPlace::accumulator(path), LawArgument::Time),
         }
     }
 
@@ -47,20 +53,21 @@ impl PathLaws {
         self.parallel.as_ref().map(|law| law.at(drop_pa, &mut 0))
     }
 
-    /// Flow coefficient of a groove beside the pack at a displacement, m3/s/sqrt(Pa).
+    /// Flow coefficient of a groove beside the pack at a displacement and a time, m3/s/sqrt(Pa).
     #[inline]
-    pub fn groove(&self, displacement_m: f64) -> f64 {
-        self.groove
-            .as_ref()
-            .map_or(0.0, |law| law.value(displacement_m).max(0.0))
+    pub fn groove(&self, displacement_m: f64, time_s: f64) -> f64 {
+        let by = |law: &Option<Characteristic>, argument| law.as_ref().map_or(0.0, |law| law.value(argument).max(0.0));
+        by(&self.groove, displacement_m) + by(&self.groove_in_time, time_s)
     }
 
-    /// What the model's drop of the pack is divided by at a displacement.
+    /// What the model's drop of the pack is divided by at a displacement and a time.
     #[inline]
-    pub fn weakening(&self, displacement_m: f64) -> f64 {
-        self.strength
-            .as_ref()
-            .map_or(1.0, |law| 1.0 / law.value(displacement_m).max(LEAST_FACTOR))
+    pub fn weakening(&self, displacement_m: f64, time_s: f64) -> f64 {
+        let by = |law: &Option<Characteristic>, argument| {
+            law.as_ref()
+                .map_or(1.0, |law| 1.0 / law.value(argument).max(LEAST_FACTOR))
+        };
+        by(&self.strength, displacement_m) * by(&self.strength_in_time, time_s)
     }
 
     /// Fraction of the bypass valve's flow that does not pass at a drop.
@@ -69,12 +76,15 @@ impl PathLaws {
         self.throttle.as_ref().map_or(0.0, |law| 1.0 - throttled(law, drop_pa))
     }
 
-    /// Factor on the gas pressure at a gas volume over the static one, if there is such a law.
+    /// Factor on the gas pressure at a gas volume over the static one and a time, if there is such a law.
     #[inline]
-    pub fn gas_factor(&self, relative_volume: f64) -> Option<f64> {
-        self.gas
-            .as_ref()
-            .map(|law| law.value(relative_volume).max(LEAST_GAS_FACTOR))
+    pub fn gas_factor(&self, relative_volume: f64, time_s: f64) -> Option<f64> {
+        let by =
+            |law: &Option<Characteristic>, argument| law.as_ref().map(|law| law.value(argument).max(LEAST_GAS_FACTOR));
+        match (by(&self.gas, relative_volume), by(&self.gas_in_time, time_s)) {
+            (None, None) => None,
+            (one, other) => Some(one.unwrap_or(1.0) * other.unwrap_or(1.0)),
+        }
     }
 }
 
@@ -108,11 +118,17 @@ mod tests {
     fn without_laws_the_model_is_as_it_was() {
         let none = PathLaws::of(&[], FlowPath::One);
         assert_eq!(
-            (none.groove(0.1), none.weakening(0.1), none.throttled_fraction(1e6)),
+            (
+                none.groove(0.1, 9.0),
+                none.weakening(0.1, 9.0),
+                none.throttled_fraction(1e6)
+            ),
             (0.0, 1.0, 0.0)
         );
         assert!(
-            none.series_drop(1e-3).is_none() && none.parallel_flow(1e6).is_none() && none.gas_factor(0.5).is_none()
+            none.series_drop(1e-3).is_none()
+                && none.parallel_flow(1e6).is_none()
+                && none.gas_factor(0.5, 9.0).is_none()
         );
     }
 
@@ -132,11 +148,11 @@ mod tests {
         ];
         let [one, two] = FlowPath::ALL.map(|path| PathLaws::of(&laws, path));
         assert_eq!(
-            (one.series_drop(1e-3), one.weakening(0.0), one.gas_factor(0.5)),
+            (one.series_drop(1e-3), one.weakening(0.0, 0.0), one.gas_factor(0.5, 0.0)),
             (None, 1.0, None)
         );
         assert_eq!(two.series_drop(5e-4), Some((2.5e5, 5e8)));
-        assert_eq!((two.weakening(0.0), two.gas_factor(0.5)), (2.0, Some(1.5)));
+        assert_eq!((two.weakening(0.0, 0.0), two.gas_factor(0.5, 0.0)), (2.0, Some(1.5)));
         assert!(
             (one.throttled_fraction(-5e5) - 0.4).abs() < 1e-12,
             "valve 1 has a law of its own"
@@ -149,5 +165,23 @@ mod tests {
             (one.throttled_fraction(1e9) - 0.99).abs() < 1e-12,
             "a valve never turns its flow round"
         );
+    }
+
+    #[test]
+    fn laws_over_time_multiply_or_add_to_those_over_a_state() {
+        let over = |place, depends_on, value| law(place, depends_on, [0.0, 10.0], value);
+        let (time, displacement) = (LawArgument::Time, LawArgument::Displacement);
+        let laws = [
+            over(LawPlace::Pack1, displacement, [0.5, 0.5]),
+            over(LawPlace::Pack1, time, [1.0, 0.5]),
+            over(LawPlace::BesidePack1, displacement, [1e-7, 1e-7]),
+            over(LawPlace::BesidePack1, time, [0.0, 2e-7]),
+            over(LawPlace::Accumulator1, LawArgument::RelativeVolume, [2.0, 2.0]),
+            over(LawPlace::Accumulator1, time, [1.0, 0.8]),
+        ];
+        let one = PathLaws::of(&laws, FlowPath::One);
+        assert_eq!((one.weakening(0.0, 0.0), one.weakening(0.0, 10.0)), (2.0, 4.0));
+        assert!((one.groove(0.0, 5.0) - 2e-7).abs() < 1e-20);
+        assert!((one.gas_factor(1.0, 10.0).unwrap() - 1.6).abs() < 1e-12);
     }
 }

@@ -23,7 +23,7 @@ pub enum LawPlace {
     /// In series with path 2: a pressure drop, Pa.
     #[serde(rename = "path-2")]
     Path2,
-    /// Beside damper pack 1: a flow, m3/s, over the pressure drop; a flow coefficient, m3/s/sqrt(Pa), over the displacement.
+    /// Beside damper pack 1: a flow, m3/s, over the pressure drop; a flow coefficient, m3/s/sqrt(Pa), over displacement or time.
     #[serde(rename = "beside-pack-1")]
     BesidePack1,
     /// Beside damper pack 2: the same.
@@ -72,15 +72,28 @@ impl LawPlace {
     #[must_use]
     pub fn arguments(self) -> &'static [LawArgument] {
         match self {
-            Self::MainSeal | Self::MainSealFriction => {
-                &[LawArgument::Displacement, LawArgument::Speed, LawArgument::P1]
-            }
-            Self::MainChamber | Self::MainChamberLoss => &[LawArgument::P1],
+            Self::MainSeal => &[
+                LawArgument::Displacement,
+                LawArgument::Speed,
+                LawArgument::P1,
+                LawArgument::Acceleration,
+                LawArgument::Time,
+            ],
+            Self::MainSealFriction => &[
+                LawArgument::Displacement,
+                LawArgument::Speed,
+                LawArgument::P1,
+                LawArgument::Time,
+            ],
+            Self::MainChamber => &[LawArgument::P1],
+            Self::MainChamberLoss => &[LawArgument::P1, LawArgument::Time],
             Self::Path1 | Self::Path2 => &[LawArgument::Flow],
-            Self::BesidePack1 | Self::BesidePack2 => &[LawArgument::PressureDrop, LawArgument::Displacement],
-            Self::Pack1 | Self::Pack2 => &[LawArgument::Displacement],
+            Self::BesidePack1 | Self::BesidePack2 => {
+                &[LawArgument::PressureDrop, LawArgument::Displacement, LawArgument::Time]
+            }
+            Self::Pack1 | Self::Pack2 => &[LawArgument::Displacement, LawArgument::Time],
             Self::Valve1 | Self::Valve2 | Self::Valve3 | Self::Valves => &[LawArgument::PressureDrop],
-            Self::Accumulator1 | Self::Accumulator2 => &[LawArgument::RelativeVolume],
+            Self::Accumulator1 | Self::Accumulator2 => &[LawArgument::RelativeVolume, LawArgument::Time],
         }
     }
 
@@ -90,9 +103,9 @@ impl LawPlace {
         match self {
             Self::MainSeal | Self::MainSealFriction | Self::MainChamberLoss => LawForm::Added,
             Self::MainChamber | Self::Path1 | Self::Path2 => LawForm::AddedNotFalling,
-            // A groove: its size may change with displacement as it likes.
-            Self::BesidePack1 | Self::BesidePack2 if argument == LawArgument::Displacement => LawForm::Added,
-            Self::BesidePack1 | Self::BesidePack2 => LawForm::AddedNotFalling,
+            Self::BesidePack1 | Self::BesidePack2 if argument == LawArgument::PressureDrop => LawForm::AddedNotFalling,
+            // A groove: its size may change with displacement or time as it likes.
+            Self::BesidePack1 | Self::BesidePack2 => LawForm::Added,
             Self::Pack1 | Self::Pack2 | Self::Accumulator1 | Self::Accumulator2 => LawForm::Factor,
             Self::Valve1 | Self::Valve2 | Self::Valve3 | Self::Valves => LawForm::Factor,
         }

@@ -4,8 +4,9 @@ use super::argument::LawArgument;
 use super::law::UnlistedLaw;
 use super::place::LawPlace;
 use crate::strut::characteristic::Characteristic;
+use crate::strut::rod_forces::RodState;
 
-/// A force or a friction between rod and cylinder, N, over displacement, speed or p1.
+/// A force or a friction between rod and cylinder, N.
 #[derive(Debug, Clone)]
 pub(in crate::strut) struct SealLaw {
     argument: LawArgument,
@@ -21,12 +22,14 @@ impl SealLaw {
         })
     }
 
-    /// Value of the law, N, at a displacement (m), a speed (m/s) and a gauge pressure p1 (Pa).
-    pub fn value_n(&self, displacement_m: f64, speed_m_s: f64, p1_pa: f64) -> f64 {
+    /// Value of the law, N, in a state of the rod.
+    pub fn value_n(&self, rod: &RodState) -> f64 {
         self.table.value(match self.argument {
-            LawArgument::Displacement => displacement_m,
-            LawArgument::Speed => speed_m_s,
-            _ => p1_pa,
+            LawArgument::Displacement => rod.displacement_m,
+            LawArgument::Speed => rod.speed_m_s,
+            LawArgument::Acceleration => rod.acceleration.now_m_s2(),
+            LawArgument::Time => rod.time_s,
+            _ => rod.p1_pa,
         })
     }
 }
@@ -34,13 +37,23 @@ impl SealLaw {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::strut::rod_forces::Acceleration;
 
     #[test]
     fn reads_the_quantity_that_it_depends_on() {
+        let rod = RodState {
+            displacement_m: 1.0,
+            speed_m_s: 2.0,
+            acceleration: Acceleration::default(),
+            p1_pa: 3.0,
+            oil_force_n: 0.0,
+            time_s: 5.0,
+        };
         for (depends_on, value) in [
             (LawArgument::Displacement, 1.0),
             (LawArgument::Speed, 2.0),
             (LawArgument::P1, 3.0),
+            (LawArgument::Time, 5.0),
         ] {
             let laws = [UnlistedLaw {
                 place: LawPlace::MainSealFriction,
@@ -49,7 +62,7 @@ mod tests {
                 value: vec![0.0, 10.0],
             }];
             let law = SealLaw::at(&laws, LawPlace::MainSealFriction).unwrap();
-            assert_eq!(law.value_n(1.0, 2.0, 3.0), value);
+            assert_eq!(law.value_n(&rod), value);
             assert!(SealLaw::at(&laws, LawPlace::MainSeal).is_none());
         }
     }

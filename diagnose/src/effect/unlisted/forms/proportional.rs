@@ -1,0 +1,19 @@
+//! A value that is added and is proportional to its argument: one number.
+
+use super::form::{Form, Grid};
+use crate::parameter::Parameter;
+
+/// The key of its number. `visible` and this number are the value at an argument of one.
+pub struct Proportional(pub &'static str);
+
+impl Form for Proportional {
+    fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
+        let most = grid.most();
+        vec![Parameter::departure(self.0, grid.visible, (-most, most))]
+    }
+
+    fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        let slope = fitted.first().copied().unwrap_or(0.0);
+        grid.knots.iter().map(|x| slope * x).collect()
+    }
+}

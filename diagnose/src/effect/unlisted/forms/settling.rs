@@ -1,0 +1,85 @@
+//! Values that settle with one time constant from what is believed: `a (1 - exp(-t / T))`, added or as the logarithm of a factor. With a
+//! time constant far beyond the recording this is a drift at a constant rate.
+
+use super::form::{Form, Grid};
+use crate::parameter::Parameter;
+
+/// Time constants that are tried first, s.
+const STARTS_S: [f64; 3] = [1.0, 10.0, 100.0];
+/// Largest logarithm of a factor that is added up.
+const MOST_LOG: f64 = 3.0;
+
+/// A value that is added; the key of its end value.
+pub struct SettlingAdded(pub &'static str);
+
+/// A value that is added and never negative; the key of its end value.
+pub struct SettlingLevel(pub &'static str);
+
+/// A value that multiplies what is believed.
+pub struct SettlingFactor;
+
+fn time_constant() -> Parameter {
+    Parameter::log("time_constant_s", 10.0, (0.1, 3000.0))
+}
+
+fn settled(grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+    let &[end, time_constant_s] = fitted else {
+        return vec![0.0; grid.knots.len()];
+    };
+    (grid.knots.iter())
+        .map(|t| -end * libm::expm1(-t / time_constant_s))
+        .collect()
+}
+
+fn starts(grid: &Grid) -> Vec<Vec<f64>> {
+    STARTS_S.map(|t| vec![3.0 * grid.visible, t]).to_vec()
+}
+
+impl Form for SettlingAdded {
+    fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
+        let most = grid.most();
+        vec![
+            Parameter::departure(self.0, grid.visible, (-most, most)),
+            time_constant(),
+        ]
+    }
+
+    fn starts(&self, grid: &Grid) -> Vec<Vec<f64>> {
+        starts(grid)
+    }
+
+    fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        settled(grid, fitted)
+    }
+}
+
+impl Form for SettlingLevel {
+    fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
+        vec![Parameter::amount(self.0, grid.visible, grid.most()), time_constant()]
+    }
+
+    fn starts(&self, grid: &Grid) -> Vec<Vec<f64>> {
+        starts(grid)
+    }
+
+    fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        settled(grid, fitted)
+    }
+}
+
+impl Form for SettlingFactor {
+    fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
+        vec![
+            Parameter::departure("log_end_factor", grid.visible, (-MOST_LOG, MOST_LOG)),
+            time_constant(),
+        ]
+    }
+
+    fn starts(&self, grid: &Grid) -> Vec<Vec<f64>> {
+        starts(grid)
+    }
+
+    fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        settled(grid, fitted).into_iter().map(libm::exp).collect()
+    }
+}

@@ -483,6 +483,7 @@ fn law(place: LawPlace, depends_on: LawArgument, argument: [f64; 2], value: [f64
         depends_on,
         argument: argument.to_vec(),
         value: value.to_vec(),
+        time_constant_s: None,
     }
 }
 
@@ -534,6 +535,7 @@ fn a_choking_valve_3_passes_what_its_law_leaves_even_where_more_drop_means_less_
         depends_on: LawArgument::PressureDrop,
         argument,
         value,
+        time_constant_s: None,
     }];
     let mut strut = Strut::at_rest(&model, STIFF).unwrap();
     slowly(&mut strut, 0.03, STIFF);
@@ -624,5 +626,97 @@ fn laws_over_time_and_acceleration() {
         let (at, from, to) = (1.5 * to * to, 3.0 * from, 3.0 * to);
         let [heavy, light] = [&mut heavy, &mut light].map(|s| s.advance_with_speeds(at, from, to, 0.01, STIFF).force_n);
         close(heavy - light, 36.0, 1e-9);
+    }
+}
+
+#[test]
+fn laws_with_a_memory_and_of_pistons_and_valves() {
+    let with = |law: UnlistedLaw| {
+        let mut model = bare();
+        model.effects.unlisted = vec![law];
+        model
+    };
+    // A jump of the gas volume by r shows as the factor 1 - 2 r at first, and is forgotten with 4 s.
+    let memory = |place| UnlistedLaw {
+        time_constant_s: Some(4.0),
+        ..law(place, LawArgument::VolumeChange, [-1.0, 1.0], [3.0, -1.0])
+    };
+    for place in [LawPlace::Accumulator1, LawPlace::Accumulators] {
+        let (mut plain, mut remembering) = (
+            Strut::at_rest(&bare(), STIFF).unwrap(),
+            Strut::at_rest(&with(memory(place)), STIFF).unwrap(),
+        );
+        let believed = absolute(plain.advance(0.02, 0.01, STIFF).pressure_pa[1]);
+        let jump = bare().piston_area_m2() * 0.02 / bare().accumulator[0].static_gas_volume_m3;
+        close(
+            absolute(remembering.advance(0.02, 0.01, STIFF).pressure_pa[1]),
+            believed * (1.0 + 2.0 * jump),
+            5e-3,
+        );
+        let out = (0..400).map(|_| remembering.advance(0.02, 0.01, STIFF)).last().unwrap();
+        let left = 2.0 * jump * libm::exp(-1.0);
+        let believed = absolute(
+            (0..400)
+                .map(|_| plain.advance(0.02, 0.01, STIFF))
+                .last()
+                .unwrap()
+                .pressure_pa[1],
+        );
+        close(absolute(out.pressure_pa[1]), believed * (1.0 + left), 5e-3);
+    }
+
+    // The floating piston holds back 50 kPa in either direction.
+    let held = law(
+        LawPlace::Accumulator1Friction,
+        LawArgument::RelativeVolume,
+        [0.0, 2.0],
+        [5e4, 5e4],
+    );
+    let mut strut = Strut::at_rest(&with(held), STIFF).unwrap();
+    let up = slowly(&mut strut, 0.02, STIFF).pressure_pa[1];
+    slowly(&mut strut, 0.03, STIFF);
+    let down = slowly(&mut strut, 0.02, STIFF).pressure_pa[1];
+    close(up - down, 1e5, 2e-2);
+
+    // What passes beside a closed valve 3 is an orifice.
+    let beside = law(LawPlace::BesideValve3, LawArgument::Time, [0.0, 1.0], [2e-8, 2e-8]);
+    let mut strut = Strut::at_rest(&with(beside), STIFF).unwrap();
+    let out = strut.advance(0.02, 0.2, STIFF);
+    let drop = out.pressure_pa[2] - out.pressure_pa[3];
+    let expected = 2e-8 * drop / (drop + bare().orifice.transition_pressure_pa).sqrt();
+    assert!(drop > 1e5);
+    close(strut.flow_m3_s()[1], expected, 1e-2);
+
+    // A valve that needs 30 ms longer opens 30 ms later.
+    let late = law(
+        LawPlace::ValveTiming,
+        LawArgument::PressureDrop,
+        [0.0, 1e7],
+        [0.03, 0.03],
+    );
+    let opens_after = |model: &StrutModel| {
+        let mut strut = Strut::at_rest(model, STIFF).unwrap();
+        (0..1000).position(|_| {
+            strut.advance(0.0, 1e-3, SOFT);
+            strut.openings()[Valve::Spring] > 0.5
+        })
+    };
+    let (believed, longer) = (opens_after(&bare()).unwrap(), opens_after(&with(late)).unwrap());
+    assert!((longer as i64 - believed as i64 - 30).abs() <= 1, "{believed} {longer}");
+}
+
+#[test]
+fn a_law_over_the_rate_of_flow_is_an_inertance() {
+    let mut named = bare();
+    named.effects.line_inertance = Some(LineInertance { inertance_2_kg_m4: 3e6 });
+    let mut nameless = bare();
+    nameless.effects.unlisted = vec![law(LawPlace::Path2, LawArgument::FlowRate, [-1.0, 1.0], [-3e6, 3e6])];
+    let mut struts = [named, nameless].map(|model| Strut::at_rest(&model, SOFT).unwrap());
+    for k in 0..200 {
+        let at = 0.01 * libm::sin(0.1 * f64::from(k));
+        let [a, b] = struts
+            .each_mut()
+            .map(|strut| strut.advance(at, 2e-3, SOFT).pressure_pa[2]);
+        close(b, a, 1e-6);
     }
 }

@@ -13,5 +13,13 @@ walk() {
     check "the page's files and changes apply" python3 tests/harness/walk.py docs/adding-physics.md "$copy"
 }
 
-# Run a command in the copy.
-in_copy() { (cd "$copy" && "$@"); }
+# Run a command in the copy. What cargo has built there it would take for the checkout's own, because the packages have the same names and
+# places in their workspaces: the next test of the checkout would run a binary of the copy. So it must forget them.
+in_copy() {
+    (cd "$copy" && "$@")
+    local status=$? built
+    find "$CARGO_TARGET_DIR/debug/.fingerprint" -name 'dep-*' -print0 | xargs -0 grep -la "${copy##*/}/" | while read -r built; do
+        rm -rf -- "$(dirname "$built")"
+    done
+    return $status
+}

@@ -1,12 +1,12 @@
 //! What the instruments of a strut show: the faults of one column put together.
 //!
-//! A fault changes what a column of a recording shows of the truth, in this order: lag, skew, gain, sign, drift, offset.
+//! A fault changes what a column of a recording shows of the truth, in this order: lag, skew, gain, sign, drift, offset, laws without a name.
 //! For an output (force, pressures) it is applied to the simulated truth. The displacement is an input: its recording is
 //! given, and the truth is found by undoing the faults.
 
 use super::motion::Motion;
 use super::terms::sensor::{drift, gain, lag, skew};
-use super::terms::{COLUMNS, Effects, SensorEffect};
+use super::terms::{COLUMNS, Effects, InstrumentLaws, SensorEffect};
 
 /// The faults of one column; every number as in its file, what is absent as no fault.
 struct Faults {
@@ -65,6 +65,9 @@ pub fn record_column(effects: &Effects, column: &str, times_s: &[f64], signal: &
             *value = factor * *value + drift::shift(faults.drift_per_s, t - begin) + faults.offset;
         }
     }
+    if let Some(laws) = InstrumentLaws::of(&effects.unlisted, column) {
+        laws.record(times_s, signal);
+    }
 }
 
 /// The true motion behind the recording of a faulty displacement sensor. `None` if the model has no such fault.
@@ -78,18 +81,22 @@ pub(super) fn true_motion(effects: &Effects, times_s: &[f64], recorded: &Motion)
         &effects.sensor_offset,
     ];
     let [displacement, ..] = COLUMNS;
-    if !all
-        .into_iter()
-        .flatten()
-        .any(|effect| effect.contains_key(displacement))
-    {
+    let laws = InstrumentLaws::of(&effects.unlisted, displacement);
+    let has_fault = (all.into_iter().flatten()).any(|effect| effect.contains_key(displacement));
+    if !has_fault && laws.is_none() {
         return None;
     }
     let faults = Faults::of(effects, displacement);
     let mut motion = recorded.clone();
+    if let Some(laws) = laws {
+        laws.undo(times_s, &mut motion);
+    }
+    if !has_fault {
+        return Some(motion);
+    }
     let begin = times_s.first().copied().unwrap_or(0.0);
     let (inverse, rate) = (1.0 / faults.factor(), faults.drift_per_s);
-    motion.start_m = inverse * (recorded.start_m - faults.offset);
+    motion.start_m = inverse * (motion.start_m - faults.offset);
     for (segment, t) in motion.segments.iter_mut().zip(times_s.iter().skip(1)) {
         segment.to_m = inverse * (segment.to_m - faults.offset - drift::shift(rate, t - begin));
         segment.from_m_s = inverse * (segment.from_m_s - rate);

@@ -9,12 +9,13 @@ use oleo_interface::{StrutValves, Valve};
 
 use crate::model_file::{Checked, InvalidValue};
 
+use super::characteristic::Characteristic;
 use super::gas::GasState;
 use super::model::StrutModel;
 use super::motion::{Cubic, Segment};
 use super::network::{LastSolution, Network, StageEnd, State};
 use super::rod_forces::{Acceleration, RodForces, RodState};
-use super::terms::{DampingFade, Mount, ValveTransition, total_response_s};
+use super::terms::{DampingFade, LawArgument, LawPlace, Mount, ValveTransition, law_at, total_response_s};
 use super::valve::ValveMotion;
 
 /// `1 - 1/sqrt 2`.
@@ -58,6 +59,10 @@ pub struct Strut {
     mount: Mount,
     fade: Option<DampingFade>,
     response_polynomial_s: [f64; 3],
+    /// Unmodelled time that is added to the response, s, over the pressure difference.
+    response_law: Option<Characteristic>,
+    /// Unmodelled time that the movement takes, s, over the pressure difference.
+    movement_law: Option<Characteristic>,
     initial_delay_fraction: f64,
     transition: Option<ValveTransition>,
 
@@ -112,6 +117,8 @@ impl Strut {
             mount: (effects.mount_compliance.as_ref()).map_or_else(Mount::default, |mount| mount.mount()),
             fade: effects.damping_fade.clone(),
             response_polynomial_s: model.response_polynomial_s(),
+            response_law: law_at(&effects.unlisted, LawPlace::ValveTiming, LawArgument::PressureDrop),
+            movement_law: law_at(&effects.unlisted, LawPlace::ValveMovement, LawArgument::PressureDrop),
             initial_delay_fraction: model.valve_timing.initial_delay_fraction,
             transition: effects.valve_transition.clone(),
             time_s: 0.0,
@@ -215,10 +222,16 @@ impl Strut {
         let across = StrutValves::new(p1 - p2, p1 - p3, p3 - p4);
         for valve in Valve::ALL {
             if signals[valve] != self.valves[valve].signal() {
-                let total_s = total_response_s(self.response_polynomial_s, across[valve]);
+                let mut total_s = total_response_s(self.response_polynomial_s, across[valve]);
+                if let Some(law) = &self.response_law {
+                    total_s = (total_s + law.value(across[valve].abs())).max(0.0);
+                }
                 let initial_s = self.initial_delay_fraction * total_s;
                 let transition = self.transition.as_ref();
                 self.valves[valve].switch(signals[valve], self.time_s, total_s, initial_s, transition);
+                if let (None, Some(law)) = (transition, &self.movement_law) {
+                    self.valves[valve].take(law.value(across[valve].abs()), self.time_s);
+                }
             }
         }
     }

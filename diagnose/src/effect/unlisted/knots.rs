@@ -77,3 +77,15 @@ pub const TIME_S: &[f64] = &[
     0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0, 40.0, 56.0, 80.0,
     110.0, 160.0, 220.0, 320.0, 450.0, 640.0, 900.0, 1300.0, 1800.0, 2600.0, 3600.0,
 ];
+/// What has changed of a relative gas volume: a line.
+pub const VOLUME_CHANGE: &[f64] = &[-1.0, 1.0];
+/// Pressure difference across a valve as its signal switches, Pa. The first is below all, so that the value at zero is free.
+pub const EDGE_PA: &[f64] = &[-1.0, 0.0, 0.5 * P, P, 2.0 * P, 4.0 * P, 8.0 * P, 13.0 * P];
+/// Rate of flow, m3/s2: a line.
+pub const FLOW_RATE_M3_S2: &[f64] = &[-1.0, 1.0];
+/// The same, a few.
+pub const FEW_EDGES_PA: &[f64] = &[0.0, 2.0 * P, 8.0 * P];
+/// Force of the load cell, N.
+pub const FORCE_N: &[f64] = &[0.0, 5e3, 1e4, 1.5e4, 2.5e4, 4e4];
+/// Rate of a reading: a line.
+pub const RATE: &[f64] = &[-1.0, 1.0];

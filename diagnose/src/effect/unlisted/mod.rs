@@ -26,6 +26,7 @@ mod strut_laws;
 mod textbook;
 mod words;
 
+pub use forms::is_of_free_table;
 pub use nameless::Unlisted;
 pub use strut_laws::table;
 

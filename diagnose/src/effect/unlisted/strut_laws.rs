@@ -4,19 +4,21 @@
 
 use oleo_interface::Valve;
 use oleo_plant_sim::strut::LawArgument::{
-    Acceleration, Displacement, Flow, P1, PressureDrop, RelativeVolume, Speed, Time,
+    Acceleration, Displacement, Flow, FlowRate, P1, PressureDrop, Reading, ReadingRate, RelativeVolume, Speed, Time,
+    VolumeChange,
 };
 use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
 
 use super::forms::{
-    Added, Bell, Choke, Factor, Form, Grid, Level, Proportional, Rising, SettlingAdded, SettlingFactor, SettlingLevel,
+    Added, Bell, Choke, Factor, Form, Grid, Level, Proportional, ProportionalAmount, Relaxing, Rising, SettlingAdded,
+    SettlingFactor, SettlingLevel,
 };
 use super::knots::{
-    ACCELERATION_M_S2, CHAMBER_PA, FLOW_M3_S, GROOVE_M, P1_PA, PACK_PA, RELATIVE_VOLUME, SPEED_M_S, STROKE_M, TIME_S,
-    TRAVEL_M, VALVE_PA,
+    ACCELERATION_M_S2, CHAMBER_PA, EDGE_PA, FEW_EDGES_PA, FLOW_M3_S, FLOW_RATE_M3_S2, FORCE_N, GROOVE_M, P1_PA,
+    PACK_PA, RATE, RELATIVE_VOLUME, SPEED_M_S, STROKE_M, TIME_S, TRAVEL_M, VALVE_PA, VOLUME_CHANGE,
 };
 use crate::effect::candidate::Candidate;
-use crate::vocabulary::{Branch, EffectId, Site};
+use crate::vocabulary::{Branch, Column, EffectId, Site};
 
 /// One law that is searched for.
 struct Law {
@@ -312,6 +314,238 @@ const LAWS: &[Law] = &[
         TIME_S,
         0.01,
     ),
+    law(
+        "gas pressure over volume, both accumulators",
+        Site::Accumulators,
+        (LawPlace::Accumulators, RelativeVolume),
+        &Factor,
+        RELATIVE_VOLUME,
+        0.01,
+    ),
+    law(
+        "gas pressure over time, both accumulators",
+        Site::Accumulators,
+        (LawPlace::Accumulators, Time),
+        &SettlingFactor,
+        TIME_S,
+        0.01,
+    ),
+    law(
+        "gas pressure over the change of volume, accumulator 1",
+        Site::Accumulator(Branch::First),
+        (LawPlace::Accumulator1, VolumeChange),
+        &Relaxing,
+        VOLUME_CHANGE,
+        0.01,
+    ),
+    law(
+        "gas pressure over the change of volume, accumulator 2",
+        Site::Accumulator(Branch::Second),
+        (LawPlace::Accumulator2, VolumeChange),
+        &Relaxing,
+        VOLUME_CHANGE,
+        0.01,
+    ),
+    law(
+        "gas pressure over the change of volume, both accumulators",
+        Site::Accumulators,
+        (LawPlace::Accumulators, VolumeChange),
+        &Relaxing,
+        VOLUME_CHANGE,
+        0.01,
+    ),
+    law(
+        "pressure held back over volume, accumulator 1",
+        Site::Accumulator(Branch::First),
+        (LawPlace::Accumulator1Friction, RelativeVolume),
+        &Level,
+        RELATIVE_VOLUME,
+        5e3,
+    ),
+    law(
+        "pressure held back over volume, accumulator 2",
+        Site::Accumulator(Branch::Second),
+        (LawPlace::Accumulator2Friction, RelativeVolume),
+        &Level,
+        RELATIVE_VOLUME,
+        5e3,
+    ),
+    law(
+        "opening beside valve 3 over time",
+        Site::Valve(Valve::Spring),
+        (LawPlace::BesideValve3, Time),
+        &SettlingLevel("end_flow_coefficient"),
+        TIME_S,
+        1e-9,
+    ),
+    law(
+        "response time over pressure drop",
+        Site::Valves,
+        (LawPlace::ValveTiming, PressureDrop),
+        &Added,
+        EDGE_PA,
+        2e-3,
+    ),
+    law(
+        "series drop over rate of flow, path 2",
+        Site::Path(Branch::Second),
+        (LawPlace::Path2, FlowRate),
+        &ProportionalAmount("inertance_kg_m4"),
+        FLOW_RATE_M3_S2,
+        1e5,
+    ),
+    law(
+        "duration of the movement over pressure drop",
+        Site::Valves,
+        (LawPlace::ValveMovement, PressureDrop),
+        &Level,
+        FEW_EDGES_PA,
+        2e-3,
+    ),
+    law(
+        "reading over reading, displacement",
+        Site::Sensor(Column::known("displacement_m")),
+        (LawPlace::InstrumentDisplacement, Reading),
+        &Added,
+        TRAVEL_M,
+        1e-4,
+    ),
+    law(
+        "reading over time, displacement",
+        Site::Sensor(Column::known("displacement_m")),
+        (LawPlace::InstrumentDisplacement, Time),
+        &SettlingAdded("end_displacement_m"),
+        TIME_S,
+        1e-4,
+    ),
+    law(
+        "reading over its rate, displacement",
+        Site::Sensor(Column::known("displacement_m")),
+        (LawPlace::InstrumentDisplacement, ReadingRate),
+        &Proportional("late_s"),
+        RATE,
+        1e-3,
+    ),
+    law(
+        "reading over reading, force",
+        Site::Sensor(Column::known("force_N")),
+        (LawPlace::InstrumentForce, Reading),
+        &Added,
+        FORCE_N,
+        20.0,
+    ),
+    law(
+        "reading over time, force",
+        Site::Sensor(Column::known("force_N")),
+        (LawPlace::InstrumentForce, Time),
+        &SettlingAdded("end_force_N"),
+        TIME_S,
+        20.0,
+    ),
+    law(
+        "reading over its rate, force",
+        Site::Sensor(Column::known("force_N")),
+        (LawPlace::InstrumentForce, ReadingRate),
+        &Proportional("late_s"),
+        RATE,
+        1e-3,
+    ),
+    law(
+        "reading over reading, p1",
+        Site::Sensor(Column::known("p1_Pa")),
+        (LawPlace::InstrumentP1, Reading),
+        &Added,
+        P1_PA,
+        1e4,
+    ),
+    law(
+        "reading over time, p1",
+        Site::Sensor(Column::known("p1_Pa")),
+        (LawPlace::InstrumentP1, Time),
+        &SettlingAdded("end_p1_Pa"),
+        TIME_S,
+        1e4,
+    ),
+    law(
+        "reading over its rate, p1",
+        Site::Sensor(Column::known("p1_Pa")),
+        (LawPlace::InstrumentP1, ReadingRate),
+        &Proportional("late_s"),
+        RATE,
+        1e-3,
+    ),
+    law(
+        "reading over reading, p2",
+        Site::Sensor(Column::known("p2_Pa")),
+        (LawPlace::InstrumentP2, Reading),
+        &Added,
+        P1_PA,
+        1e4,
+    ),
+    law(
+        "reading over time, p2",
+        Site::Sensor(Column::known("p2_Pa")),
+        (LawPlace::InstrumentP2, Time),
+        &SettlingAdded("end_p2_Pa"),
+        TIME_S,
+        1e4,
+    ),
+    law(
+        "reading over its rate, p2",
+        Site::Sensor(Column::known("p2_Pa")),
+        (LawPlace::InstrumentP2, ReadingRate),
+        &Proportional("late_s"),
+        RATE,
+        1e-3,
+    ),
+    law(
+        "reading over reading, p3",
+        Site::Sensor(Column::known("p3_Pa")),
+        (LawPlace::InstrumentP3, Reading),
+        &Added,
+        P1_PA,
+        1e4,
+    ),
+    law(
+        "reading over time, p3",
+        Site::Sensor(Column::known("p3_Pa")),
+        (LawPlace::InstrumentP3, Time),
+        &SettlingAdded("end_p3_Pa"),
+        TIME_S,
+        1e4,
+    ),
+    law(
+        "reading over its rate, p3",
+        Site::Sensor(Column::known("p3_Pa")),
+        (LawPlace::InstrumentP3, ReadingRate),
+        &Proportional("late_s"),
+        RATE,
+        1e-3,
+    ),
+    law(
+        "reading over reading, p4",
+        Site::Sensor(Column::known("p4_Pa")),
+        (LawPlace::InstrumentP4, Reading),
+        &Added,
+        P1_PA,
+        1e4,
+    ),
+    law(
+        "reading over time, p4",
+        Site::Sensor(Column::known("p4_Pa")),
+        (LawPlace::InstrumentP4, Time),
+        &SettlingAdded("end_p4_Pa"),
+        TIME_S,
+        1e4,
+    ),
+    law(
+        "reading over its rate, p4",
+        Site::Sensor(Column::known("p4_Pa")),
+        (LawPlace::InstrumentP4, ReadingRate),
+        &Proportional("late_s"),
+        RATE,
+        1e-3,
+    ),
 ];
 
 impl Law {
@@ -320,7 +554,12 @@ impl Law {
     fn grid(&self) -> Grid {
         Grid {
             knots: self.knots,
-            at_rest: if self.depends_on == RelativeVolume { 1.0 } else { 0.0 },
+            at_rest: match (self.place, self.depends_on) {
+                (_, RelativeVolume) => 1.0,
+                // A response may be longer at any pressure difference.
+                (LawPlace::ValveTiming, _) => EDGE_PA[0],
+                _ => 0.0,
+            },
             visible: self.visible,
         }
     }
@@ -346,6 +585,7 @@ pub fn table(label: &str, fitted: &[f64]) -> Option<UnlistedLaw> {
         depends_on: law.depends_on,
         argument: law.knots.to_vec(),
         value: law.form.values(&law.grid(), fitted),
+        time_constant_s: law.form.time_constant_s(fitted),
     })
 }
 

@@ -175,6 +175,7 @@ pub fn law(drawn: &Drawn, amount: f64) -> (Site, UnlistedLaw) {
         depends_on: law.depends_on,
         argument,
         value,
+        time_constant_s: None,
     };
     (law.site.clone(), table)
 }

@@ -169,6 +169,7 @@ mod tests {
             q2_m3_s: 0.0,
             shear: [0.0; 2],
             heat_j: [0.0; 2],
+            mean_volume: [1.0; 2],
         }
     }
 

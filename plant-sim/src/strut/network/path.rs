@@ -18,6 +18,9 @@ pub(super) const NEGLECTED_PA: f64 = 5.0;
 /// The same where only a kink of the pack's table is in question: the step across it, Pa.
 const ACROSS_KINK_PA: f64 = 50.0;
 
+/// Oil volume that shears the seal of a floating piston to sliding where no term says it, m3.
+const PRESLIDING_M3: f64 = 1e-7;
+
 /// One path as the network sees it.
 #[derive(Debug, Clone)]
 pub(super) struct Path {
@@ -26,7 +29,7 @@ pub(super) struct Path {
     leak_coefficient: f64,
     line: LaminarLine,
     pub gas: Gas,
-    static_gas_m3: f64,
+    pub static_gas_m3: f64,
     piston_seal: PistonSeal,
     pub fade: PackFade,
     laws: PathLaws,
@@ -46,6 +49,11 @@ pub(super) struct PathStart<'a> {
     bypass: f64,
     transition_pa: f64,
     real: &'a Departure,
+    /// Pressure that the floating piston's seal can hold back, Pa.
+    breakaway_pa: f64,
+    /// Mean of the relative gas volume before the stage, and how much of a departure from it is left at the stage's end.
+    mean_volume: f64,
+    remembered: f64,
 }
 
 /// What a path answers to a trial of the drop across its pack. Slopes are derivatives by the path's flow, but for that
@@ -63,6 +71,8 @@ pub(super) struct PathAnswer {
     temperature_slope: f64,
     pub shear: f64,
     shear_slope: f64,
+    /// Mean of the relative gas volume at the stage's end.
+    pub mean_volume: f64,
 }
 
 impl PathAnswer {
@@ -100,8 +110,13 @@ impl Path {
                 effects.real_gas.as_ref().map(|real| real.nitrogen()),
             ),
             static_gas_m3,
-            piston_seal: (effects.accumulator_piston_friction.as_ref())
-                .map_or(PistonSeal::FREE, |friction| friction.seal(which)),
+            piston_seal: (effects.accumulator_piston_friction.as_ref()).map_or(
+                PistonSeal {
+                    presliding_m3: PRESLIDING_M3,
+                    ..PistonSeal::FREE
+                },
+                |friction| friction.seal(which),
+            ),
             fade: (effects.damping_fade.as_ref()).map_or_else(PackFade::default, |fade| fade.pack(which)),
             laws: PathLaws::of(&effects.unlisted, which),
         }
@@ -129,6 +144,15 @@ impl Path {
             bypass,
             transition_pa,
             real,
+            breakaway_pa: match self
+                .laws
+                .held_back_pa(which.of(base.gas).volume_m3 / self.static_gas_m3)
+            {
+                Some(held_back_pa) => self.piston_seal.breakaway_pa + held_back_pa,
+                None => self.piston_seal.breakaway_pa,
+            },
+            mean_volume: which.of(base.mean_volume),
+            remembered: self.laws.remembered(at.duration_s),
         }
     }
 
@@ -156,15 +180,16 @@ impl Path {
         let step = self.gas.implicit(start.gas, start.duration_s, flow, start.real);
         let (mut oil_pa, mut oil_slope) = (step.pressure.gauge().pa(), step.pressure_by_flow);
         let relative_volume = step.state.volume_m3 / self.static_gas_m3;
-        if let Some(factor) = self.laws.gas_factor(relative_volume, start.time_s) {
+        let changed = start.remembered * (relative_volume - start.mean_volume);
+        if let Some(factor) = self.laws.gas_factor(relative_volume, changed, start.time_s) {
             oil_pa = Absolute(factor * step.pressure.pa()).gauge().pa();
             oil_slope *= factor;
         }
         let (mut shear, mut shear_slope) = (start.shear, 0.0);
-        if self.piston_seal.breakaway_pa > 0.0 {
+        if start.breakaway_pa > 0.0 {
             (shear, shear_slope) = self.piston_seal.sheared(start.shear, start.duration_s, flow);
-            oil_pa += self.piston_seal.breakaway_pa * shear;
-            oil_slope += self.piston_seal.breakaway_pa * shear_slope;
+            oil_pa += start.breakaway_pa * shear;
+            oil_slope += start.breakaway_pa * shear_slope;
         }
         let (mut line_pa, mut line_slope) = self.line.drop(flow);
         if let Some((drop, slope)) = self.laws.series_drop(flow) {
@@ -182,6 +207,7 @@ impl Path {
             temperature_slope: step.temperature_by_flow,
             shear,
             shear_slope,
+            mean_volume: relative_volume - changed,
         }
     }
 
@@ -198,7 +224,7 @@ impl Path {
         let orifice = step_pa * step_pa <= 2.0 * NEGLECTED_PA * (start.transition_pa + drop_pa.abs());
         let crosses_kink =
             step_pa.abs() > ACROSS_KINK_PA && !self.pack.on_segment((drop_pa + step_pa) * start.weakening, segment);
-        let sheared = self.piston_seal.breakaway_pa * answer.shear_slope * answer.flow_slope * step_pa;
-        orifice && !crosses_kink && sheared * sheared <= NEGLECTED_PA * self.piston_seal.breakaway_pa
+        let sheared = start.breakaway_pa * answer.shear_slope * answer.flow_slope * step_pa;
+        orifice && !crosses_kink && sheared * sheared <= NEGLECTED_PA * start.breakaway_pa
     }
 }

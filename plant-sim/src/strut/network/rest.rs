@@ -23,6 +23,7 @@ impl Network {
             q2_m3_s: 0.0,
             shear: [0.0; 2],
             heat_j: [0.0; 2],
+            mean_volume: [0, 1].map(|i| gas(i).volume_m3 / self.paths[i].static_gas_m3),
         }
     }
 

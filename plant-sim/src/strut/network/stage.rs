@@ -56,12 +56,25 @@ struct SecondLoop {
 impl Network {
     /// Solve one stage from `base`. The result does not depend on `last` beyond the solver's tolerance.
     pub fn stage(&self, base: &State, at: &StageEnd, last: &mut LastSolution) -> Stage {
-        let c3 = at.opening[Valve::Spring] * self.valve3_coefficient + self.valve3_leak;
+        let mut c3 = at.opening[Valve::Spring] * self.valve3_coefficient + self.valve3_leak;
+        if self.has_unlisted_laws {
+            c3 += self.beside_valve3(at);
+        }
         if c3 > 0.0 {
             self.solve::<true>(base, at, 1.0 / c3, last)
         } else {
             self.solve::<false>(base, at, 0.0, last)
         }
+    }
+
+    /// Flow coefficient of an unmodelled opening beside valve 3, m3/s/sqrt(Pa).
+    #[cold]
+    fn beside_valve3(&self, at: &StageEnd) -> f64 {
+        [at.displacement_m, at.time_s]
+            .into_iter()
+            .zip(&self.beside_valve3)
+            .filter_map(|(argument, law)| Some(law.as_ref()?.value(argument).max(0.0)))
+            .sum()
     }
 
     /// `CONNECTED`: valve 3 lets oil through. `inverse_c3` is one over its flow coefficient as far as it is open.
@@ -153,6 +166,7 @@ impl Network {
                         q2_m3_s: two.flow,
                         shear: [one.shear, two.shear],
                         heat_j: [heat(0), heat(1)],
+                        mean_volume: [one.mean_volume, two.mean_volume],
                     },
                     pressure_pa: [p1, one.oil_pa, if CONNECTED { two.oil_pa + d3 } else { p1 }, two.oil_pa],
                 };

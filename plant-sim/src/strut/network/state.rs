@@ -21,6 +21,8 @@ pub(in crate::strut) struct State {
     pub shear: [f64; 2],
     /// Energy held by the oil of the dampers, J.
     pub heat_j: [f64; 2],
+    /// Mean of the gas volumes over the static ones, over the time constant of a law with a memory.
+    pub mean_volume: [f64; 2],
 }
 
 impl State {
@@ -41,6 +43,7 @@ impl State {
             q2_m3_s: mix(self.q2_m3_s, other.q2_m3_s),
             shear: both(self.shear, other.shear),
             heat_j: both(self.heat_j, other.heat_j),
+            mean_volume: both(self.mean_volume, other.mean_volume),
         }
     }
 }

@@ -317,10 +317,11 @@ mod tests {
         sensor_sign = { force_N = -1.0 }
         sensor_offset = { p1_Pa = 1000.0 }
         [[unlisted]]
-        place = "path-1"
-        depends_on = "flow"
-        argument = [-1e-3, 0.0, 1e-3]
-        value = [-4e5, 0.0, 4e5]
+        place = "accumulator-1"
+        depends_on = "volume_change"
+        argument = [-1.0, 0.0, 1.0]
+        value = [1.2, 1.0, 0.8]
+        time_constant_s = 3.0
     "#;
 
     fn every_term() -> Effects {

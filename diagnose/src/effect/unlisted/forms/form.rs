@@ -33,6 +33,11 @@ pub trait Form: Sync {
         vec![]
     }
 
+    /// Time constant of a law with a memory, s, from the fitted numbers.
+    fn time_constant_s(&self, _fitted: &[f64]) -> Option<f64> {
+        None
+    }
+
     /// The table's values from the fitted numbers.
     fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64>;
 }

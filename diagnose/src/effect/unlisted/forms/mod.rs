@@ -8,6 +8,7 @@
 //! | `factor` | multiplies what is believed; one at rest | logarithmic rises from knot to knot |
 //! | `bell` | is added around one argument | height, position, half width |
 //! | `proportional` | is added and is proportional to its argument | the value at an argument of one |
+//! | `relaxing` | multiplies, and follows what has changed lately | its slope, time constant of the memory |
 //! | `settling` | is added or multiplies, and settles with time | its end, time constant |
 //! | `choke` | multiplies what is believed, and falls with the size of its argument | inverse argument, exponent |
 
@@ -18,6 +19,7 @@ mod factor;
 mod form;
 mod level;
 mod proportional;
+mod relaxing;
 mod rises;
 mod rising;
 mod settling;
@@ -31,6 +33,8 @@ pub use choke::Choke;
 pub use factor::Factor;
 pub use form::{Form, Grid};
 pub use level::Level;
-pub use proportional::Proportional;
+pub use proportional::{Proportional, ProportionalAmount};
+pub use relaxing::Relaxing;
+pub use rises::is_of_free_table;
 pub use rising::Rising;
 pub use settling::{SettlingAdded, SettlingFactor, SettlingLevel};

@@ -1,4 +1,4 @@
-//! A value that is added and is proportional to its argument: one number.
+//! A value that is added and is proportional to its argument: one number, of any sign or never negative.
 
 use super::form::{Form, Grid};
 use crate::parameter::Parameter;
@@ -13,7 +13,24 @@ impl Form for Proportional {
     }
 
     fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {
-        let slope = fitted.first().copied().unwrap_or(0.0);
-        grid.knots.iter().map(|x| slope * x).collect()
+        line(grid, fitted)
     }
+}
+
+/// The same, never negative.
+pub struct ProportionalAmount(pub &'static str);
+
+impl Form for ProportionalAmount {
+    fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
+        vec![Parameter::amount(self.0, grid.visible, grid.most())]
+    }
+
+    fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        line(grid, fitted)
+    }
+}
+
+fn line(grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+    let slope = fitted.first().copied().unwrap_or(0.0);
+    grid.knots.iter().map(|x| slope * x).collect()
 }

@@ -3,6 +3,14 @@
 use super::form::Grid;
 use crate::parameter::Parameter;
 
+/// Whether a key is that of a number of a free table: a value at a point, or a rise from point to point.
+#[must_use]
+pub fn is_of_free_table(key: &str) -> bool {
+    ["rise_", "log_rise_", "at_"]
+        .iter()
+        .any(|prefix| key.starts_with(prefix))
+}
+
 /// A parameter for each rise, made from its key.
 pub fn parameters(grid: &Grid, parameter: impl Fn(String) -> Parameter) -> Vec<Parameter> {
     (grid.knots.windows(2))

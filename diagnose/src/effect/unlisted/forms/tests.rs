@@ -47,13 +47,14 @@ fn a_choke_lets_half_pass_where_its_argument_is_the_inverse() {
 
 #[test]
 fn each_form_has_as_many_numbers_as_its_starts() {
-    let forms: [&dyn Form; 10] = [
+    let forms: [&dyn Form; 11] = [
         &Added,
         &Bell,
         &Choke,
         &Factor,
         &Level,
         &Proportional("mass_kg"),
+        &Relaxing,
         &Rising,
         &SettlingAdded("force_N"),
         &SettlingFactor,
@@ -91,4 +92,11 @@ fn what_is_proportional_goes_through_the_origin() {
         Proportional("mass_kg").values(&GRID, &[2.0]),
         [-4.0, -2.0, 0.0, 2.0, 6.0]
     );
+}
+
+#[test]
+fn what_relaxes_is_one_where_nothing_has_changed() {
+    let values = Relaxing.values(&GRID, &[-0.4, 3.0]);
+    assert!(values[2] == 1.0 && (values[3] - 0.6).abs() < 1e-12);
+    assert_eq!(Relaxing.time_constant_s(&[-0.4, 3.0]), Some(3.0));
 }

@@ -18,8 +18,16 @@ pub enum LawArgument {
     P1,
     /// Flow of the path, m3/s, out of the main chamber positive.
     Flow,
+    /// Rate at which the flow of the path changes, m3/s2. The law over it is a line through the origin, a mass of oil: two points.
+    FlowRate,
     /// Pressure drop across the pack, Pa; across a valve its size, without the sign.
     PressureDrop,
     /// Gas volume over the one at static pressure.
     RelativeVolume,
+    /// The same less its mean over the time constant of the law (a first-order lag): what has changed lately. A law over it has a memory.
+    VolumeChange,
+    /// Reading of the instrument, in the unit of its column.
+    Reading,
+    /// Rate at which the reading changes, in that unit a second.
+    ReadingRate,
 }

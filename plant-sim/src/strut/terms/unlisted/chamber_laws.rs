@@ -48,6 +48,7 @@ mod tests {
             depends_on,
             argument: vec![0.0, 1e7],
             value: value.to_vec(),
+            time_constant_s: None,
         };
         let laws = ChamberLaws::of(&[law(LawPlace::MainChamber, LawArgument::P1, [0.0, 1e-5])]);
         let (volume, slope) = laws.volume(5e6).unwrap();

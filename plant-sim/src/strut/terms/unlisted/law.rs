@@ -19,6 +19,7 @@ use crate::strut::characteristic::Characteristic;
 ///     depends_on: LawArgument::Displacement,
 ///     argument: vec![0.0, 0.05],
 ///     value: vec![1.0, 0.9],
+///     time_constant_s: None,
 /// };
 /// assert!((law.characteristic().value(0.025) - 0.95).abs() < 1e-15);
 /// let mut model = StrutModel::defender110(8000.0);
@@ -36,12 +37,18 @@ pub struct UnlistedLaw {
     pub argument: Vec<f64>,
     /// Value of the law at each of them; unit and meaning as [`LawPlace`] says.
     pub value: Vec<f64>,
+    /// Time constant of the law's memory, s; a law over [`LawArgument::VolumeChange`] has one, others have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub time_constant_s: Option<f64>,
 }
 
 impl Checked for UnlistedLaw {
     const LIMITS: &'static [Limit<Self>] = &[
         Limit::list("argument", Range::Finite, "", |law| &law.argument),
         Limit::list("value", Range::Finite, "", |law| &law.value),
+        Limit::optional("time_constant_s", Range::FromTo(1e-3, 1e6), "s", |law| {
+            law.time_constant_s
+        }),
     ];
 
     fn check_together(&self) -> Result<(), InvalidValue> {
@@ -56,8 +63,24 @@ impl Checked for UnlistedLaw {
             );
             return Err(InvalidValue::new("depends_on", what));
         }
+        if (self.depends_on == LawArgument::VolumeChange) != self.time_constant_s.is_some() {
+            let what = format!(
+                "belongs to laws over {}, and each of them needs one",
+                word(&LawArgument::VolumeChange)
+            );
+            return Err(InvalidValue::new("time_constant_s", what));
+        }
         increasing("argument", &self.argument)?;
         as_many("value", &self.value, "argument", &self.argument)?;
+        if self.depends_on == LawArgument::FlowRate
+            && !matches!((&self.argument[..], &self.value[..]), ([a, b], [c, d]) if *b == -a && *d == -c)
+        {
+            let what = format!(
+                "must be two values of opposite sign, as those of argument: a law over {} is a line through the origin",
+                word(&LawArgument::FlowRate)
+            );
+            return Err(InvalidValue::new("value", what));
+        }
         if self.place.form(self.depends_on) == LawForm::AddedNotFalling
             && let Some(k) = (1..self.value.len()).find(|&k| self.value[k] < self.value[k - 1])
         {
@@ -112,7 +135,7 @@ pub(in crate::strut::terms) fn check_all(laws: &[UnlistedLaw]) -> Result<(), Inv
 }
 
 /// The table of the law at a place over a quantity, if there is one.
-pub(super) fn law_at(laws: &[UnlistedLaw], place: LawPlace, over: LawArgument) -> Option<Characteristic> {
+pub(in crate::strut) fn law_at(laws: &[UnlistedLaw], place: LawPlace, over: LawArgument) -> Option<Characteristic> {
     laws.iter()
         .find(|law| law.place == place && law.depends_on == over)
         .map(UnlistedLaw::characteristic)
@@ -128,6 +151,7 @@ mod tests {
             depends_on,
             argument: vec![0.0, 1.0],
             value: value.to_vec(),
+            time_constant_s: None,
         }
     }
 
@@ -161,6 +185,34 @@ mod tests {
             law(LawPlace::Pack2, LawArgument::Displacement, [1.0, 0.5])
                 .check()
                 .is_ok()
+        );
+    }
+
+    #[test]
+    fn a_mass_of_oil_is_a_line_through_the_origin() {
+        let line = |argument: &[f64], value: &[f64]| UnlistedLaw {
+            argument: argument.to_vec(),
+            value: value.to_vec(),
+            ..law(LawPlace::Path2, LawArgument::FlowRate, [0.0; 2])
+        };
+        assert!(line(&[-1.0, 1.0], &[-2e6, 2e6]).check().is_ok());
+        assert!(line(&[-1.0, 1.0], &[0.0, 2e6]).check().is_err());
+        assert!(line(&[-1.0, 0.0, 1.0], &[-2e6, 0.0, 2e6]).check().is_err());
+    }
+
+    #[test]
+    fn a_memory_needs_its_time_constant_and_only_a_memory_has_one() {
+        let remembering = law(LawPlace::Accumulator1, LawArgument::VolumeChange, [1.0, 0.5]);
+        assert!(remembering.check().unwrap_err().to_string().contains("time_constant_s"));
+        let with = |law: UnlistedLaw| UnlistedLaw {
+            time_constant_s: Some(3.0),
+            ..law
+        };
+        assert!(with(remembering).check().is_ok());
+        assert!(
+            with(law(LawPlace::Accumulator1, LawArgument::Time, [1.0, 0.5]))
+                .check()
+                .is_err()
         );
     }
 }

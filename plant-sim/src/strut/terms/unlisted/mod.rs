@@ -18,9 +18,11 @@
 //! | `argument` | the quantities |
 //! | `law` | the table in a model file and its check |
 //! | `path_laws`, `chamber_laws`, `seal_law` | the tables as the solver reads them, at the places of the network |
+//! | `instrument_laws` | what instruments add to their readings |
 
 mod argument;
 mod chamber_laws;
+mod instrument_laws;
 mod law;
 mod path_laws;
 mod place;
@@ -31,6 +33,8 @@ pub use law::{EQUATION, UnlistedLaw};
 pub use place::{LawForm, LawPlace};
 
 pub(in crate::strut) use chamber_laws::ChamberLaws;
+pub(in crate::strut) use instrument_laws::InstrumentLaws;
+pub(in crate::strut) use law::law_at;
 pub(in crate::strut) use path_laws::{PathLaws, throttle, throttled};
 pub(in crate::strut) use seal_law::SealLaw;
 

@@ -23,6 +23,15 @@ pub(in crate::strut) struct PathLaws {
     throttle: Option<Characteristic>,
     gas: Option<Characteristic>,
     gas_in_time: Option<Characteristic>,
+    gas_memory: Option<GasMemory>,
+    held_back: Option<Characteristic>,
+}
+
+/// A factor on the gas pressure over what has changed of the gas volume lately.
+#[derive(Debug, Clone)]
+struct GasMemory {
+    factor: Characteristic,
+    time_constant_s: f64,
 }
 
 impl PathLaws {
@@ -36,8 +45,13 @@ impl PathLaws {
             strength: law_at(laws, LawPlace::pack(path), LawArgument::Displacement),
             strength_in_time: law_at(laws, LawPlace::pack(path), LawArgument::Time),
             throttle: throttle(laws, path.pick(LawPlace::Valve1, LawPlace::Valve2)),
-            gas: law_at(laws, LawPlace::accumulator(path), LawArgument::RelativeVolume),
-            gas_in_time: law_at(laws, LawPlace::accumulator(path), LawArgument::Time),
+            gas: gas(laws, path, LawArgument::RelativeVolume).map(UnlistedLaw::characteristic),
+            gas_in_time: gas(laws, path, LawArgument::Time).map(UnlistedLaw::characteristic),
+            gas_memory: gas(laws, path, LawArgument::VolumeChange).map(|law| GasMemory {
+                factor: law.characteristic(),
+                time_constant_s: law.time_constant_s.unwrap_or(f64::INFINITY),
+            }),
+            held_back: law_at(laws, LawPlace::piston(path), LawArgument::RelativeVolume),
         }
     }
 
@@ -76,16 +90,39 @@ impl PathLaws {
         self.throttle.as_ref().map_or(0.0, |law| 1.0 - throttled(law, drop_pa))
     }
 
-    /// Factor on the gas pressure at a gas volume over the static one and a time, if there is such a law.
+    /// Factor on the gas pressure at a gas volume over the static one, what has changed of it lately, and a time; if there is such a
+    /// law.
     #[inline]
-    pub fn gas_factor(&self, relative_volume: f64, time_s: f64) -> Option<f64> {
-        let by =
-            |law: &Option<Characteristic>, argument| law.as_ref().map(|law| law.value(argument).max(LEAST_GAS_FACTOR));
-        match (by(&self.gas, relative_volume), by(&self.gas_in_time, time_s)) {
-            (None, None) => None,
-            (one, other) => Some(one.unwrap_or(1.0) * other.unwrap_or(1.0)),
+    pub fn gas_factor(&self, relative_volume: f64, changed: f64, time_s: f64) -> Option<f64> {
+        if self.gas.is_none() && self.gas_in_time.is_none() && self.gas_memory.is_none() {
+            return None;
         }
+        let by =
+            |law: Option<&Characteristic>, argument| law.map_or(1.0, |law| law.value(argument).max(LEAST_GAS_FACTOR));
+        let memory = self.gas_memory.as_ref().map(|memory| &memory.factor);
+        Some(by(self.gas.as_ref(), relative_volume) * by(self.gas_in_time.as_ref(), time_s) * by(memory, changed))
     }
+
+    /// What an implicit step of a duration leaves of a departure of the gas volume from its mean, 0 to 1; 0 without a memory.
+    #[inline]
+    pub fn remembered(&self, duration_s: f64) -> f64 {
+        self.gas_memory
+            .as_ref()
+            .map_or(0.0, |memory| 1.0 / (1.0 + duration_s / memory.time_constant_s))
+    }
+
+    /// Pressure that the floating piston holds back at a gas volume over the static one, Pa, if there is such a law.
+    #[inline]
+    pub fn held_back_pa(&self, relative_volume: f64) -> Option<f64> {
+        self.held_back.as_ref().map(|law| law.value(relative_volume).max(0.0))
+    }
+}
+
+/// The law of the gas of an accumulator is its own or, where it has none, the one of both.
+fn gas(laws: &[UnlistedLaw], path: FlowPath, over: LawArgument) -> Option<&UnlistedLaw> {
+    [LawPlace::accumulator(path), LawPlace::Accumulators]
+        .into_iter()
+        .find_map(|place| laws.iter().find(|law| law.place == place && law.depends_on == over))
 }
 
 /// The law of a valve is its own or, where it has none, the one of all three.
@@ -111,6 +148,7 @@ mod tests {
             depends_on,
             argument: argument.to_vec(),
             value: value.to_vec(),
+            time_constant_s: None,
         }
     }
 
@@ -128,7 +166,7 @@ mod tests {
         assert!(
             none.series_drop(1e-3).is_none()
                 && none.parallel_flow(1e6).is_none()
-                && none.gas_factor(0.5, 9.0).is_none()
+                && none.gas_factor(0.5, 0.1, 9.0).is_none()
         );
     }
 
@@ -148,11 +186,18 @@ mod tests {
         ];
         let [one, two] = FlowPath::ALL.map(|path| PathLaws::of(&laws, path));
         assert_eq!(
-            (one.series_drop(1e-3), one.weakening(0.0, 0.0), one.gas_factor(0.5, 0.0)),
+            (
+                one.series_drop(1e-3),
+                one.weakening(0.0, 0.0),
+                one.gas_factor(0.5, 0.0, 0.0)
+            ),
             (None, 1.0, None)
         );
         assert_eq!(two.series_drop(5e-4), Some((2.5e5, 5e8)));
-        assert_eq!((two.weakening(0.0, 0.0), two.gas_factor(0.5, 0.0)), (2.0, Some(1.5)));
+        assert_eq!(
+            (two.weakening(0.0, 0.0), two.gas_factor(0.5, 0.0, 0.0)),
+            (2.0, Some(1.5))
+        );
         assert!(
             (one.throttled_fraction(-5e5) - 0.4).abs() < 1e-12,
             "valve 1 has a law of its own"
@@ -182,6 +227,6 @@ mod tests {
         let one = PathLaws::of(&laws, FlowPath::One);
         assert_eq!((one.weakening(0.0, 0.0), one.weakening(0.0, 10.0)), (2.0, 4.0));
         assert!((one.groove(0.0, 5.0) - 2e-7).abs() < 1e-20);
-        assert!((one.gas_factor(1.0, 10.0).unwrap() - 1.6).abs() < 1e-12);
+        assert!((one.gas_factor(1.0, 0.0, 10.0).unwrap() - 1.6).abs() < 1e-12);
     }
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::argument::LawArgument;
 use crate::strut::flow_path::FlowPath;
+use crate::strut::terms::COLUMNS;
 
 /// Where an unmodelled law acts. The place fixes what the law's value is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,6 +36,13 @@ pub enum LawPlace {
     /// Damper pack 2: a factor on its pressure drop.
     #[serde(rename = "pack-2")]
     Pack2,
+    /// Beside valve 3: a flow coefficient, m3/s/sqrt(Pa).
+    #[serde(rename = "beside-valve-3")]
+    BesideValve3,
+    /// Every valve: a time that is added to its response, s.
+    ValveTiming,
+    /// Every valve: the time that its movement takes, s, 95 % of which is done when the response is over.
+    ValveMovement,
     /// Valve 1: a factor on its flow.
     #[serde(rename = "valve-1")]
     Valve1,
@@ -53,6 +61,33 @@ pub enum LawPlace {
     /// Accumulator 2: a factor on its gas pressure.
     #[serde(rename = "accumulator-2")]
     Accumulator2,
+    /// Both accumulators: a factor on the gas pressure of each.
+    #[serde(rename = "accumulator-1..2")]
+    Accumulators,
+    /// Floating piston of accumulator 1: the level of a friction against its motion, Pa.
+    #[serde(rename = "accumulator-1-friction")]
+    Accumulator1Friction,
+    /// Floating piston of accumulator 2: the same.
+    #[serde(rename = "accumulator-2-friction")]
+    Accumulator2Friction,
+    /// Instrument of the displacement: what it adds to the truth, m.
+    #[serde(rename = "sensor:displacement_m")]
+    InstrumentDisplacement,
+    /// Load cell: the same, N.
+    #[serde(rename = "sensor:force_N")]
+    InstrumentForce,
+    /// Instrument of p1: the same, Pa.
+    #[serde(rename = "sensor:p1_Pa")]
+    InstrumentP1,
+    /// Instrument of p2: the same.
+    #[serde(rename = "sensor:p2_Pa")]
+    InstrumentP2,
+    /// Instrument of p3: the same.
+    #[serde(rename = "sensor:p3_Pa")]
+    InstrumentP3,
+    /// Instrument of p4: the same.
+    #[serde(rename = "sensor:p4_Pa")]
+    InstrumentP4,
 }
 
 /// What the value of a law does.
@@ -87,13 +122,27 @@ impl LawPlace {
             ],
             Self::MainChamber => &[LawArgument::P1],
             Self::MainChamberLoss => &[LawArgument::P1, LawArgument::Time],
-            Self::Path1 | Self::Path2 => &[LawArgument::Flow],
+            Self::Path1 => &[LawArgument::Flow],
+            Self::Path2 => &[LawArgument::Flow, LawArgument::FlowRate],
             Self::BesidePack1 | Self::BesidePack2 => {
                 &[LawArgument::PressureDrop, LawArgument::Displacement, LawArgument::Time]
             }
             Self::Pack1 | Self::Pack2 => &[LawArgument::Displacement, LawArgument::Time],
             Self::Valve1 | Self::Valve2 | Self::Valve3 | Self::Valves => &[LawArgument::PressureDrop],
-            Self::Accumulator1 | Self::Accumulator2 => &[LawArgument::RelativeVolume, LawArgument::Time],
+            Self::BesideValve3 => &[LawArgument::Displacement, LawArgument::Time],
+            Self::ValveTiming | Self::ValveMovement => &[LawArgument::PressureDrop],
+            Self::Accumulator1 | Self::Accumulator2 | Self::Accumulators => &[
+                LawArgument::RelativeVolume,
+                LawArgument::VolumeChange,
+                LawArgument::Time,
+            ],
+            Self::Accumulator1Friction | Self::Accumulator2Friction => &[LawArgument::RelativeVolume],
+            Self::InstrumentDisplacement
+            | Self::InstrumentForce
+            | Self::InstrumentP1
+            | Self::InstrumentP2
+            | Self::InstrumentP3
+            | Self::InstrumentP4 => &[LawArgument::Reading, LawArgument::Time, LawArgument::ReadingRate],
         }
     }
 
@@ -102,11 +151,19 @@ impl LawPlace {
     pub fn form(self, argument: LawArgument) -> LawForm {
         match self {
             Self::MainSeal | Self::MainSealFriction | Self::MainChamberLoss => LawForm::Added,
+            Self::BesideValve3 | Self::ValveTiming | Self::ValveMovement => LawForm::Added,
+            Self::Accumulator1Friction | Self::Accumulator2Friction => LawForm::Added,
+            Self::InstrumentDisplacement
+            | Self::InstrumentForce
+            | Self::InstrumentP1
+            | Self::InstrumentP2
+            | Self::InstrumentP3
+            | Self::InstrumentP4 => LawForm::Added,
             Self::MainChamber | Self::Path1 | Self::Path2 => LawForm::AddedNotFalling,
             Self::BesidePack1 | Self::BesidePack2 if argument == LawArgument::PressureDrop => LawForm::AddedNotFalling,
             // A groove: its size may change with displacement or time as it likes.
             Self::BesidePack1 | Self::BesidePack2 => LawForm::Added,
-            Self::Pack1 | Self::Pack2 | Self::Accumulator1 | Self::Accumulator2 => LawForm::Factor,
+            Self::Pack1 | Self::Pack2 | Self::Accumulator1 | Self::Accumulator2 | Self::Accumulators => LawForm::Factor,
             Self::Valve1 | Self::Valve2 | Self::Valve3 | Self::Valves => LawForm::Factor,
         }
     }
@@ -115,6 +172,20 @@ impl LawPlace {
     #[must_use]
     pub fn holds_one_law(self) -> bool {
         matches!(self, Self::MainSeal | Self::MainSealFriction)
+    }
+
+    /// The instrument behind a column of a strut's recording.
+    pub(super) fn instrument(column: &str) -> Option<Self> {
+        let places = [
+            Self::InstrumentDisplacement,
+            Self::InstrumentForce,
+            Self::InstrumentP1,
+            Self::InstrumentP2,
+            Self::InstrumentP3,
+            Self::InstrumentP4,
+        ];
+        let at = COLUMNS.iter().position(|known| *known == column)?;
+        places.get(at).copied()
     }
 
     /// The place in series with a path.
@@ -130,6 +201,11 @@ impl LawPlace {
     /// The damper pack of a path.
     pub(super) fn pack(path: FlowPath) -> Self {
         path.pick(Self::Pack1, Self::Pack2)
+    }
+
+    /// The floating piston at the end of a path.
+    pub(super) fn piston(path: FlowPath) -> Self {
+        path.pick(Self::Accumulator1Friction, Self::Accumulator2Friction)
     }
 
     /// The accumulator at the end of a path.

@@ -60,6 +60,7 @@ mod tests {
                 depends_on,
                 argument: vec![0.0, 10.0],
                 value: vec![0.0, 10.0],
+                time_constant_s: None,
             }];
             let law = SealLaw::at(&laws, LawPlace::MainSealFriction).unwrap();
             assert_eq!(law.value_n(&rod), value);

@@ -26,13 +26,13 @@ fn on_vcan(test: impl FnOnce(&str)) {
 
 /// What is driven on every bus: the default ride, and a lane change in the middle of Belgian block.
 const DRIVEN: [&[&str]; 2] = [
-    &["--duration", "5"],
+    &["--duration-s", "5"],
     &[
         "--scenario",
         "lane-change-on-belgian",
         "--entry-m",
         "30",
-        "--duration",
+        "--duration-s",
         "9",
     ],
 ];
@@ -188,7 +188,7 @@ fn a_killed_plant_leaves_a_controller_that_is_safe_and_ends() {
             "hil",
             "--node",
             "plant",
-            "--duration",
+            "--duration-s",
             "60",
             "--bus",
             bus,
@@ -220,14 +220,14 @@ fn a_killed_controller_leaves_a_plant_that_closes_its_valves_and_drives_on() {
             "hil",
             "--node",
             "plant",
-            "--duration",
+            "--duration-s",
             "60",
             "--bus",
             bus,
             "--out",
             out.to_str().unwrap(),
         ]);
-        let mut controller = start(&["hil", "--node", "controller", "--bus", bus]);
+        let mut controller = start(&["hil", "--no-out", "--node", "controller", "--bus", bus]);
         wait_for_commands(&mut bystander);
         controller.kill().unwrap();
         controller.wait().unwrap();
@@ -260,7 +260,7 @@ fn a_killed_controller_leaves_a_plant_that_closes_its_valves_and_drives_on() {
 #[test]
 fn a_node_without_a_partner_and_a_missing_interface_say_what_to_do() {
     on_vcan(|_| {
-        let output = run(&["hil", "--bus", "socketcan:vcan99"]);
+        let output = run(&["hil", "--no-out", "--bus", "socketcan:vcan99"]);
         let text = support::complaint(&output);
         assert!(text.contains("ip link add dev vcan99 type vcan"), "{text}");
     });

@@ -1,4 +1,4 @@
-//! A failure of a command: one line for the user, and exit status 2.
+//! A failure of a command: one line for the user, and exit status 2, or 128 and the number of the signal that stopped it.
 //!
 //! Libraries have typed errors; here, at the edge, only their text matters. `?` turns any of them into a [`Failure`];
 //! `Failure::new` is for what the command line itself finds wrong.
@@ -9,6 +9,7 @@ use std::io::Write as _;
 use std::process::ExitCode;
 
 use clap::error::ErrorKind;
+use oleo_report::interrupt;
 
 /// What went wrong, where, and what to do about it, as one line.
 #[derive(Debug)]
@@ -21,10 +22,15 @@ impl Failure {
         Failure(text.into())
     }
 
-    /// Prints the line and gives the exit status that goes with it. A closed standard error is no further problem.
+    /// Prints the line and gives the exit status that goes with it. A command that a signal stopped did not fail. A closed
+    /// standard error is no further problem.
     pub fn report(self) -> ExitCode {
-        let _ = writeln!(std::io::stderr(), "error: {self}");
-        ExitCode::from(2)
+        let (what, status) = match interrupt::status() {
+            Some(status) => ("stopped", status),
+            None => ("error", 2),
+        };
+        let _ = writeln!(std::io::stderr(), "{what}: {self}");
+        ExitCode::from(status)
     }
 }
 
@@ -49,9 +55,14 @@ impl<E: Error> From<E> for Failure {
 /// Answer to arguments that do not parse: help and version are answers too, the rest is one line.
 pub fn usage(error: &clap::Error) -> Result<ExitCode, Failure> {
     match error.kind() {
+        // What was printed may still be in a buffer, which a full disk refuses.
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
-            let _ = error.print();
-            Ok(ExitCode::SUCCESS)
+            match error.print().and_then(|()| std::io::stdout().flush()) {
+                Err(refused) if refused.kind() != std::io::ErrorKind::BrokenPipe => {
+                    Err(Failure(format!("standard output: cannot be written: {refused}")))
+                }
+                _ => Ok(ExitCode::SUCCESS),
+            }
         }
         ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             let _ = error.print();

@@ -1,16 +1,18 @@
 //! The `oleo` command line: it passes the arguments to the commands and converts their results into an exit status.
 //!
 //! Everything a command does is in `commands/NAME.rs` (arguments, help and how to run it) and in the library it calls.
-//! The exit status is 0 if the command succeeded, 1 if a check failed, and 2 if the input was bad or the work could not
-//! be done. In the last case one line on standard error says what is wrong, where, and what to do.
+//! The exit status is 0 if the command succeeded, 1 if a check failed, 2 if the input was bad or the work could not be
+//! done, and 128 and the number of the signal if one stopped it. In the last two cases one line on standard error says what is
+//! wrong, where, and what to do.
 
 mod commands;
 mod failure;
+mod results;
 
 use std::process::ExitCode;
 
 use clap::builder::styling::{AnsiColor, Styles};
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use failure::Failure;
 
 const STYLES: Styles = Styles::styled()
@@ -21,9 +23,9 @@ const STYLES: Styles = Styles::styled()
 
 /// Controllable hydropneumatic suspension: controller, plant simulator, hardware-in-the-loop runs and diagnosis.
 #[derive(Parser)]
-#[command(name = "oleo", version, styles = STYLES, max_term_width = 110, subcommand_required = true)]
+#[command(name = "oleo", version = results::VERSION, styles = STYLES, max_term_width = 110, subcommand_required = true)]
 #[command(
-    after_help = "Exit status: 0 if the command succeeded, 1 if a check failed, 2 if an input was bad. For bad input, one line on standard error says what is wrong, where, and what to do."
+    after_help = "Exit status: 0 if the command succeeded, 1 if a check failed, 2 if an input was bad, 128 + N if signal N stopped it. For bad input, one line on standard error says what is wrong, where, and what to do.\n\nWithout --out, results are written to a folder in oleo-out; the last line that a command prints is the path of its page."
 )]
 struct CommandLine {
     #[command(subcommand)]
@@ -39,6 +41,7 @@ enum Command {
     Rig(commands::rig::Args),
     Diagnose(commands::diagnose::Args),
     Predict(commands::predict::Args),
+    Show(commands::show::Args),
 }
 
 fn main() -> ExitCode {
@@ -50,8 +53,12 @@ fn main() -> ExitCode {
             Command::Rig(args) => commands::rig::run(args),
             Command::Diagnose(args) => commands::diagnose::run(args),
             Command::Predict(args) => commands::predict::run(args),
+            Command::Show(args) => commands::show::run(args, CommandLine::command()),
         },
         Err(error) => failure::usage(&error),
     };
-    answer.unwrap_or_else(|failure: Failure| failure.report())
+    answer.unwrap_or_else(|failure: Failure| {
+        results::tidy();
+        failure.report()
+    })
 }

@@ -511,7 +511,7 @@ fn no_output_replaces_an_input() {
         .arg(folder.join("model.toml"));
     let over_recording = predict.arg("--out").arg(recording);
     for command in [
-        &mut campaign.command(Path::new("campaign/../campaign")),
+        campaign.command(Path::new("campaign/../campaign")).arg("--force"),
         over_recording,
         &mut over_model,
     ] {

@@ -71,6 +71,7 @@ fn diagnosed(folder: &Path) -> Value {
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
     let report: Value = serde_json::from_str(&text(&out.join("report.json"))).expect("JSON");
     follows_the_schema(&report);
+    support::is_as_documented(&out, "diagnose");
     report
 }
 

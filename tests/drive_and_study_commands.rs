@@ -1,6 +1,8 @@
 //! `oleo drive` and `oleo study` as a user meets them: files whole, the same on any number of threads, one clear line on
 //! bad input.
 
+mod support;
+
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -48,7 +50,7 @@ fn every_manoeuvre_leaves_table_data_summary_and_page() {
         assert!(text(&run.stdout).contains("completed"), "{name}: {}", text(&run.stdout));
         assert!(run.stderr.is_empty(), "{name}: {}", text(&run.stderr));
         let out = folder.path().join(name);
-        summary(&out);
+        support::is_as_documented(&out, "drive");
         let page = std::fs::metadata(out.join("report.html")).expect("a page");
         assert!(page.len() < 8_000_000, "{name}: {} bytes", page.len());
         let data = if name == "straight" {
@@ -70,7 +72,7 @@ fn manoeuvres_go_with_roads_drivers_and_loads() {
         assert!(run.status.success(), "{name}: {}", text(&run.stderr));
         summary(&folder.path().join(name))["handling_model"].clone()
     };
-    let felt = |run: &serde_json::Value| run["driver_weighted_rms_m_s2"].as_f64().expect("a number");
+    let felt = |run: &serde_json::Value| run["weighted_rms_driver_m_s2"].as_f64().expect("a number");
     let flat = lane_change("flat", &["--setting", "soft", "--speed-km-h", "50"]);
     let rough = lane_change(
         "rough",
@@ -221,6 +223,7 @@ fn the_optimiser_shares_finished_runs_and_does_not_depend_on_threads() {
         ];
         let run = oleo(folder.path(), &[&arguments[..], &["--threads", threads]].concat());
         assert!(run.status.success(), "{}", text(&run.stderr));
+        support::is_as_documented(&folder.path().join(out), "study-optimise");
         (
             summary(&folder.path().join(out)),
             std::fs::read(folder.path().join(out).join("path.csv")).expect("a path"),
@@ -247,6 +250,7 @@ fn the_control_study_scores_resumes_and_does_not_depend_on_threads() {
             &[&small[..], &["--threads", threads, "--out", out]].concat(),
         );
         assert!(run.status.success(), "{}", text(&run.stderr));
+        support::is_as_documented(&folder.path().join(out), "study-control");
         summary(&folder.path().join(out))
     };
     let first = study("a", "2");
@@ -279,6 +283,7 @@ fn the_robustness_study_draws_the_same_vehicle_alone_and_among_others() {
             &["study", "robust", "--first", first, "--vehicles", count, "--out", out],
         );
         assert!(run.status.success(), "{}", text(&run.stderr));
+        support::is_as_documented(&folder.path().join(out), "study-robust");
         let file = std::fs::read_to_string(folder.path().join(out).join("vehicles.csv")).expect("vehicles");
         file.lines().skip(1).map(str::to_owned).collect::<Vec<_>>()
     };

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use oleo_hil::candump::parse_line;
 use oleo_hil::scenario::BUILT_IN;
-use support::{complaint, no_panic, oleo, run, summary};
+use support::{complaint, is_as_documented, no_panic, oleo, run, summary};
 
 fn hil(arguments: &[&str], out: &Path) -> serde_json::Value {
     let mut all = vec!["hil", "--out", out.to_str().unwrap()];
@@ -21,6 +21,7 @@ fn hil(arguments: &[&str], out: &Path) -> serde_json::Value {
         "{arguments:?}\n{text}{}",
         String::from_utf8_lossy(&output.stderr)
     );
+    is_as_documented(out, "hil");
     summary(out)
 }
 
@@ -58,7 +59,8 @@ fn a_lane_change_in_the_middle_of_a_rough_road() {
     let scenario = |more: &[&str], name: &str| {
         let arguments = [&["--scenario", "lane-change-on-belgian"], more].concat();
         let mut summary = hil(&arguments, &folder.path().join(name));
-        for key in ["wall_s", "real_time_factor"] {
+        // The version names the commit.
+        for key in ["wall_s", "real_time_factor", "version"] {
             summary.as_object_mut().unwrap().remove(key);
         }
         summary
@@ -77,7 +79,7 @@ fn a_lane_change_in_the_middle_of_a_rough_road() {
     assert_eq!(first, expected, "see the comment of this test");
     let page = fs::read_to_string(folder.path().join("first/report.html")).unwrap();
     assert!(page.contains("<h2>Manoeuvre</h2>"));
-    let hard = scenario(&["--driver", "hard", "--load", "laden", "--speed", "40"], "hard");
+    let hard = scenario(&["--driver", "hard", "--load", "laden", "--speed-km-h", "40"], "hard");
     assert_ne!(hard["command_hash"], first["command_hash"]);
     assert_eq!(
         (&hard["driver"], &hard["load"], &first["driver"]),
@@ -141,7 +143,7 @@ fn a_fixed_setting_drives_as_without_a_bus() {
 fn the_default_run_leaves_what_it_promises() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("run");
-    let summary = hil(&["--duration", "5"], &out);
+    let summary = hil(&["--duration-s", "5"], &out);
     for key in [
         "ticks",
         "simulated_s",
@@ -204,6 +206,7 @@ fn the_default_run_leaves_what_it_promises() {
     assert_eq!(
         names,
         [
+            ".oleo",
             "candump.log",
             "junit.xml",
             "report.html",
@@ -265,7 +268,7 @@ fn an_image_that_cannot_run_is_one_line() {
     head.extend([40, 0]);
     fs::write(&image, head).unwrap();
     let image = image.to_str().unwrap();
-    let mut command = oleo(&["hil", "--firmware", image]);
+    let mut command = oleo(&["hil", "--no-out", "--firmware", image]);
     let text = complaint(&command.env("PATH", folder.path()).output().unwrap());
     assert!(text.contains("install the package qemu-system-arm"), "{text}");
     let text = complaint(&run(&["hil", "--firmware", "Cargo.toml"]));
@@ -281,7 +284,7 @@ fn an_image_that_cannot_run_is_one_line() {
         stiff.to_str().unwrap(),
     ]));
     assert!(text.contains("sets strategy, which an image has of its own"), "{text}");
-    let conflict = run(&["hil", "--firmware", image, "--strategy", "always-stiff"]);
+    let conflict = run(&["hil", "--no-out", "--firmware", image, "--strategy", "always-stiff"]);
     assert_eq!(conflict.status.code(), Some(2));
 }
 
@@ -311,9 +314,9 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         (&["--vehicle", &path("strut.toml")], "strut.toml"),
         (&["--road", &path("road.crg")], "road.crg"),
         (&["--road", "cobbles"], "cobbles"),
-        (&["--speed", "-1"], "--speed -1"),
-        (&["--speed", "nan"], "--speed NaN"),
-        (&["--duration", "1e9"], "--duration 1000000000"),
+        (&["--speed-km-h", "-1"], "--speed-km-h -1"),
+        (&["--speed-km-h", "nan"], "--speed-km-h NaN"),
+        (&["--duration-s", "1e9"], "--duration-s 1000000000"),
         (&["--strategy", "sporty"], "always-soft"),
         (&["--clock", "sundial"], "lockstep, realtime"),
         (&["--bus", "can0"], "socketcan:vcan0"),
@@ -338,10 +341,13 @@ fn bad_input_is_one_line_and_leaves_nothing() {
             "--driver does not belong",
         ),
         (
-            &["--scenario", "step-steer", "--duration", "4"],
+            &["--scenario", "step-steer", "--duration-s", "4"],
             "--begin-s is 6: the drive ends",
         ),
-        (&["--manoeuvre", "lane-change", "--speed", "0"], "--speed-km-h is 0"),
+        (
+            &["--manoeuvre", "lane-change", "--speed-km-h", "0"],
+            "--speed-km-h is 0",
+        ),
         (
             &["--manoeuvre", "straight", "--side-slope-percent", "50"],
             "--side-slope-percent is 50",
@@ -355,7 +361,7 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         assert!(!Path::new(&out).exists(), "{arguments:?} left something");
     }
     for folder_that_cannot_be in [path("a-file"), path("no/such/parent"), "/proc/oleo".into()] {
-        complaint(&run(&["hil", "--duration", "0.1", "--out", &folder_that_cannot_be]));
+        complaint(&run(&["hil", "--duration-s", "0.1", "--out", &folder_that_cannot_be]));
     }
 }
 
@@ -367,7 +373,7 @@ fn real_time_reports_its_deadlines() {
         "hil",
         "--clock",
         "realtime",
-        "--duration",
+        "--duration-s",
         "1",
         "--out",
         out.to_str().unwrap(),

@@ -1,5 +1,7 @@
 //! `oleo rig` and `oleo predict` as a user meets them: files whole, exit status, one clear line on bad input.
 
+mod support;
+
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -40,10 +42,10 @@ fn every_measurement_leaves_table_data_summary_and_page() {
         let run = oleo(folder.path(), &["rig", measurement, "--out", measurement]);
         assert!(run.status.success(), "{measurement}: {}", text(&run.stderr));
         assert!(text(&run.stdout).lines().count() > 4, "{measurement} prints a table");
+        let said = text(&run.stderr);
         assert!(
-            run.stderr.is_empty(),
-            "no progress bar without a terminal: {}",
-            text(&run.stderr)
+            !said.contains(['\r', '\u{1b}']),
+            "no progress bar without a terminal: {said}"
         );
         let written = files(&folder.path().join(measurement));
         for name in [data, "summary.json", "report.html"] {
@@ -54,10 +56,42 @@ fn every_measurement_leaves_table_data_summary_and_page() {
         }
         let summary = std::fs::read_to_string(folder.path().join(measurement).join("summary.json")).expect("a file");
         serde_json::from_str::<serde_json::Value>(&summary).expect("JSON");
+        support::is_as_documented(&folder.path().join(measurement), &format!("rig-{measurement}"));
         let page = std::fs::metadata(folder.path().join(measurement).join("report.html")).expect("a file");
         assert!(page.len() < 8_000_000, "{measurement}: {} bytes", page.len());
     }
     assert_eq!(files(folder.path()).len(), 6, "nothing else is left behind");
+}
+
+/// A page does not contradict its table: captions have the figures of the table, and a limit says where it is judged.
+#[test]
+fn sentences_have_the_figures_of_the_table() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let said = |measurement: &str| text(&oleo(folder.path(), &["rig", measurement, "--out", measurement]).stdout);
+    let page = |measurement: &str| {
+        std::fs::read_to_string(folder.path().join(measurement).join("report.html")).expect("a page")
+    };
+    let (table, spring) = (said("spring"), page("spring"));
+    let row = table
+        .lines()
+        .find(|line| line.contains("largest deviation from isothermal "))
+        .expect("a row");
+    for figure in row
+        .split_whitespace()
+        .filter(|word| word.starts_with(['+', '-']) && word.len() > 1)
+    {
+        assert!(spring.contains(&format!("by {figure} % at most")), "{figure}");
+    }
+    assert!(row.matches(['+', '-']).count() >= 2, "{row}");
+    let (table, limits) = (said("limits"), page("limits"));
+    for said in [&table, &limits] {
+        assert!(said.contains("at full bump of the test rig (+40 mm)"), "{table}");
+    }
+    let met = table.lines().filter(|line| line.ends_with("yes")).count();
+    assert!(
+        limits.contains(&format!("{met} of 7 design specifications are met")),
+        "{table}"
+    );
 }
 
 #[test]
@@ -98,10 +132,13 @@ fn bad_input_is_one_line_exit_status_2_and_nothing_written() {
             &["rig", "spring", "--strut", "no.toml", "--out", "out"],
             "no.toml: cannot read the model",
         ),
-        (&["rig", "spring", "--bump", "400", "--out", "out"], "--bump 400: give"),
         (
-            &["rig", "damping", "--speed", "nan", "--out", "out"],
-            "--speed NaN: give",
+            &["rig", "spring", "--bump-mm", "400", "--out", "out"],
+            "--bump-mm 400: give",
+        ),
+        (
+            &["rig", "damping", "--speed-m-s", "nan", "--out", "out"],
+            "--speed-m-s NaN: give",
         ),
         (&["rig", "limits", "--out", "no/such/out"], "create it first"),
         (&["rig", "limits", "--out", "bad.toml"], "not a folder"),
@@ -109,7 +146,7 @@ fn bad_input_is_one_line_exit_status_2_and_nothing_written() {
             &["rig", "replay", "no.csv", "--out", "out"],
             "no.csv: cannot read the recording",
         ),
-        (&["rig", "limits", "--static-load", "-5"], "--static-load"),
+        (&["rig", "limits", "--static-load-n", "-5"], "--static-load-n"),
         (
             &["predict", "--model", "bad.toml", "bad.toml", "--out", "sim.csv"],
             "bad.toml",

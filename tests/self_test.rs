@@ -1,6 +1,8 @@
 //! `oleo diagnose --self-test` as a user meets it: the same tables on any number of threads, going on where it stopped, one
 //! clear line on bad input.
 
+mod support;
+
 use std::path::Path;
 use std::process::{Command, Output};
 
@@ -26,7 +28,16 @@ fn a_self_test_goes_on_where_it_stopped_and_is_the_same_on_any_number_of_threads
     let both = with(&["--campaigns", "2", "--out", "a", "--threads", "2"]);
     assert!(both.status.success(), "{}", text(&both.stderr));
     let anew = with(&["--campaigns", "2", "--out", "b", "--threads", "1"]);
-    assert_eq!(text(&both.stdout), text(&anew.stdout));
+    // The last line is the path of the page.
+    let said = |output: &[u8]| {
+        text(output)
+            .lines()
+            .rev()
+            .skip(1)
+            .map(str::to_owned)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(said(&both.stdout), said(&anew.stdout));
     for name in [
         "summary.json",
         "power.csv",
@@ -38,6 +49,7 @@ fn a_self_test_goes_on_where_it_stopped_and_is_the_same_on_any_number_of_threads
         assert_eq!(of("a"), of("b"), "{name}");
     }
     assert!(folder.path().join("a/report.html").exists());
+    support::is_as_documented(&folder.path().join("a"), "self-test");
     // Three lines: what wrote it, and two campaigns, none made twice.
     let ledger = std::fs::read_to_string(folder.path().join("a/trials.jsonl")).expect("a ledger");
     assert_eq!(ledger.lines().count(), 3);
@@ -114,7 +126,7 @@ fn bad_arguments_are_one_line_that_says_what_to_do() {
     std::fs::write(folder.path().join("trials.jsonl"), "{\"oleo_self_test\":0}\n").expect("a file");
     let run = oleo(
         folder.path(),
-        &["diagnose", "--self-test", "--campaigns", "1", "--out", "."],
+        &["diagnose", "--self-test", "--campaigns", "1", "--out", ".", "--force"],
     );
     assert_eq!(run.status.code(), Some(2));
     assert!(

@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::{Child, Output};
 use std::time::{Duration, Instant};
 
-use support::{no_panic, run, start, summary};
+use support::{is_as_documented, no_panic, run, start, summary};
 
 /// A serial cable: what comes in at one end goes out at the other.
 fn cable() -> [String; 2] {
@@ -66,7 +66,7 @@ fn words(out: &Path) -> Vec<u16> {
 
 #[test]
 fn two_processes_command_what_one_does() {
-    same_in_two_processes(&["--duration", "3"]);
+    same_in_two_processes(&["--duration-s", "3"]);
 }
 
 #[test]
@@ -76,7 +76,7 @@ fn two_processes_command_what_one_does_in_a_lane_change() {
         "lane-change-on-belgian",
         "--entry-m",
         "30",
-        "--duration",
+        "--duration-s",
         "9",
     ]);
 }
@@ -106,6 +106,7 @@ fn same_in_two_processes(driven: &[&str]) {
             String::from_utf8_lossy(&output.stderr)
         );
     }
+    is_as_documented(Path::new(&path("controller")), "hil-controller");
     let one = summary(Path::new(&path("one")));
     for node in ["plant", "controller"] {
         assert_eq!(
@@ -140,7 +141,7 @@ fn a_killed_controller_leaves_closed_valves() {
         "plant",
         "--strategy",
         "always-soft",
-        "--duration",
+        "--duration-s",
         "240",
         "--bus",
         &here,
@@ -183,7 +184,7 @@ fn a_killed_plant_leaves_a_safe_controller_that_ends() {
         "hil",
         "--node",
         "plant",
-        "--duration",
+        "--duration-s",
         "600",
         "--bus",
         &here,
@@ -218,7 +219,7 @@ fn nodes_with_different_vehicles_say_so() {
     let text = include_str!("../plant-sim/presets/defender110.toml");
     std::fs::write(&file, text.replace("strut_spacing_m = 1.0", "strut_spacing_m = 1.2")).unwrap();
     let [here, there] = cable();
-    let controller = start(&["hil", "--node", "controller", "--bus", &there]);
+    let controller = start(&["hil", "--no-out", "--node", "controller", "--bus", &there]);
     let plant = [
         "hil",
         "--node",
@@ -249,7 +250,7 @@ fn nodes_that_want_different_runs_say_so() {
         "--strategy",
         "always-stiff",
     ]);
-    let plant = start(&["hil", "--node", "plant", "--bus", &here]);
+    let plant = start(&["hil", "--no-out", "--node", "plant", "--bus", &here]);
     let outputs = [end(plant), end(controller)];
     assert!(
         outputs

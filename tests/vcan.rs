@@ -29,13 +29,13 @@ fn on_vcan(test: impl FnOnce(&str)) {
 
 /// What is driven on every bus: the default ride, and a lane change in the middle of Belgian block.
 const DRIVEN: [&[&str]; 2] = [
-    &["--duration", "5"],
+    &["--duration-s", "5"],
     &[
         "--scenario",
         "lane-change-on-belgian",
         "--entry-m",
         "30",
-        "--duration",
+        "--duration-s",
         "9",
     ],
 ];
@@ -191,7 +191,7 @@ fn a_killed_plant_leaves_a_controller_that_is_safe_and_ends() {
             "hil",
             "--node",
             "plant",
-            "--duration",
+            "--duration-s",
             "60",
             "--bus",
             bus,
@@ -223,14 +223,14 @@ fn a_killed_controller_leaves_a_plant_that_closes_its_valves_and_drives_on() {
             "hil",
             "--node",
             "plant",
-            "--duration",
+            "--duration-s",
             "60",
             "--bus",
             bus,
             "--out",
             out.to_str().unwrap(),
         ]);
-        let mut controller = start(&["hil", "--node", "controller", "--bus", bus]);
+        let mut controller = start(&["hil", "--no-out", "--node", "controller", "--bus", bus]);
         wait_for_commands(&mut bystander);
         controller.kill().unwrap();
         controller.wait().unwrap();
@@ -318,7 +318,7 @@ fn forged_frames_of_the_exchange_neither_end_a_run_nor_change_it() {
         let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
         let _attacker = Chatter::start(bus, forged_sync());
         let (plant_out, controller_out) = (path("plant"), path("controller"));
-        let common = ["--duration", "5", "--bus", bus, "--out"];
+        let common = ["--duration-s", "5", "--bus", bus, "--out"];
         let node = |role: &str, out: &str| start(&[&["hil", "--node", role], &common[..], &[out]].concat());
         let nodes = [node("controller", &controller_out), node("plant", &plant_out)];
         for output in nodes.map(end) {
@@ -343,7 +343,7 @@ fn a_killed_controller_is_missed_although_another_node_chatters() {
             "hil",
             "--node",
             "plant",
-            "--duration",
+            "--duration-s",
             "60",
             "--bus",
             bus,
@@ -376,7 +376,7 @@ fn a_controller_that_is_started_again_is_let_in() {
             "hil",
             "--node",
             "plant",
-            "--duration",
+            "--duration-s",
             "60",
             "--bus",
             bus,
@@ -384,7 +384,7 @@ fn a_controller_that_is_started_again_is_let_in() {
             out_name,
         ];
         let plant = start(&plant);
-        let controller = || start(&["hil", "--node", "controller", "--bus", bus, "--duration", "60"]);
+        let controller = || start(&["hil", "--node", "controller", "--bus", bus, "--duration-s", "60"]);
         let mut first = controller();
         wait_for_commands(&mut bystander);
         first.kill().unwrap();
@@ -406,7 +406,15 @@ fn an_interface_that_goes_down_leaves_what_was_driven() {
         let folder = tempfile::tempdir().unwrap();
         let out = folder.path().join("run");
         let mut bystander = listen(bus);
-        let run = start(&["hil", "--duration", "600", "--bus", bus, "--out", out.to_str().unwrap()]);
+        let run = start(&[
+            "hil",
+            "--duration-s",
+            "600",
+            "--bus",
+            bus,
+            "--out",
+            out.to_str().unwrap(),
+        ]);
         wait_for_commands(&mut bystander);
         let interface = bus.trim_start_matches("socketcan:");
         let link = |state| {
@@ -431,7 +439,7 @@ fn an_interface_that_goes_down_leaves_what_was_driven() {
 #[test]
 fn a_node_without_a_partner_and_a_missing_interface_say_what_to_do() {
     on_vcan(|_| {
-        let output = run(&["hil", "--bus", "socketcan:vcan99"]);
+        let output = run(&["hil", "--no-out", "--bus", "socketcan:vcan99"]);
         let text = support::complaint(&output);
         assert!(text.contains("ip link add dev vcan99 type vcan"), "{text}");
     });

@@ -63,7 +63,6 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
         .map(|c| json!([c.keys[0], c.keys[1], rounded(c.coefficient)]))
         .collect();
     json!({
-        "schema": 1,
         "verdict": diagnosis.verdict(),
         "locations": locations,
         "effects": effects,

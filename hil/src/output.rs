@@ -33,12 +33,14 @@ pub struct CheckOutcome {
 /// The contents of `summary.json`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// Version of this file's layout.
-    pub schema: u32,
     /// Name of the scenario.
     pub scenario: String,
+    /// What the command line changed in it, in words.
+    pub changes: Vec<String>,
     /// Name or path of the road.
     pub road: String,
+    /// Length of a road from a file, m; `null` for computed roads. A longer drive goes over its mirror image, back and forth.
+    pub road_measured_m: Option<f64>,
     /// Forward speed of the vehicle, km/h.
     pub speed_km_h: f64,
     /// Model of the vehicle: `ride` or `handling`.
@@ -51,8 +53,6 @@ pub struct Summary {
     pub bus: String,
     /// How time passed: `lockstep` or `realtime`.
     pub clock: &'static str,
-    /// Seed of the road and of all random faults.
-    pub seed: u64,
     /// Number of ticks that were run.
     pub ticks: u32,
     /// Simulated time of the run, s.
@@ -200,8 +200,8 @@ pub struct NodeLateness {
 }
 
 impl Summary {
-    /// Collects the figures of a run.
-    pub fn of(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics) -> Self {
+    /// Collects the figures of a run over a road that was measured for `road_measured_m`.
+    pub fn of(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, road_measured_m: Option<f64>) -> Self {
         let number = |metric| match metrics.figure(metric) {
             Figure::Number(number) => Some(number),
             _ => None,
@@ -210,9 +210,10 @@ impl Summary {
         let simulated_s = f64::from(metrics.ticks) * TICK_S;
         let BusCounters { back_offs, .. } = outcome.plant.counters;
         Self {
-            schema: 1,
             scenario: scenario.name.clone(),
+            changes: scenario.changes.clone(),
             road: scenario.road.clone(),
+            road_measured_m,
             // Rounded, because the conversion to m/s and back changes the last digit.
             speed_km_h: (scenario.speed_m_s * 3.6 * 1e6).round() * 1e-6,
             model: if scenario.course.is_some() { "handling" } else { "ride" },
@@ -220,7 +221,6 @@ impl Summary {
             strategy: scenario.strategy.name(),
             bus: scenario.bus.to_string(),
             clock: scenario.clock.name(),
-            seed: scenario.seed,
             ticks: metrics.ticks,
             simulated_s,
             wall_s: outcome.wall_s,
@@ -364,7 +364,7 @@ pub fn write(
     metrics: &Metrics,
     summary: &Summary,
 ) -> Result<(), OutputError> {
-    out.json("summary.json", summary)?;
+    out.summary("summary.json", Some(scenario.seed), summary)?;
     out.write("junit.xml", junit(summary))?;
     out.write("candump.log", candump(scenario, outcome, metrics))?;
     let columns = time_series::columns(outcome, metrics);
@@ -372,7 +372,9 @@ pub fn write(
         .iter()
         .map(|(name, values)| (name.as_str(), values.as_slice()))
         .collect();
-    out.csv("timeseries.csv", &borrowed)
+    let words = time_series::words(metrics);
+    let words = words.each_ref().map(|(name, values)| (*name, values.as_slice()));
+    out.csv_with_words("timeseries.csv", &borrowed, &words)
 }
 
 /// The checks as a JUnit file: one suite with a case for each check.

@@ -27,6 +27,24 @@ const COURSE: [(&str, Quantity); 11] = [
     ("cone_margin_m", |at| at.cone_margin_m.unwrap_or(f64::NAN)),
 ];
 
+/// The columns of words: mode and first cause as the controller's last status message says them, empty before the first.
+pub(crate) fn words(metrics: &Metrics) -> [(&'static str, Vec<&'static str>); 2] {
+    let account = metrics.account.iter();
+    [
+        (
+            "mode",
+            account
+                .clone()
+                .map(|said| said.map_or("", |(mode, _)| mode.name()))
+                .collect(),
+        ),
+        (
+            "fault",
+            account.map(|said| said.map_or("", |(_, fault)| fault.name())).collect(),
+        ),
+    ]
+}
+
 /// Name and values of each column of `timeseries.csv`, a value for each tick.
 pub(crate) fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<f64>)> {
     let samples = &outcome.plant.recording.samples;
@@ -83,12 +101,6 @@ pub(crate) fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<
     }
     column("valve_word", &|i| f64::from(samples[i].command.word()));
     column("energised_word", &|i| f64::from(samples[i].energised.word()));
-    column("mode", &|i| {
-        metrics.account[i].map_or(f64::NAN, |(mode, _)| f64::from(mode.raw()))
-    });
-    column("fault", &|i| {
-        metrics.account[i].map_or(f64::NAN, |(_, fault)| f64::from(fault.raw()))
-    });
     column("handling", &|i| f64::from(u8::from(metrics.strategy[i].handling)));
     column("rollover_guard", &|i| {
         f64::from(u8::from(metrics.strategy[i].rollover_guard))

@@ -22,6 +22,7 @@ pub struct Vehicle {
     seats: Seats<[f64; 3]>,
     behind_front_axle_m: f64,
     steps_per_tick: u32,
+    measured_road_m: Option<f64>,
 }
 
 /// Which model drives. Both are some kilobytes, so that neither is moved about.
@@ -47,7 +48,21 @@ impl Vehicle {
             seats: Seats::from_fn(|seat| parameters.seat_place_m(seat)),
             behind_front_axle_m: parameters.body_cg_behind_front_axle_m(),
             steps_per_tick: (TICK_S / step_s).round() as u32,
+            measured_road_m: None,
         }
+    }
+
+    /// The same vehicle, on a road that was measured over this length, m.
+    pub(crate) fn over_measured(self, measured_road_m: Option<f64>) -> Self {
+        Self {
+            measured_road_m,
+            ..self
+        }
+    }
+
+    /// Length of the measured road, m; `None` for a road that is computed. Beyond it the vehicle drives over its mirror image.
+    pub fn measured_road_m(&self) -> Option<f64> {
+        self.measured_road_m
     }
 
     /// Integration steps in a tick.

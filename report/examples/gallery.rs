@@ -1,6 +1,8 @@
 //! Every kind of figure on one page, to look at after a change: `cargo run -p oleo-report --example gallery -- OUT`.
 
-use oleo_report::{Axis, Bars, Cell, Column, Curves, Field, FieldStyle, OutputDirectory, Page, Style, Table, Verdict};
+use oleo_report::{
+    Axis, Bars, Cell, Column, Curves, Field, FieldStyle, Origin, OutputDirectory, Page, Style, Table, Verdict,
+};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let Some(destination) = std::env::args().nth(1) else {
@@ -115,7 +117,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .series("with", &[1.1, 1.0, 1.2]);
     page.section("Bars").figure(bars).details("All rows", outcome);
 
-    let mut out = OutputDirectory::stage(destination)?;
+    let mut out = OutputDirectory::stage(destination, Origin::default(), true)?;
     out.page(&page)?;
     out.commit()?;
     Ok(())

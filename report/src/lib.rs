@@ -1,13 +1,14 @@
 //! The output of every command: folders of results, tables, and report pages.
 //!
 //! * [`OutputDirectory`]: files of a run are staged in a hidden folder and appear in `--out DIR` at once, or not at all.
+//! * [`OutputFile`]: one such file on its own.
 //! * [`Page`]: one self-contained `report.html` that opens offline: what was run, the outcome, figures that zoom.
 //! * [`Curves`], [`Field`], [`Bars`]: the kinds of figure; every [`Axis`] names its quantity and unit.
 //! * [`Table`]: the same rows on standard output and in the page.
-//! * [`Progress`]: a progress bar on a terminal for runs of more than a second, and no output elsewhere.
+//! * [`Progress`]: for runs of more than a second, a progress bar on a terminal and a line a phase elsewhere.
 //!
 //! ```
-//! use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Table, Verdict};
+//! use oleo_report::{Axis, Column, Curves, Origin, OutputDirectory, Page, Table, Verdict};
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! # let parent = tempfile::tempdir()?;
 //! # let destination = parent.path().join("out");
@@ -24,7 +25,7 @@
 //! page.verdict(Verdict::Pass, "all limits met").outcome(outcome);
 //! page.section("Force").text("Compression is positive.").figure(figure);
 //!
-//! let mut out = OutputDirectory::stage(&destination)?;
+//! let mut out = OutputDirectory::stage(&destination, Origin::default(), false)?;
 //! out.csv("force.csv", &[("time_s", &time_s), ("force_N", &force_n)])?;
 //! out.page(&page)?;
 //! out.commit()?;
@@ -51,7 +52,7 @@ pub use curves::{Curves, Style};
 pub use decimate::extrema_by_bucket;
 pub use field::{Field, FieldStyle};
 pub use figure::Figure;
-pub use output::{OutputDirectory, OutputError};
+pub use output::{Origin, OutputDirectory, OutputError, OutputFile};
 pub use page::{Page, Verdict};
 pub use progress::Progress;
 pub use table::{Cell, Column, Table, significant};

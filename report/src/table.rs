@@ -10,6 +10,9 @@ const STYLE: TableStyle = TableStyle::new()
     .header_separator(LineStyle::none().fill('\u{2500}').junction('\u{2500}'))
     .bottom_border(LineStyle::none().fill('\u{2500}').junction('\u{2500}'));
 
+/// Width below which a terminal's word is not taken for it, characters: lines are then as long as they are.
+const NARROWEST: u16 = 20;
+
 /// A column and how its cells line up.
 #[derive(Clone, Debug)]
 pub struct Column {
@@ -158,6 +161,10 @@ impl fmt::Display for Table {
         table
             .load_style(STYLE)
             .set_content_arrangement(ContentArrangement::Dynamic);
+        // Terminals that do not know their width (of hosted CI, of some editors) call it 0.
+        if table.width().is_some_and(|width| width < NARROWEST) {
+            table.set_content_arrangement(ContentArrangement::Disabled);
+        }
         table.set_header(self.columns.iter().map(|column| column.title.clone()));
         for row in &self.rows {
             table.add_row(row.iter().map(|cell| cell.text.clone()));

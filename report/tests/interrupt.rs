@@ -1,12 +1,12 @@
-//! Ctrl-C in the middle of a run: nothing is left of what was staged, and the exit status is the shells' 130. A command that
-//! holds a `Graceful` finishes instead.
+//! Ctrl-C in the middle of a run: nothing is left of what was staged, and the exit status is the shells' 128 and the signal. A
+//! command that holds a `Graceful` finishes first.
 #![cfg(unix)]
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use oleo_report::{OutputDirectory, interrupt::Graceful};
+use oleo_report::{Origin, OutputDirectory, interrupt, interrupt::Graceful};
 
 /// Set for the child process: the folder to write and how to behave.
 const TARGET: &str = "OLEO_INTERRUPT_TARGET";
@@ -17,13 +17,13 @@ const MODE: &str = "OLEO_INTERRUPT_MODE";
 fn child() {
     let Ok(target) = std::env::var(TARGET) else { return };
     let graceful = (std::env::var(MODE).as_deref() == Ok("graceful")).then(Graceful::begin);
-    let mut out = OutputDirectory::stage(&target).expect("writable");
+    let mut out = OutputDirectory::stage(&target, Origin::default(), false).expect("writable");
     out.write("half.txt", "half").expect("written");
     let patience = Instant::now();
     while patience.elapsed() < Duration::from_secs(60) {
         if graceful.as_ref().is_some_and(Graceful::requested) {
             out.commit().expect("moved");
-            std::process::exit(0);
+            std::process::exit(interrupt::status().expect("a signal").into());
         }
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -44,7 +44,7 @@ fn start(target: &Path, mode: &str) -> Child {
 }
 
 /// Interrupts the child once it has staged something, and returns its exit status.
-fn interrupt(parent: &Path, mut child: Child) -> Option<i32> {
+fn interrupt(parent: &Path, mut child: Child, signal: &str) -> Option<i32> {
     let staged = || {
         let folders = std::fs::read_dir(parent).expect("a folder").flatten();
         folders
@@ -59,7 +59,7 @@ fn interrupt(parent: &Path, mut child: Child) -> Option<i32> {
         std::thread::sleep(Duration::from_millis(5));
     }
     let sent = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
+        .args([signal, &child.id().to_string()])
         .status()
         .expect("kill");
     assert!(sent.success());
@@ -69,15 +69,17 @@ fn interrupt(parent: &Path, mut child: Child) -> Option<i32> {
 #[test]
 fn nothing_is_left() {
     let parent = tempfile::tempdir().expect("a folder");
-    let child = start(&parent.path().join("out"), "plain");
-    assert_eq!(interrupt(parent.path(), child), Some(130));
-    assert_eq!(std::fs::read_dir(parent.path()).expect("a folder").count(), 0);
+    for (signal, status) in [("-INT", 130), ("-TERM", 143), ("-HUP", 129)] {
+        let child = start(&parent.path().join("out"), "plain");
+        assert_eq!(interrupt(parent.path(), child, signal), Some(status));
+        assert_eq!(std::fs::read_dir(parent.path()).expect("a folder").count(), 0);
+    }
 }
 
 #[test]
 fn a_graceful_command_finishes() {
     let parent = tempfile::tempdir().expect("a folder");
     let child = start(&parent.path().join("out"), "graceful");
-    assert_eq!(interrupt(parent.path(), child), Some(0));
+    assert_eq!(interrupt(parent.path(), child, "-INT"), Some(130));
     assert!(parent.path().join("out").join("half.txt").exists());
 }

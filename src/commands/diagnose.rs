@@ -9,9 +9,10 @@ use std::time::Instant;
 
 use oleo_diagnose::estimation::LeastSquares;
 use oleo_diagnose::{Campaign, Diagnosis, KeptBack, MODEL_FILE, Predictions, json, page};
-use oleo_report::{Cell, Column, OutputDirectory, Progress, Table};
+use oleo_report::{Cell, Column, Progress, Table};
 
 use crate::failure::Failure;
+use crate::results::{ResultsArgs, command_line};
 
 /// Find the physics that a model leaves out: its place, its law, its parameters, and how much the model improves with it.
 #[derive(clap::Args)]
@@ -32,15 +33,14 @@ pub struct Args {
     /// Folder with model.toml and the recordings (*.csv)
     #[arg(value_name = "CAMPAIGN", required_unless_present = "self_test")]
     campaign: Option<PathBuf>,
-    /// Folder to which report.json, report.html and model.toml are written
-    #[arg(long, value_name = "DIR", required_unless_present = "self_test")]
-    out: Option<PathBuf>,
     /// Fit only this fraction at the beginning of every recording (0.05 to 0.95), and predict the rest
     #[arg(long, value_name = "FRACTION", value_parser = part)]
     fit_until: Option<f64>,
     /// Recording (file name without .csv) that is not fitted but predicted; may be repeated
     #[arg(long, value_name = "NAME")]
     hold_out: Vec<String>,
+    #[command(flatten)]
+    results: ResultsArgs,
     #[command(flatten)]
     self_test: self_test::Args,
 }
@@ -57,8 +57,8 @@ const STEPS: u64 = 100;
 
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
-    let (Some(folder), Some(destination)) = (&args.campaign, &args.out) else {
-        return self_test::run_self_test(&args.self_test, args.out.as_deref());
+    let Some(folder) = &args.campaign else {
+        return self_test::run_self_test(&args.self_test, &args.results);
     };
     let begun = Instant::now();
     let kept_back = KeptBack {
@@ -72,20 +72,24 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         (campaign, Some(complete))
     };
     // Staged before the work: Ctrl-C from here on removes the folder and ends with nothing half-written.
-    let mut out = OutputDirectory::stage(destination)?;
-    out.keep([folder.join(MODEL_FILE)]);
-    out.refuse_input(MODEL_FILE)?;
+    let mut out = (args.results).stage("oleo diagnose", &format!("diagnose-{}", campaign.name), inputs(folder))?;
+    if let Some(out) = &out {
+        out.refuse(MODEL_FILE)?;
+    }
     let stop = AtomicBool::new(false);
     let problem = LeastSquares::new(&*campaign.specimen, &stop);
     let progress = Progress::new(&campaign.name, STEPS);
-    let diagnosis = Diagnosis::of(&problem, &|_, part| progress.set((part * STEPS as f64) as u64))?;
+    let diagnosis = Diagnosis::of(&problem, &|phase, part| {
+        progress.phase(phase);
+        progress.set((part * STEPS as f64) as u64);
+    })?;
     let predictions = (complete.as_ref())
         .map(|complete| Predictions::of(&problem, &diagnosis, complete, &kept_back))
         .transpose()?;
     drop(progress);
     let runtime_s = begun.elapsed().as_secs_f64();
     let mut report = json::report(&campaign, &diagnosis, runtime_s);
-    let mut page = page::page(&campaign, &diagnosis, &args.command(folder, destination), runtime_s);
+    let mut page = page::page(&campaign, &diagnosis, &command_line(), runtime_s);
     if let Some(predictions) = &predictions {
         report["kept_back"] = predictions.json(&kept_back);
         page.section("Prediction of held-out data");
@@ -95,10 +99,12 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         )
         .table(prediction_table(predictions));
     }
-    out.json("report.json", &report)?;
-    out.page(&page)?;
-    out.write(MODEL_FILE, &diagnosis.model_toml)?;
-    out.commit()?;
+    if let Some(out) = &mut out {
+        // The diagnosis draws nothing at random.
+        out.summary("report.json", None, &report)?;
+        out.page(&page)?;
+        out.write(MODEL_FILE, &diagnosis.model_toml)?;
+    }
     let mut text = format!(
         "{}: {}. The held-out noise ratio is {:.2} for the recalibrated and {:.2} for the improved model.\n",
         campaign.name,
@@ -115,22 +121,20 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     if let Some(next) = &diagnosis.next_experiment {
         text += &format!("\n{next}\n");
     }
-    let _ = std::io::Write::write_all(&mut std::io::stdout(), text.as_bytes());
+    args.results.publish(out, &text)?;
     Ok(ExitCode::SUCCESS)
 }
 
-impl Args {
-    /// The command line again, for the page.
-    fn command(&self, folder: &Path, destination: &Path) -> String {
-        let mut line = format!("oleo diagnose {}", folder.display());
-        if let Some(part) = self.fit_until {
-            line += &format!(" --fit-until {part}");
-        }
-        for name in &self.hold_out {
-            line += &format!(" --hold-out {name}");
-        }
-        format!("{line} --out {}", destination.display())
-    }
+/// The models and recordings of a campaign, by name.
+fn inputs(folder: &Path) -> Vec<PathBuf> {
+    let files = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let read = |path: &PathBuf| {
+        path.extension()
+            .is_some_and(|kind| kind == "csv" || kind == "log" || kind == "toml")
+    };
+    let mut inputs: Vec<PathBuf> = files.map(|entry| entry.path()).filter(read).collect();
+    inputs.sort();
+    inputs
 }
 
 /// Noise ratios of every model on the fitted and on the held-out part.

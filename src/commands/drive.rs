@@ -6,7 +6,10 @@ mod plan;
 mod sheet;
 mod suspension;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
+
+use oleo_plant_sim::road;
 
 pub use arguments::Args;
 
@@ -17,11 +20,12 @@ use plan::Plan;
 
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
-    let mut out = args.out.as_ref().map(oleo_report::OutputDirectory::stage).transpose()?;
-    if let Some(out) = &mut out {
-        out.keep([&args.vehicle, &args.handling].into_iter().flatten());
-        out.keep(&args.road);
-    }
+    plan::refuse_unused(&args)?;
+    let road = args.road.as_ref().filter(|road| !road::NAMES.contains(&road.as_str()));
+    let files = [&args.vehicle, &args.handling].into_iter().flatten().cloned();
+    let inputs = files.chain(road.map(PathBuf::from)).collect();
+    let name = format!("drive-{}", args.manoeuvre.name());
+    let out = args.results.stage("oleo drive", &name, inputs)?;
     let (vehicle, handling) = parameters(args.vehicle.as_ref(), args.handling.as_ref())?;
     let plan = Plan::new(&args, vehicle, handling)?;
     if !(args.score_from_s >= 0.0 && args.score_from_s <= 3600.0) {

@@ -16,11 +16,14 @@ use oleo_hil::scenario::{self, Clock, FaultKind, Scenario};
 use oleo_hil::{page, sync::Role};
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::{CourseSettings, ManoeuvreKind};
-use oleo_report::{Column, OutputDirectory, Progress, Table, interrupt::Graceful, significant};
+use oleo_plant_sim::road;
+use oleo_report::interrupt::{self, Graceful};
+use oleo_report::{Column, OutputDirectory, Progress, Table, significant};
 use strum::VariantNames;
 
 use super::course_arguments::{CourseArgs, option_failure};
 use crate::failure::Failure;
+use crate::results::{ResultsArgs, command_line, say};
 
 /// Drive the vehicle with controller and plant communicating only through CAN frames.
 ///
@@ -35,7 +38,7 @@ Examples:
   oleo hil --scenario lane-change-on-belgian --out lane     change lanes in the middle of a rough road
   oleo hil --manoeuvre lane-change-2 --driver hard --load laden --road flat
   oleo hil --bus socketcan:vcan0                            send the frames over SocketCAN
-  oleo hil --clock realtime --duration 5                    run in real time
+  oleo hil --clock realtime --duration-s 5                  run in real time
   oleo hil --firmware oleo-firmware                         run the controller as an image on an emulated board
   oleo hil --node controller --bus socketcan:vcan0          run the two nodes as two processes,
   oleo hil --node plant --bus socketcan:vcan0 --out run     which may be started in either order
@@ -69,16 +72,11 @@ pub struct Args {
     #[command(flatten)]
     course: CourseArgs,
     /// Forward speed, km/h; in a circle the speed at the end [default: the scenario's]
-    #[arg(
-        long,
-        visible_alias = "speed-km-h",
-        value_name = "KM_H",
-        allow_negative_numbers = true
-    )]
-    speed: Option<f64>,
+    #[arg(long, alias = "speed", value_name = "KM_H", allow_negative_numbers = true)]
+    speed_km_h: Option<f64>,
     /// Simulated time, s [default: the scenario's]
-    #[arg(long, visible_alias = "duration-s", value_name = "S", allow_negative_numbers = true)]
-    duration: Option<f64>,
+    #[arg(long, alias = "duration", value_name = "S", allow_negative_numbers = true)]
+    duration_s: Option<f64>,
     /// Strategy by which the controller sets the valves [default: the scenario's]
     #[arg(long, value_name = "NAME", value_parser = by_name::<Strategy>())]
     strategy: Option<Strategy>,
@@ -107,11 +105,12 @@ pub struct Args {
     /// Number of threads for the two nodes, 1 or 2 (real time always uses 2)
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=2))]
     threads: u8,
-    /// Folder to which summary.json, timeseries.csv, candump.log, junit.xml and report.html are written; without it only the
-    /// tables are printed
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    #[command(flatten)]
+    results: ResultsArgs,
 }
+
+/// Name of the built-in vehicle, its handling parameters and its strut.
+const BUILT_IN_VEHICLE: &str = "defender110";
 
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
@@ -123,20 +122,12 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         suits_image(&scenario)?;
     }
     if args.node == Some(Role::Controller) {
-        return controller(&scenario, args.out);
+        return controller(&args, &scenario);
     }
-    // A folder that cannot be written to is refused before the run.
-    let mut staged = args.out.as_ref().map(OutputDirectory::stage).transpose()?;
-    if let Some(out) = &mut staged {
-        out.keep([
-            &args.scenario,
-            &scenario.road,
-            &scenario.strut,
-            &scenario.vehicle,
-            &scenario.handling,
-        ]);
-    }
+    let name = format!("hil-{}", scenario.name);
+    let staged = args.results.stage("oleo hil", &name, inputs(&args, &scenario))?;
     let vehicle = run::vehicle(&scenario)?;
+    let road_measured_m = vehicle.measured_road_m();
     let progress = Progress::new(&scenario.name, scenario.ticks.into());
     // In real time Ctrl-C ends the run, and what has been driven is reported.
     let graceful = (scenario.clock == Clock::RealTime).then(Graceful::begin);
@@ -150,12 +141,23 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         (None, None) => run::both(&scenario, vehicle, args.threads.into(), &mut watch)?,
     };
     drop(progress);
-    report(&scenario, &outcome, staged)
+    report(&args, &scenario, &outcome, road_measured_m, staged)
+}
+
+/// The files that a run reads; names of built-in things are no files.
+fn inputs(args: &Args, scenario: &Scenario) -> Vec<PathBuf> {
+    let built_in = scenario::BUILT_IN.iter().any(|(name, _)| *name == args.scenario);
+    let file = (!built_in).then_some(&args.scenario);
+    let road = Some(&scenario.road).filter(|road| !road::NAMES.contains(&road.as_str()));
+    let parts = [&scenario.strut, &scenario.vehicle, &scenario.handling];
+    let parts = parts.into_iter().filter(|part| *part != BUILT_IN_VEHICLE);
+    let mut inputs: Vec<PathBuf> = (file.into_iter().chain(road).chain(parts)).map(PathBuf::from).collect();
+    inputs.extend(args.firmware.clone());
+    inputs
 }
 
 /// Whether a scenario drives what the controller in a firmware image is configured for.
 fn suits_image(scenario: &Scenario) -> Result<(), Failure> {
-    const DEFAULT: &str = "defender110";
     if scenario
         .faults
         .iter()
@@ -168,7 +170,7 @@ fn suits_image(scenario: &Scenario) -> Result<(), Failure> {
     }
     let differs = if scenario.strategy != Strategy::default() {
         "strategy"
-    } else if [&scenario.vehicle, &scenario.handling, &scenario.strut].map(String::as_str) != [DEFAULT; 3] {
+    } else if [&scenario.vehicle, &scenario.handling, &scenario.strut].map(String::as_str) != [BUILT_IN_VEHICLE; 3] {
         "vehicle, handling or strut"
     } else if scenario.clock != Clock::Lockstep {
         "clock"
@@ -188,13 +190,14 @@ fn list() -> Result<ExitCode, Failure> {
     for (name, _) in scenario::BUILT_IN {
         table.row([name.to_string(), scenario::named(name)?.description]);
     }
-    say(&table.to_string());
+    say(&table.to_string())?;
     Ok(ExitCode::SUCCESS)
 }
 
 /// The scenario, with the changes of the command line.
 fn chosen(args: &Args) -> Result<Scenario, Failure> {
-    let mut chosen = scenario::named(&args.scenario)?;
+    let written = scenario::named(&args.scenario)?;
+    let mut chosen = written.clone();
     let own = |given: &Option<String>, value: &mut String| {
         if let Some(given) = given {
             value.clone_from(given);
@@ -213,11 +216,11 @@ fn chosen(args: &Args) -> Result<Scenario, Failure> {
     chosen.clock = args.clock.unwrap_or(chosen.clock);
     chosen.strategy = args.strategy.unwrap_or(chosen.strategy);
     chosen.damper_policy = args.damper_policy.unwrap_or(chosen.damper_policy);
-    if let Some(speed_km_h) = args.speed {
-        chosen.speed_m_s = within("--speed", speed_km_h, 0.0, scenario::file::FASTEST_KM_H)? / 3.6;
+    if let Some(speed_km_h) = args.speed_km_h {
+        chosen.speed_m_s = within("--speed-km-h", speed_km_h, 0.0, scenario::file::FASTEST_KM_H)? / 3.6;
     }
-    if let Some(duration_s) = args.duration {
-        chosen.ticks = (within("--duration", duration_s, TICK_S, scenario::file::LONGEST_S)? / TICK_S).round() as u32;
+    if let Some(duration_s) = args.duration_s {
+        chosen.ticks = (within("--duration-s", duration_s, TICK_S, scenario::file::LONGEST_S)? / TICK_S).round() as u32;
     }
     if let Some(seed) = args.seed {
         chosen.seed = seed;
@@ -227,6 +230,14 @@ fn chosen(args: &Args) -> Result<Scenario, Failure> {
         let manoeuvre = settings.manoeuvre(chosen.speed_m_s, Some(chosen.duration_s()));
         manoeuvre.map_err(|invalid| option_failure(&invalid))?;
     }
+    if args.damper_policy.is_some() && chosen.strategy != Strategy::RideHandling {
+        return Err(Failure::new(format!(
+            "--damper-policy: the strategy {} has no use for it: add --strategy {}, or leave it out",
+            chosen.strategy.name(),
+            Strategy::RideHandling.name()
+        )));
+    }
+    chosen.changes = scenario::changes(&written, &chosen);
     Ok(chosen)
 }
 
@@ -264,19 +275,28 @@ fn within(option: &str, value: f64, low: f64, high: f64) -> Result<f64, Failure>
     Err(Failure::new(format!("{option} {value}: must be from {low} to {high}")))
 }
 
-fn report(scenario: &Scenario, outcome: &Outcome, staged: Option<OutputDirectory>) -> Result<ExitCode, Failure> {
+fn report(
+    args: &Args,
+    scenario: &Scenario,
+    outcome: &Outcome,
+    road_measured_m: Option<f64>,
+    mut staged: Option<OutputDirectory>,
+) -> Result<ExitCode, Failure> {
     let metrics = Metrics::of(scenario, outcome);
-    let summary = Summary::of(scenario, outcome, &metrics);
-    say(&page::outcome_table(&summary).to_string());
+    let summary = Summary::of(scenario, outcome, &metrics, road_measured_m);
+    let mut text = format!("{}\n", scenario.title());
+    if let Some(sentence) = page::mirrored(outcome, &summary) {
+        text += &format!("{sentence}\n");
+    }
+    text += &page::outcome_table(&summary).to_string();
     if !summary.checks.is_empty() {
-        say(&page::check_table(&summary).to_string());
+        text += &page::check_table(&summary).to_string();
     }
-    if let Some(mut out) = staged {
-        output::write(&mut out, scenario, outcome, &metrics, &summary)?;
+    if let Some(out) = &mut staged {
+        output::write(out, scenario, outcome, &metrics, &summary)?;
         out.page(&page::page(scenario, outcome, &metrics, &summary, &command_line()))?;
-        let folder = out.commit()?;
-        say(&format!("{}\n", folder.join("report.html").display()));
     }
+    args.results.publish(staged, &text)?;
     if let Some(failure) = &summary.bus_failure {
         let _ = writeln!(
             std::io::stderr(),
@@ -284,27 +304,19 @@ fn report(scenario: &Scenario, outcome: &Outcome, staged: Option<OutputDirectory
             summary.ticks
         );
     }
-    Ok(if summary.passed() {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
+    Ok(match interrupt::status() {
+        Some(status) => ExitCode::from(status),
+        None if summary.passed() => ExitCode::SUCCESS,
+        None => ExitCode::FAILURE,
     })
 }
 
-/// The command as it was given, for the page.
-fn command_line() -> String {
-    let words = std::env::args()
-        .skip(1)
-        .map(|word| if word.contains(' ') { format!("{word:?}") } else { word });
-    std::iter::once("oleo".to_owned())
-        .chain(words)
-        .collect::<Vec<_>>()
-        .join(" ")
-}
-
-/// Runs the controller's node alone. Its results go to standard output and, if a folder is given, to `summary.json`.
-fn controller(scenario: &Scenario, out: Option<PathBuf>) -> Result<ExitCode, Failure> {
-    let staged = out.map(OutputDirectory::stage).transpose()?;
+/// Runs the controller's node alone. Its results go to standard output and to `summary.json`.
+fn controller(args: &Args, scenario: &Scenario) -> Result<ExitCode, Failure> {
+    let name = format!("hil-{}-controller", scenario.name);
+    let staged = args
+        .results
+        .stage("oleo hil --node controller", &name, inputs(args, scenario))?;
     let ended = run::controller_alone(scenario)?;
     let mut table = Table::new([Column::text("Quantity"), Column::number("Value")]);
     table.row(["node".to_owned(), Role::Controller.name().to_owned()]);
@@ -325,10 +337,10 @@ fn controller(scenario: &Scenario, out: Option<PathBuf>) -> Result<ExitCode, Fai
         table.row(["lateness, median / 99 % / largest, us".to_owned(), figures]);
         table.row(["overruns".to_owned(), late.overruns.to_string()]);
     }
-    say(&table.to_string());
+    say(&table.to_string())?;
     if let Some(mut out) = staged {
-        out.json("summary.json", &controller_summary(&ended))?;
-        out.commit()?;
+        out.summary("summary.json", Some(scenario.seed), &controller_summary(&ended))?;
+        say(&format!("{}\n", out.commit()?.join("summary.json").display()))?;
     }
     let Some(lost) = ended.plant_lost else {
         return Ok(ExitCode::SUCCESS);
@@ -351,7 +363,6 @@ fn controller(scenario: &Scenario, out: Option<PathBuf>) -> Result<ExitCode, Fai
 
 #[derive(serde::Serialize)]
 struct ControllerSummary {
-    schema: u32,
     node: &'static str,
     ticks: usize,
     wall_s: f64,
@@ -370,7 +381,6 @@ fn controller_summary(ended: &ControllerOutcome) -> ControllerSummary {
         fault: fault.name(),
     };
     ControllerSummary {
-        schema: 1,
         node: Role::Controller.name(),
         ticks: ended.words.len(),
         wall_s: ended.wall_s,
@@ -381,9 +391,4 @@ fn controller_summary(ended: &ControllerOutcome) -> ControllerSummary {
         plant_lost_after_tick: ended.plant_lost.map(|lost| lost.last_tick),
         ticks_to_safe: ended.plant_lost.and_then(|lost| lost.safe_after),
     }
-}
-
-/// Writes to standard output. If its reader has gone away (`oleo hil | head`), that is no failure.
-fn say(text: &str) {
-    let _ = std::io::stdout().write_all(text.as_bytes());
 }

@@ -8,5 +8,6 @@ pub mod hil;
 mod parameter_files;
 pub mod predict;
 pub mod rig;
+pub mod show;
 pub mod study;
 mod word;

@@ -6,16 +6,17 @@
 //! the recorded position and speed at the start of each window.
 
 use std::fs::File;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use oleo_interface::Valve;
 use oleo_plant_sim::rig::{Columns, RecordedStrut};
 use oleo_plant_sim::specimen::{CylinderModel, DamperModel, DriveModel, GasSpringModel, smooth_motion, specimen_name};
 use oleo_plant_sim::strut::{StrutModel, replay};
-use oleo_report::{Column, OutputDirectory, Table};
+use oleo_report::{Column, OutputDirectory, OutputFile, Table};
 
 use crate::failure::Failure;
+use crate::results::{default_path, origin, say};
 
 /// Simulate the inputs of a recording with a model, and write the predicted columns.
 #[derive(clap::Args)]
@@ -31,9 +32,12 @@ pub struct Args {
     /// Recording whose inputs are simulated
     #[arg(value_name = "RECORDING.csv")]
     recording: PathBuf,
-    /// CSV file that is written, with the columns of the recording
+    /// CSV file that is written, with the columns of the recording [default: a file in oleo-out/predict]
     #[arg(long, value_name = "SIM.csv")]
-    out: PathBuf,
+    out: Option<PathBuf>,
+    /// Replace a file of a campaign. Inputs are never replaced
+    #[arg(long)]
+    force: bool,
 }
 
 /// A channel: its name, recorded and predicted values, and the standard deviation of its noise.
@@ -54,10 +58,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         .map_err(|error| Failure::new(format!("{model_file}: cannot read the model: {error}; check the path")))?;
     let source = File::open(&args.recording)
         .map_err(|error| Failure::new(format!("{file}: cannot read the recording: {error}; check the path")))?;
-    let (folder, name) = place(&args.out)?;
-    let mut out = OutputDirectory::stage(&folder)?;
-    out.keep([&args.model, &args.recording]);
-    out.refuse_input(&name)?;
+    let target = Target::of(&args)?;
 
     let kind = specimen_name(&text, &model_file)?.kind;
     let (inputs, channels) = match kind.as_str() {
@@ -77,13 +78,14 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
             .map(|channel| (channel.name.as_str(), channel.predicted.as_slice())),
     );
     columns.extend(after.iter().map(borrowed));
-    out.csv(&name, &columns)?;
-    out.commit()?;
-
+    let written = target.write(&columns)?;
     let table = compare(&channels);
-    if !table.is_empty() {
-        let _ = std::io::Write::write_all(&mut std::io::stdout(), table.to_string().as_bytes());
-    }
+    let table = if table.is_empty() {
+        String::new()
+    } else {
+        table.to_string()
+    };
+    say(&format!("{table}{}\n", written.display()))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -255,29 +257,38 @@ fn compare(channels: &[Channel]) -> Table {
     table
 }
 
-/// Folder and file name of `--out`.
-fn place(out: &Path) -> Result<(PathBuf, String), Failure> {
-    let bad = || {
-        Failure::new(format!(
-            "--out {}: name a file to write, such as sim.csv",
-            out.display()
-        ))
-    };
-    if out.is_dir() {
-        return Err(bad());
+/// Where the prediction goes.
+enum Target {
+    /// The file of `--out`.
+    File(OutputFile),
+    /// A file of this name in a folder of its own.
+    Folder(Box<OutputDirectory>, String),
+}
+
+impl Target {
+    /// Refuses what cannot be written, before the work.
+    fn of(args: &Args) -> Result<Self, Failure> {
+        let inputs = vec![args.model.clone(), args.recording.clone()];
+        if let Some(out) = &args.out {
+            return Ok(Self::File(OutputFile::stage(out, &inputs, args.force)?));
+        }
+        let stem = args
+            .recording
+            .file_stem()
+            .map_or("recording".into(), |stem| stem.to_string_lossy());
+        let folder = default_path(&format!("predict-{stem}"))?;
+        let out = OutputDirectory::stage(folder, origin("oleo predict", inputs), args.force)?;
+        Ok(Self::Folder(Box::new(out), format!("{stem}.csv")))
     }
-    let name = out.file_name().and_then(|name| name.to_str()).ok_or_else(bad)?;
-    let folder = match out.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
-        _ => PathBuf::from("."),
-    };
-    if folder.is_dir() {
-        Ok((folder, name.to_owned()))
-    } else {
-        Err(Failure::new(format!(
-            "--out {}: the folder {} does not exist; create it first",
-            out.display(),
-            folder.display()
-        )))
+
+    /// Writes the columns and returns the path of the file.
+    fn write(self, columns: &[(&str, &[f64])]) -> Result<PathBuf, Failure> {
+        match self {
+            Self::File(file) => Ok(file.csv(columns)?),
+            Self::Folder(mut folder, name) => {
+                folder.csv(&name, columns)?;
+                Ok(folder.commit()?.join(name))
+            }
+        }
     }
 }

@@ -16,7 +16,7 @@ use crate::failure::Failure;
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  oleo rig spring --out spring\n  oleo rig damping --strut model.toml --out damping\n  \
-                  oleo rig limits --static-load 4000"
+                  oleo rig limits --static-load-n 4000"
 )]
 pub struct Args {
     #[command(subcommand)]

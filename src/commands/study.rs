@@ -14,7 +14,7 @@ use crate::failure::Failure;
 /// Compare or optimise gas volumes and damper characteristics for ride and handling, or compare the controller with fixed settings.
 #[derive(clap::Args)]
 #[command(
-    after_help = "Examples:\n  oleo study sweep --check --out study\n  oleo study optimise --ride 1 --roll 0 --out study\n  oleo study control --out control\n  oleo study robust --vehicles 1000 --out robust\n\n\
+    after_help = "Examples:\n  oleo study sweep --check --out study\n  oleo study optimise --ride 1 --roll 0 --out optimum\n  oleo study control --out control\n  oleo study robust --vehicles 1000 --out robust\n\n\
                   Every finished run is stored in DIR/runs.csv (sweep and optimise) or DIR/drives.csv (control and robust), and runs that are \
                   found there are used. An interrupted command resumes when it is repeated with the same DIR."
 )]

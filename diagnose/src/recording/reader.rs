@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use oleo_plant_sim::rig::{other_separator, wrong_separator};
+
 use super::columns::{ColumnKind, ColumnSpec, GapPolicy};
 use super::series::Recording;
 use super::thinning::{Room, Thinner};
@@ -138,7 +140,8 @@ fn csv_error(path: &Path, error: &csv::Error) -> DiagnoseError {
             path: path.to_path_buf(),
             line: p.line(),
             what: format!(
-                "the row has {len} fields, but the header has {expected_len}; the file may have been cut off while it was written"
+                "the row has {len} fields, but the header has {expected_len}; the file may have been cut off while it was written, or its \
+                 numbers have decimal commas"
             ),
         },
         (Some(p), csv::ErrorKind::Utf8 { .. }) => DiagnoseError::Line {
@@ -154,6 +157,13 @@ fn csv_error(path: &Path, error: &csv::Error) -> DiagnoseError {
 fn position(path: &Path, header: &csv::StringRecord, name: &str) -> Result<usize, DiagnoseError> {
     if let Some(found) = header.iter().position(|h| h == name) {
         return Ok(found);
+    }
+    if let Some(separator) = other_separator(header) {
+        return Err(DiagnoseError::Line {
+            path: path.to_path_buf(),
+            line: 1,
+            what: wrong_separator(separator),
+        });
     }
     let quantity = name.rsplit_once('_').map_or(name, |(q, _)| q);
     let other = header

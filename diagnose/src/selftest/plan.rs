@@ -3,6 +3,8 @@
 
 use std::str::FromStr;
 
+use oleo_plant_sim::model_file::names::suggestion;
+
 use super::draw::Draw;
 use crate::effect::in_struts;
 use crate::vocabulary::EffectId;
@@ -57,8 +59,15 @@ pub enum Subject {
 
 /// A text that names no subject of a self-test.
 #[derive(Debug, thiserror::Error)]
-#[error("--terms {0}: there is no such term; give one or more of {known}, {COMPLETE}, {PAIR}, separated by commas", known = in_struts().into_iter().map(EffectId::as_str).collect::<Vec<_>>().join(", "))]
+#[error("--terms {0}: there is no such term, {known}; separate several by commas", known = suggested(.0))]
 pub struct UnknownTerm(String);
+
+/// The terms, and which was probably meant.
+fn suggested(text: &str) -> String {
+    let effects = in_struts().into_iter().map(EffectId::as_str);
+    let known: Vec<&str> = effects.chain([COMPLETE, PAIR]).collect();
+    suggestion(text, &known, "terms")
+}
 
 impl FromStr for Subject {
     type Err = UnknownTerm;

@@ -119,7 +119,8 @@ pub struct Nameless {
 /// All tables of a self-test.
 #[derive(Debug, Clone, Serialize)]
 pub struct Summary {
-    /// Seed of all draws.
+    /// Seed of all draws. The file says it among what every summary begins with.
+    #[serde(skip)]
     pub seed: u64,
     /// Number of campaigns.
     pub trials: usize,

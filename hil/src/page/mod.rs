@@ -19,12 +19,19 @@ use time::Time;
 
 /// The page of a run. `command` is the command line that makes it again.
 pub fn page(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summary: &Summary, command: &str) -> Page {
-    let mut page = Page::new(&format!("Hardware-in-the-loop: {}", scenario.name), command);
-    page.fact("Scenario", &scenario.description);
+    let mut page = Page::new(&format!("Hardware-in-the-loop: {}", scenario.title()), command);
+    if scenario.changes.is_empty() {
+        page.fact("Scenario", &scenario.description);
+    } else {
+        page.fact("Scenario", &scenario.title());
+    }
     page.fact(
         "Road",
         &format!("{} at {} km/h", scenario.road, significant(scenario.speed_m_s * 3.6, 3)),
     );
+    if let Some(sentence) = mirrored(outcome, summary) {
+        page.fact("Road file", &sentence);
+    }
     if let (Some(settings), Some(course)) = (&scenario.course, &summary.course) {
         page.fact("Manoeuvre", settings.kind.title());
         page.fact("Driver", course.driver);
@@ -55,6 +62,20 @@ pub fn page(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summary: 
     controller(&mut page, outcome, metrics, summary, &time);
     bus(&mut page, outcome, metrics, summary);
     page
+}
+
+/// What a drive that is longer than its road file drove over; `None` where the file is long enough.
+pub fn mirrored(outcome: &Outcome, summary: &Summary) -> Option<String> {
+    let measured_m = summary.road_measured_m?;
+    let driven_m = outcome.plant.recording.samples.last()?.motion.station_m;
+    (driven_m > measured_m).then(|| {
+        format!(
+            "{} is {} m long. The {} m of this drive go over it and over its mirror image, back and forth.",
+            summary.road,
+            significant(measured_m, 3),
+            significant(driven_m, 3)
+        )
+    })
 }
 
 /// Table of the run's figures, for the terminal and the page.

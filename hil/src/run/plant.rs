@@ -30,13 +30,14 @@ pub fn vehicle(scenario: &Scenario) -> Result<Vehicle, RunError> {
     let surface = |length_m: f64| road::from_name_or_path(&scenario.road, length_m, scenario.seed);
     let Some(settings) = &scenario.course else {
         let road = surface(scenario.road_length_m())?;
+        let measured_m = road.measured_length_m();
         let model = RideVehicle::new(&loaded, struts, road, scenario.speed_m_s)?;
-        return Ok(Vehicle::on_road(model, &loaded));
+        return Ok(Vehicle::on_road(model, &loaded).over_measured(measured_m));
     };
     let manoeuvre = settings
         .manoeuvre(scenario.speed_m_s, Some(scenario.duration_s()))
         .map_err(RunError::Course)?;
     let course = settings.course(manoeuvre, surface(settings.road_length_m(&manoeuvre, &loaded))?);
     let drive = Drive::begin(&course, &loaded, &parameters.handling, struts.map(StrutElement::new))?;
-    Ok(Vehicle::on_course(drive, &loaded))
+    Ok(Vehicle::on_course(drive, &loaded).over_measured(course.road.measured_length_m()))
 }

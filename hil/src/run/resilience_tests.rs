@@ -282,7 +282,7 @@ fn an_interface_that_goes_away_leaves_what_was_driven() {
     let outcome = end.outcome(plant, Vec::new(), started);
     assert_eq!(outcome.plant.recording.samples.len(), 99, "seven frames a tick");
     let metrics = crate::metrics::Metrics::of(&scenario, &outcome);
-    let summary = crate::output::Summary::of(&scenario, &outcome, &metrics);
+    let summary = crate::output::Summary::of(&scenario, &outcome, &metrics, None);
     assert!(!summary.passed() && summary.bus_failure.unwrap().contains("sending failed"));
 }
 
@@ -326,7 +326,7 @@ fn a_controller_in_reset_is_silent_and_then_starts_up() {
         "closed while it is in reset"
     );
     let metrics = crate::metrics::Metrics::of(&scenario, &outcome);
-    let summary = crate::output::Summary::of(&scenario, &outcome, &metrics);
+    let summary = crate::output::Summary::of(&scenario, &outcome, &metrics, None);
     assert!(summary.passed(), "{:?}", summary.checks);
     assert_eq!(hash(&outcome), hash(&run(&scenario, 2)));
 }

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use oleo_plant_sim::model_file::ModelFileError;
+use oleo_plant_sim::model_file::names::suggestion;
 
 use super::definition::Scenario;
 use super::file;
@@ -54,7 +55,10 @@ pub fn named(name_or_path: &str) -> Result<Scenario, ModelFileError> {
         } else {
             "is no scenario".into()
         };
-        let what = format!("{what}: give a .toml file or one of {}", names.join(", "));
+        let what = format!(
+            "{what}: give a .toml file; {}",
+            suggestion(name_or_path, &names, "built-in scenarios")
+        );
         ModelFileError::new(name_or_path, None, &what)
     })?;
     file::parse(&text, name_or_path, path.parent().unwrap_or(Path::new("")))

@@ -46,6 +46,8 @@ pub struct Scenario {
     pub name: String,
     /// One sentence that says what the scenario shows.
     pub description: String,
+    /// What a command line changed, in words such as `road iso-c`; the description is then that of another run.
+    pub changes: Vec<String>,
     /// Built-in road or path of a `.crg` or `.csv` file.
     pub road: String,
     /// The manoeuvre that is driven with the handling model; `None` drives straight ahead with the ride model.
@@ -85,6 +87,14 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// What was run, as a title: the name, and what was changed.
+    pub fn title(&self) -> String {
+        match self.changes.as_slice() {
+            [] => self.name.clone(),
+            changes => format!("{} with {}", self.name, changes.join(", ")),
+        }
+    }
+
     /// Simulated time of the whole scenario, s.
     pub fn duration_s(&self) -> f64 {
         f64::from(self.ticks) * TICK_S

@@ -103,6 +103,7 @@ impl ScenarioFile {
         Ok(Scenario {
             name: self.name,
             description: self.description,
+            changes: Vec::new(),
             road: located(&self.road, folder, &oleo_plant_sim::road::NAMES),
             course,
             speed_m_s,

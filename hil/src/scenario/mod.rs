@@ -9,6 +9,7 @@
 //! `docs/hil.md` is the reference for people.
 
 mod built_in;
+mod changes;
 pub mod check;
 mod check_entry;
 mod definition;
@@ -17,6 +18,7 @@ mod fault_entry;
 pub mod file;
 
 pub use built_in::{BUILT_IN, named};
+pub use changes::changes;
 pub use check::{Check, Comparison};
 pub use definition::{Clock, OnControllerLoss, Scenario};
 pub use fault::{Fault, FaultKind};

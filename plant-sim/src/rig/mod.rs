@@ -31,6 +31,6 @@ pub use isothermal::{Isothermal, Oil};
 pub use limits::{Limit, check_limits};
 pub use parabola::Parabola;
 pub use programme::{Programme, Record, play};
-pub use recording::{Columns, RecordedStrut, RecordingError};
+pub use recording::{Columns, RecordedStrut, RecordingError, other_separator, wrong_separator};
 pub use spring::{SpringCharacteristic, SpringTest, side_loaded, test_spring};
 pub use valve_response::{ValveResponse, measure_valve_response, measure_valve_responses};

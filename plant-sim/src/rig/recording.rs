@@ -6,6 +6,23 @@ use oleo_interface::StrutValves;
 
 use crate::strut::Inputs;
 
+/// What separates the columns of a header that is a single field: programs of many countries write semicolons, since their
+/// numbers have decimal commas.
+pub fn other_separator(header: &csv::StringRecord) -> Option<char> {
+    let one = header.get(0).filter(|_| header.len() == 1)?;
+    [';', '\t', '|'].into_iter().find(|separator| one.contains(*separator))
+}
+
+/// What to do about it.
+pub fn wrong_separator(separator: char) -> String {
+    let name = match separator {
+        ';' => "semicolons".to_owned(),
+        '\t' => "tabs".to_owned(),
+        other => format!("'{other}'"),
+    };
+    format!("the columns are separated by {name}; write the file again with commas, and decimal points in its numbers")
+}
+
 /// Why a recording cannot be replayed; one line: file, line, what, what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
@@ -18,6 +35,14 @@ pub enum RecordingError {
         column: String,
         /// All that are needed.
         needed: String,
+    },
+    /// The columns are not separated by commas.
+    #[error("{file}:1: {}", wrong_separator(*separator))]
+    Separator {
+        /// Path of the recording.
+        file: String,
+        /// What separates the columns.
+        separator: char,
     },
     /// A value is not usable.
     #[error("{file}:{line}: {column} is {value:?}; {need}")]
@@ -75,6 +100,12 @@ impl Columns {
             reason: error.to_string(),
         };
         let header = reader.headers().map_err(csv_error)?.clone();
+        if let Some(separator) = other_separator(&header) {
+            return Err(RecordingError::Separator {
+                file: file.to_owned(),
+                separator,
+            });
+        }
         let (mut names, mut places) = (Vec::new(), Vec::new());
         for (name, must) in std::iter::once((&"time_s", true))
             .chain(needed.iter().map(|name| (name, true)))

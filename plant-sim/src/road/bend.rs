@@ -40,6 +40,10 @@ impl Road for Bend {
         let s = left_m / ENDS_M;
         s * s * (3.0 - 2.0 * s) * height_m
     }
+
+    fn measured_length_m(&self) -> Option<f64> {
+        self.road.measured_length_m()
+    }
 }
 
 #[cfg(test)]

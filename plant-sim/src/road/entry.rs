@@ -52,6 +52,10 @@ impl<R: Road> Road for EnteredSmoothly<R> {
         let s = station_m / ENTRY_M;
         s * s * (3.0 - 2.0 * s) * height_m
     }
+
+    fn measured_length_m(&self) -> Option<f64> {
+        self.road.measured_length_m()
+    }
 }
 
 #[cfg(test)]

@@ -4,11 +4,11 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RoadError {
     /// Neither a built-in name nor a file.
-    #[error("road '{spec}' is neither a .crg or .csv file nor one of the built-in roads {names}")]
+    #[error("road '{spec}' is neither a .crg or .csv file nor a built-in road: {names}")]
     Unknown {
         /// The text that the user gave.
         spec: String,
-        /// The names of the built-in roads.
+        /// The built-in roads, and which was probably meant.
         names: String,
     },
     /// The file could not be read from disk.
@@ -38,7 +38,9 @@ pub enum RoadError {
         problem: String,
     },
     /// The length asked for cannot be made.
-    #[error("road length {length_m} m is not possible: give between 1 and {limit_m} m")]
+    #[error(
+        "the drive needs {length_m:.0} m of road, and a road can be made from 1 to {limit_m} m long: change the duration or the speed"
+    )]
     Length {
         /// The length that was asked for, m.
         length_m: f64,

@@ -104,6 +104,10 @@ impl Road for GridRoad {
         let left = self.at(row, next) + along * (self.at(row + 1, next) - self.at(row, next));
         (1.0 - across) * right + across * left
     }
+
+    fn measured_length_m(&self) -> Option<f64> {
+        Some(self.length_m())
+    }
 }
 
 #[cfg(test)]

@@ -51,6 +51,10 @@ impl<R: Road> Road for Lanes<R> {
         let share = (inside.abs() - half) / (LANE_M - 2.0 * half);
         (1.0 - share) * at(lane, side * half) + share * at(lane + side, -side * half)
     }
+
+    fn measured_length_m(&self) -> Option<f64> {
+        self.surface.measured_length_m()
+    }
 }
 
 #[cfg(test)]

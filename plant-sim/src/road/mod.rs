@@ -46,6 +46,11 @@ pub use tracks::TwoTracks;
 pub trait Road: Send + Sync {
     /// Height of the surface, m.
     fn height_m(&self, station_m: f64, lateral_m: f64) -> f64;
+
+    /// Length of the surface as it was measured, m, for a road from a file. Beyond it the road is its mirror image.
+    fn measured_length_m(&self) -> Option<f64> {
+        None
+    }
 }
 
 /// Level ground at height 0.

@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use oleo_interface::Side;
 
+use crate::model_file::names::suggestion;
+
 use super::iso8608::{Class, iso8608};
 use super::{
     ApgObstacle, EnteredSmoothly, Flat, HALF_TRACK_M, LANE_M, Lanes, Road, RoadError, belgian, crg, profile_from_csv,
@@ -67,7 +69,7 @@ fn from_path(path: &str) -> Result<Arc<dyn Road>, RoadError> {
     if extension != "crg" && extension != "csv" {
         return Err(RoadError::Unknown {
             spec: path.to_owned(),
-            names: NAMES.join(", "),
+            names: suggestion(path, &NAMES, "built-in roads"),
         });
     }
     let bytes = std::fs::read(path).map_err(|error| RoadError::Unreadable {

@@ -108,6 +108,10 @@ impl Road for ProfileRoad {
         let offset = (lateral_m / (2.0 * HALF_TRACK_M)).clamp(-0.5, 0.5);
         (0.5 + offset) * left + (0.5 - offset) * right
     }
+
+    fn measured_length_m(&self) -> Option<f64> {
+        Some(self.length_m())
+    }
 }
 
 #[cfg(test)]

@@ -27,6 +27,10 @@ impl Road for SideSlope {
         let s = ((station_m - self.from_m) / GROWS_M).clamp(0.0, 1.0);
         self.road.height_m(station_m, lateral_m) + s * s * (3.0 - 2.0 * s) * self.slope * lateral_m
     }
+
+    fn measured_length_m(&self) -> Option<f64> {
+        self.road.measured_length_m()
+    }
 }
 
 #[cfg(test)]

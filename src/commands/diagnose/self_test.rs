@@ -3,10 +3,14 @@
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use oleo_diagnose::selftest::{Ledger, Plan, Subject, Summary, csv_rows, page, run, save, tables};
-use oleo_report::{OutputDirectory, Progress};
+use oleo_diagnose::selftest::{Case, Ledger, Plan, Subject, Summary, csv_rows, page, run, save, tables};
+use oleo_report::Progress;
 
 use crate::failure::Failure;
+use crate::results::{ResultsArgs, command_line, say};
+
+/// What results say of where they come from.
+const COMMAND: &str = "oleo diagnose --self-test";
 
 /// Options of the self-test.
 #[derive(clap::Args)]
@@ -49,15 +53,32 @@ pub struct Args {
     #[arg(long, requires = "self_test", help_heading = "Self-test")]
     without_names: bool,
     /// Write the simulated campaigns and their answers into DIR instead of diagnosing them
-    #[arg(long, requires_all = ["self_test", "out"], help_heading = "Self-test")]
+    #[arg(long, requires = "self_test", help_heading = "Self-test")]
     save: bool,
     /// Number of campaigns that run at the same time, one thread each [default: all cores]
     #[arg(long, value_name = "N", requires = "self_test", help_heading = "Self-test")]
     threads: Option<usize>,
 }
 
+/// Writes the campaigns and their answers.
+fn save_campaigns(cases: &[Case], results: &ResultsArgs) -> Result<ExitCode, Failure> {
+    let Some(mut out) = results.stage(COMMAND, "self-test-campaigns", Vec::new())? else {
+        return Err(Failure::new(
+            "--no-out: there is nowhere to write the campaigns to; leave it out",
+        ));
+    };
+    out.fill(|folder| {
+        cases
+            .iter()
+            .try_for_each(|case| save(case, folder))
+            .map_err(Failure::from)
+    })?;
+    say(&format!("{}\n", out.commit()?.display()))?;
+    Ok(ExitCode::SUCCESS)
+}
+
 /// Runs the self-test; finished campaigns are kept in the folder, where another run goes on.
-pub fn run_self_test(args: &Args, out: Option<&std::path::Path>) -> Result<ExitCode, Failure> {
+pub fn run_self_test(args: &Args, results: &ResultsArgs) -> Result<ExitCode, Failure> {
     let plan = Plan {
         seed: args.seed,
         campaigns: args.campaigns,
@@ -77,49 +98,35 @@ pub fn run_self_test(args: &Args, out: Option<&std::path::Path>) -> Result<ExitC
     if cases.is_empty() {
         return Err(Failure::new("--campaigns 0: give a number of campaigns above 0"));
     }
-    if let (true, Some(folder)) = (args.save, out) {
-        std::fs::create_dir_all(folder)
-            .map_err(|error| Failure::new(format!("{}: cannot make the folder: {error}", folder.display())))?;
-        cases.iter().try_for_each(|case| save(case, folder))?;
-        return Ok(ExitCode::SUCCESS);
-    }
-    let (ledger, staged) = match out {
-        None => (Ledger::in_memory(), None),
-        Some(folder) => {
-            // Staged once to be told of a folder that cannot be, and again when it is there.
-            drop(OutputDirectory::stage(folder)?);
-            std::fs::create_dir_all(folder)
-                .map_err(|error| Failure::new(format!("{}: cannot make the folder: {error}", folder.display())))?;
-            (
-                Ledger::open(&folder.join("trials.jsonl"))?,
-                Some(OutputDirectory::stage(folder)?),
-            )
-        }
-    };
     let threads = match args.threads {
         Some(0) => return Err(Failure::new("--threads 0: give a number above 0")),
         Some(threads) => threads,
         None => std::thread::available_parallelism().map_or(1, usize::from),
     };
+    if args.save {
+        return save_campaigns(&cases, results);
+    }
+    let staged = results.stage_with_ledger(COMMAND, "self-test", Vec::new(), "trials.jsonl")?;
+    let (ledger, mut staged) = match staged {
+        None => (Ledger::in_memory(), None),
+        Some((out, ledger)) => (Ledger::open(&ledger)?, Some(out)),
+    };
     let progress = Progress::new("self-test", cases.len() as u64);
     let trials = run(&cases, &ledger, threads, &AtomicBool::new(false), &|| progress.add(1))?;
     drop(progress);
     let summary = Summary::of(plan.seed, &trials);
-    if let Some(mut out) = staged {
-        let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if let Some(out) = &mut staged {
         out.csv_records("trials.csv", csv_rows::trials(&trials))?;
         out.csv_records("power.csv", csv_rows::power(&summary))?;
         out.csv_records("confusion.csv", csv_rows::confusion(&summary))?;
         out.csv_records("coverage.csv", csv_rows::coverage(&summary))?;
-        out.json("summary.json", &summary)?;
-        out.page(&page(&summary, &format!("oleo {}", arguments.join(" "))))?;
-        out.commit()?;
+        out.summary("summary.json", Some(plan.seed), &summary)?;
+        out.page(&page(&summary, &command_line()))?;
     }
     let mut text = format!("{} campaigns, seed {}\n", summary.trials, summary.seed);
     for (title, table) in tables(&summary) {
         text += &format!("\n{title}\n{table}\n");
     }
-    // A closed standard output (`| head`) is no failure of the test.
-    let _ = std::io::Write::write_all(&mut std::io::stdout(), text.as_bytes());
+    results.publish(staged, &text)?;
     Ok(ExitCode::SUCCESS)
 }

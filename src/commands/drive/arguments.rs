@@ -7,6 +7,7 @@ use oleo_plant_sim::course::ManoeuvreKind;
 use strum::IntoStaticStr;
 
 use crate::commands::course_arguments::CourseArgs;
+use crate::results::ResultsArgs;
 
 /// Drive the vehicle through a manoeuvre and report its motion, comfort and handling.
 #[derive(clap::Args)]
@@ -58,9 +59,8 @@ pub struct Args {
     /// File of handling parameters [default: the built-in defender110]
     #[arg(long, value_name = "HANDLING.toml")]
     pub handling: Option<PathBuf>,
-    /// Folder to which CSV data, summary.json and report.html are written; without it only the table is printed
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
+    #[command(flatten)]
+    pub results: ResultsArgs,
 }
 
 /// The manoeuvres that can be driven.
@@ -90,6 +90,12 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// As on the command line.
+    pub fn name(self) -> String {
+        self.to_possible_value()
+            .map_or(String::new(), |value| value.get_name().to_owned())
+    }
+
     /// Needs the handling model: steering, brakes or drive.
     pub fn steers(self) -> bool {
         !matches!(self, Self::Belgian | Self::Bump | Self::Straight)

@@ -23,19 +23,19 @@ pub fn measures(plan: &Plan, run: &Run, score_from_s: f64) -> Vec<Measure> {
     let peak = |of: fn(&Sample) -> f64| run.history.iter().map(|s| of(s).abs()).fold(0.0, f64::max);
     let mut list = vec![
         (
-            "driver_weighted_rms_m_s2",
+            "weighted_rms_driver_m_s2",
             "vertical weighted RMS at the driver (BS 6841)",
             driver.vertical.weighted_rms_m_s2,
             "m/s2",
         ),
         (
-            "passenger_weighted_rms_m_s2",
+            "weighted_rms_rear_left_m_s2",
             "vertical weighted RMS at the left rear passenger",
             passenger.vertical.weighted_rms_m_s2,
             "m/s2",
         ),
         (
-            "driver_msdv_m_s1_5",
+            "msdv_driver_m_s1_5",
             "motion sickness dose at the driver",
             driver.vertical.msdv_m_s1_5,
             "m/s^1.5",
@@ -62,27 +62,27 @@ pub fn measures(plan: &Plan, run: &Run, score_from_s: f64) -> Vec<Measure> {
     if driver.lateral_weighted_rms_m_s2 + driver.fore_aft_weighted_rms_m_s2 > 0.0 {
         for (key, words, value) in [
             (
-                "driver_lateral_weighted_rms_m_s2",
+                "weighted_rms_lateral_driver_m_s2",
                 "lateral weighted RMS at the driver (Wd)",
                 driver.lateral_weighted_rms_m_s2,
             ),
             (
-                "passenger_lateral_weighted_rms_m_s2",
+                "weighted_rms_lateral_rear_left_m_s2",
                 "lateral weighted RMS at the left rear passenger",
                 passenger.lateral_weighted_rms_m_s2,
             ),
             (
-                "driver_fore_aft_weighted_rms_m_s2",
+                "weighted_rms_fore_aft_driver_m_s2",
                 "fore-aft weighted RMS at the driver (Wd)",
                 driver.fore_aft_weighted_rms_m_s2,
             ),
             (
-                "driver_combined_rms_m_s2",
+                "weighted_rms_combined_driver_m_s2",
                 "weighted RMS of all three axes at the driver",
                 driver.combined_rms_m_s2,
             ),
             (
-                "passenger_combined_rms_m_s2",
+                "weighted_rms_combined_rear_left_m_s2",
                 "weighted RMS of all three axes at the left rear passenger",
                 passenger.combined_rms_m_s2,
             ),

@@ -14,6 +14,7 @@ use oleo_plant_sim::vehicle::suspension::{CoilElement, StrutElement, SuspensionE
 use oleo_plant_sim::vehicle::{
     BaselineVehicle, RideModel, RideVehicle, SeatAcceleration, Seats, TemperedStrut, VehicleParameters,
 };
+use oleo_report::significant;
 
 use super::arguments::{Args, Kind, Model, Setting};
 use super::suspension::{Valves, struts};
@@ -67,10 +68,14 @@ impl Plan {
         let length_m = settings.road_length_m(&manoeuvre, &vehicle);
         let course = settings.course(manoeuvre, road::from_name_or_path(name, length_m, args.seed)?);
         let track = course.track(&vehicle);
-        let road_name = match settings.side_slope_percent() {
-            0.0 => name.to_owned(),
-            percent => format!("{name}, side slope of {percent} %"),
-        };
+        let mut road_name = name.to_owned();
+        if let Some(measured_m) = course.road.measured_length_m() {
+            road_name += &format!(" ({} m, beyond them its mirror image)", significant(measured_m, 3));
+        }
+        match settings.side_slope_percent() {
+            0.0 => {}
+            percent => road_name += &format!(", side slope of {percent} %"),
+        }
         if args.setting == Setting::Baseline && args.gas_temperature_c.is_some() {
             return Err(Failure::new(
                 "--gas-temperature-c: coil springs contain no gas; use another --setting or leave the option out",
@@ -189,6 +194,17 @@ impl Plan {
         }
         run
     }
+}
+
+/// Refuses an option that the model has no use for, before its file is read.
+pub fn refuse_unused(args: &Args) -> Result<(), Failure> {
+    // The controller knows some of the handling parameters, whatever drives.
+    if args.model == Model::Ride && args.handling.is_some() && args.setting != Setting::Controlled {
+        return Err(Failure::new(
+            "--handling: the ride model does not use handling parameters: take --model handling, or leave it out",
+        ));
+    }
+    Ok(())
 }
 
 fn within(option: &str, value: f64, low: f64, high: f64) -> Result<(), Failure> {

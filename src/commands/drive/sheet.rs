@@ -1,7 +1,5 @@
 //! Writes the results of a drive: tables, CSV files and the page.
 
-use std::io::Write as _;
-
 use oleo_controller::ValveCommand;
 use oleo_hil::page::Path;
 use oleo_interface::{Axle, Corner, StrutValves};
@@ -13,6 +11,7 @@ use super::arguments::Args;
 use super::measures::{Measure, measures};
 use super::plan::Plan;
 use crate::failure::Failure;
+use crate::results::command_line;
 
 /// RMS of the difference over RMS of the first, at the same places of the road: the handling model's speed gives way on
 /// a rough road, the ride model's is constant.
@@ -46,7 +45,7 @@ type Panel<'a> = (&'a str, &'a str, &'a [(&'a str, Signal)]);
 
 const COMPARED: [(&str, &str, Signal); 5] = [
     ("heave", "body vertical displacement (figures 2, 6)", |s| s.heave_m),
-    ("vertical_acceleration", "body vertical acceleration (figure 3)", |s| {
+    ("heave_acceleration", "body vertical acceleration (figure 3)", |s| {
         s.vertical_acceleration_m_s2
     }),
     ("front_axle", "front axle vertical displacement (figure 4)", |s| {
@@ -69,27 +68,33 @@ const COLUMNS: [(&str, Signal); 36] = [
     ("yaw_rate_rad_s", |s| s.yaw_rate_rad_s),
     ("longitudinal_acceleration_m_s2", |s| s.longitudinal_acceleration_m_s2),
     ("lateral_acceleration_m_s2", |s| s.lateral_acceleration_m_s2),
-    ("vertical_acceleration_m_s2", |s| s.vertical_acceleration_m_s2),
+    ("heave_acceleration_m_s2", |s| s.vertical_acceleration_m_s2),
     ("steer_rad", |s| s.steer_rad),
     ("wheel_steer_rad", |s| s.wheel_steer_rad),
-    ("driver_seat_m_s2", |s| s.seat.driver.vertical_m_s2),
-    ("passenger_seat_m_s2", |s| s.seat.passenger.vertical_m_s2),
-    ("driver_seat_lateral_m_s2", |s| s.seat.driver.lateral_m_s2),
-    ("passenger_seat_lateral_m_s2", |s| s.seat.passenger.lateral_m_s2),
+    ("driver_acceleration_m_s2", |s| s.seat.driver.vertical_m_s2),
+    ("rear_left_acceleration_m_s2", |s| s.seat.passenger.vertical_m_s2),
+    ("driver_lateral_acceleration_m_s2", |s| s.seat.driver.lateral_m_s2),
+    ("rear_left_lateral_acceleration_m_s2", |s| s.seat.passenger.lateral_m_s2),
     ("front_axle_heave_m", |s| s.front_axle_heave_m),
     ("front_axle_roll_rad", |s| s.front_axle_roll_rad),
-    ("wheel_load_fl_N", |s| s.wheel_load_n[Corner::FrontLeft]),
-    ("wheel_load_fr_N", |s| s.wheel_load_n[Corner::FrontRight]),
-    ("wheel_load_rl_N", |s| s.wheel_load_n[Corner::RearLeft]),
-    ("wheel_load_rr_N", |s| s.wheel_load_n[Corner::RearRight]),
-    ("strut_fl_m", |s| s.strut_displacement_m[Corner::FrontLeft]),
-    ("strut_fr_m", |s| s.strut_displacement_m[Corner::FrontRight]),
-    ("strut_rl_m", |s| s.strut_displacement_m[Corner::RearLeft]),
-    ("strut_rr_m", |s| s.strut_displacement_m[Corner::RearRight]),
-    ("strut_force_fl_N", |s| s.strut_force_n[Corner::FrontLeft]),
-    ("strut_force_fr_N", |s| s.strut_force_n[Corner::FrontRight]),
-    ("strut_force_rl_N", |s| s.strut_force_n[Corner::RearLeft]),
-    ("strut_force_rr_N", |s| s.strut_force_n[Corner::RearRight]),
+    ("wheel_load_front_left_N", |s| s.wheel_load_n[Corner::FrontLeft]),
+    ("wheel_load_front_right_N", |s| s.wheel_load_n[Corner::FrontRight]),
+    ("wheel_load_rear_left_N", |s| s.wheel_load_n[Corner::RearLeft]),
+    ("wheel_load_rear_right_N", |s| s.wheel_load_n[Corner::RearRight]),
+    ("displacement_front_left_m", |s| {
+        s.strut_displacement_m[Corner::FrontLeft]
+    }),
+    ("displacement_front_right_m", |s| {
+        s.strut_displacement_m[Corner::FrontRight]
+    }),
+    ("displacement_rear_left_m", |s| s.strut_displacement_m[Corner::RearLeft]),
+    ("displacement_rear_right_m", |s| {
+        s.strut_displacement_m[Corner::RearRight]
+    }),
+    ("force_front_left_N", |s| s.strut_force_n[Corner::FrontLeft]),
+    ("force_front_right_N", |s| s.strut_force_n[Corner::FrontRight]),
+    ("force_rear_left_N", |s| s.strut_force_n[Corner::RearLeft]),
+    ("force_rear_right_N", |s| s.strut_force_n[Corner::RearRight]),
     ("valve_word", |s| f64::from(valve_word(&s.valves))),
     ("front_valves_open", |s| open_valves(s, Axle::Front)),
     ("rear_valves_open", |s| open_valves(s, Axle::Rear)),
@@ -111,7 +116,12 @@ fn column(run: &Run, of: fn(&Sample) -> f64) -> Vec<f64> {
 }
 
 /// Prints the table and writes the folder.
-pub fn publish(plan: &Plan, args: &Args, runs: &[(&str, Run)], out: Option<OutputDirectory>) -> Result<(), Failure> {
+pub fn publish(
+    plan: &Plan,
+    args: &Args,
+    runs: &[(&str, Run)],
+    mut out: Option<OutputDirectory>,
+) -> Result<(), Failure> {
     let mut columns = vec![Column::text("Measure")];
     columns.extend(runs.iter().map(|(name, _)| Column::number(name)));
     columns.push(Column::text("Unit"));
@@ -155,7 +165,7 @@ pub fn publish(plan: &Plan, args: &Args, runs: &[(&str, Run)], out: Option<Outpu
         }
         comparison = Some(rows);
     }
-    if let Some(mut out) = out {
+    if let Some(out) = &mut out {
         let page = page(plan, args, runs, &table, comparison.as_ref());
         for (name, run) in runs {
             let columns: Vec<(&str, Vec<f64>)> = COLUMNS.iter().map(|(name, of)| (*name, column(run, *of))).collect();
@@ -165,14 +175,17 @@ pub fn publish(plan: &Plan, args: &Args, runs: &[(&str, Run)], out: Option<Outpu
                 .collect();
             out.csv(&format!("{}.csv", name.replace(' ', "-")), &columns)?;
         }
-        out.json("summary.json", &summary)?;
+        out.summary("summary.json", Some(args.seed), &summary)?;
         out.page(&page)?;
-        out.commit()?;
     }
-    let text = format!("{table}{}", comparison.map_or(String::new(), |table| table.to_string()));
-    // A closed standard output (`| head`) is no failure of the drive.
-    let _ = std::io::stdout().write_all(text.as_bytes());
-    Ok(())
+    let text = format!(
+        "{}: road {}, {}\n{table}{}",
+        plan.title,
+        plan.road_name,
+        args.setting.name(),
+        comparison.map_or(String::new(), |table| table.to_string())
+    );
+    args.results.publish(out, &text)
 }
 
 fn ending(ending: Ending) -> String {
@@ -185,11 +198,7 @@ fn ending(ending: Ending) -> String {
 }
 
 fn page(plan: &Plan, args: &Args, runs: &[(&str, Run)], table: &Table, comparison: Option<&Table>) -> Page {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let mut page = Page::new(
-        &format!("Drive: {}", plan.title),
-        &format!("oleo {}", arguments.join(" ")),
-    );
+    let mut page = Page::new(&format!("Drive: {}", plan.title), &command_line());
     page.fact("Vehicle", &plan.vehicle.name)
         .fact("Suspension", args.setting.name())
         .fact("Driver", plan.course.driver.key())

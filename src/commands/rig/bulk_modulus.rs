@@ -18,7 +18,7 @@ pub struct Args {
     specimen: Specimen,
     /// Highest pressure, MPa gauge
     #[arg(long, value_name = "MPA", default_value_t = 20.0)]
-    pressure: f64,
+    pressure_mpa: f64,
     /// Undissolved air in the oil, volume fraction at atmospheric pressure [default: that of the model]
     #[arg(long, value_name = "FRACTION")]
     air: Option<f64>,
@@ -26,7 +26,7 @@ pub struct Args {
 
 /// Runs the measurement.
 pub fn run(args: &Args) -> Result<ExitCode, Failure> {
-    within("--pressure", args.pressure, 1.0, 60.0, "MPa")?;
+    within("--pressure-mpa", args.pressure_mpa, 1.0, 60.0, "MPa")?;
     let mut model = args.specimen.model()?;
     if let Some(air) = args.air {
         within("--air", air, 0.0, 0.1, "as a fraction")?;
@@ -35,8 +35,10 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
             polytropic_exponent: 1.0,
         });
     }
-    let mut sheet = args.specimen.sheet("Rig: bulk modulus of the oil", &model)?;
-    let test = compress_oil(&model, 1e6 * args.pressure)?;
+    let mut sheet = args
+        .specimen
+        .sheet("bulk-modulus", "Rig: bulk modulus of the oil", &model, None)?;
+    let test = compress_oil(&model, 1e6 * args.pressure_mpa)?;
     let stroke_mm = 1e3 * test.record.displacement_m.iter().copied().fold(0.0, f64::max);
 
     let mut table = Table::new([Column::text("Quantity"), Column::number("Value"), Column::text("Unit")]);
@@ -89,6 +91,6 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     sheet.summarise("bulk_modulus_Pa", test.bulk_modulus_pa);
     sheet.summarise("bulk_modulus_found_Pa", test.found_pa);
     sheet.summarise("relative_deviation", test.deviation);
-    sheet.publish(&table)?;
+    sheet.publish(&table.to_string())?;
     Ok(ExitCode::SUCCESS)
 }

@@ -21,7 +21,7 @@ pub struct Args {
     specimen: Specimen,
     /// Highest speed at mid-stroke, m/s
     #[arg(long, value_name = "M/S", default_value_t = 1.0)]
-    speed: f64,
+    speed_m_s: f64,
     /// Flow coefficient of the leak past each damper pack in the leaking strut, m3/s/sqrt(Pa)
     #[arg(long, value_name = "COEFFICIENT", default_value_t = 1.2e-6)]
     leak: f64,
@@ -32,16 +32,18 @@ const PARTS: [f64; 9] = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0];
 
 /// Runs the measurement.
 pub fn run(args: &Args) -> Result<ExitCode, Failure> {
-    within("--speed", args.speed, 0.05, 2.0, "m/s")?;
+    within("--speed-m-s", args.speed_m_s, 0.05, 2.0, "m/s")?;
     within("--leak", args.leak, 0.0, 1e-4, "m3/s/sqrt(Pa)")?;
     let model = args.specimen.model()?;
-    let mut sheet = args.specimen.sheet("Rig: damping characteristics", &model)?;
+    let mut sheet = args
+        .specimen
+        .sheet("damping", "Rig: damping characteristics", &model, None)?;
     let mut leaking = model.clone();
     leaking.effects.damper_leakage = Some(DamperLeakage {
         flow_coefficient_1: args.leak,
         flow_coefficient_2: args.leak,
     });
-    let speeds = PARTS.map(|part| part * args.speed);
+    let speeds = PARTS.map(|part| part * args.speed_m_s);
     let progress = Progress::new("damping", 6);
     let mut measured: Vec<(String, Vec<DampingPoint>)> = Vec::new();
     for (packs, model) in [("", &model), (", leaking packs", &leaking)] {
@@ -110,7 +112,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
             &force,
         );
     }
-    let ends = [-args.speed, 0.0, args.speed];
+    let ends = [-args.speed_m_s, 0.0, args.speed_m_s];
     figure.series(
         Style::Dashed,
         "baseline damper",
@@ -150,7 +152,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
             .collect();
         sheet.summarise(file, points);
     }
-    sheet.publish(&table)?;
+    sheet.publish(&table.to_string())?;
     Ok(ExitCode::SUCCESS)
 }
 

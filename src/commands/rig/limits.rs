@@ -20,7 +20,9 @@ pub struct Args {
 /// Runs the check.
 pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let model = args.specimen.model()?;
-    let mut sheet = args.specimen.sheet("Rig: design specifications", &model)?;
+    let mut sheet = args
+        .specimen
+        .sheet("limits", "Rig: design specifications", &model, None)?;
     let limits = check_limits(&model)?;
     let mut table = Table::new([
         Column::text("No"),
@@ -63,7 +65,6 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         })
         .collect();
     sheet.summarise("limits", limits);
-    sheet.publish(&table)?;
-    let _ = std::io::Write::write_all(&mut std::io::stdout(), explanations.as_bytes());
+    sheet.publish(&format!("{table}{explanations}"))?;
     Ok(if all { ExitCode::SUCCESS } else { ExitCode::from(1) })
 }

@@ -45,7 +45,9 @@ enum Generation {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let model = args.specimen.model()?;
-    let mut sheet = args.specimen.sheet("Rig: replay", &model)?;
+    let mut sheet = args
+        .specimen
+        .sheet("replay", "Rig: replay", &model, args.recording.as_ref())?;
     let mut table = Table::new([
         Column::text("Run"),
         Column::number("Peak force, kN"),
@@ -68,7 +70,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         run.draw(&mut sheet, args.generation);
         run.write(&mut sheet, args.generation)?;
     }
-    sheet.publish(&table)?;
+    sheet.publish(&table.to_string())?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use oleo_plant_sim::strut::StrutModel;
-use oleo_report::{OutputDirectory, Page, Table};
+use oleo_report::{OutputDirectory, Page};
 use serde_json::{Map, Value};
 
 use crate::failure::Failure;
+use crate::results::{ResultsArgs, command_line};
 
 /// Options that all measurements share: the strut and the output folder.
 #[derive(clap::Args)]
@@ -22,10 +23,9 @@ pub struct Specimen {
         conflicts_with = "strut",
         allow_negative_numbers = true
     )]
-    static_load: f64,
-    /// Folder to which CSV data, summary.json and report.html are written; without it only the table is printed
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    static_load_n: f64,
+    #[command(flatten)]
+    results: ResultsArgs,
 }
 
 impl Specimen {
@@ -38,27 +38,36 @@ impl Specimen {
                     .map_err(|error| Failure::new(format!("{name}: cannot read the model: {error}; check the path")))?;
                 Ok(StrutModel::from_toml(&text, &name)?)
             }
-            None if self.static_load.is_finite() && (500.0..=40_000.0).contains(&self.static_load) => {
-                Ok(StrutModel::defender110(self.static_load))
+            None if self.static_load_n.is_finite() && (500.0..=40_000.0).contains(&self.static_load_n) => {
+                Ok(StrutModel::defender110(self.static_load_n))
             }
             None => Err(Failure::new(format!(
-                "--static-load {}: give a load from 500 to 40000 N",
-                self.static_load
+                "--static-load-n {}: give a load from 500 to 40000 N",
+                self.static_load_n
             ))),
         }
     }
 
-    /// Starts the sheet; fails at once where `--out` cannot be written.
-    pub fn sheet(&self, title: &str, model: &StrutModel) -> Result<Sheet, Failure> {
-        let out = self.out.as_ref().map(OutputDirectory::stage).transpose()?;
-        let arguments: Vec<String> = std::env::args().skip(1).collect();
-        let mut page = Page::new(title, &format!("oleo {}", arguments.join(" ")));
+    /// Starts the sheet of a measurement (its name on the command line); fails at once where `--out` cannot be written.
+    /// `recording` is what it reads besides the model.
+    pub fn sheet(
+        &self,
+        measurement: &str,
+        title: &str,
+        model: &StrutModel,
+        recording: Option<&PathBuf>,
+    ) -> Result<Sheet<'_>, Failure> {
+        let inputs = self.strut.iter().chain(recording).cloned().collect();
+        let (command, name) = (format!("oleo rig {measurement}"), format!("rig-{measurement}"));
+        let out = self.results.stage(&command, &name, inputs)?;
+        let mut page = Page::new(title, &command_line());
         let static_kn = 1e-3 * model.cylinder.static_pressure_pa * model.piston_area_m2();
         page.fact(
             "Strut",
             &format!("{}, static load {static_kn:.1} kN", model.specimen.name),
         );
         Ok(Sheet {
+            results: &self.results,
             out,
             page,
             summary: Map::new(),
@@ -67,13 +76,14 @@ impl Specimen {
 }
 
 /// Results of one measurement, on their way out.
-pub struct Sheet {
+pub struct Sheet<'a> {
+    results: &'a ResultsArgs,
     out: Option<OutputDirectory>,
     pub page: Page,
     summary: Map<String, Value>,
 }
 
-impl Sheet {
+impl Sheet<'_> {
     /// A figure for `summary.json`.
     pub fn summarise(&mut self, key: &str, value: impl Into<Value>) {
         self.summary.insert(key.to_owned(), value.into());
@@ -100,15 +110,12 @@ impl Sheet {
         self.csv(name, &all)
     }
 
-    /// Prints the table and moves the files into place. The table is the first thing on the page besides.
-    pub fn publish(self, table: &Table) -> Result<(), Failure> {
-        if let Some(mut out) = self.out {
-            out.json("summary.json", &self.summary)?;
+    /// Moves the files into place and prints the tables. Nothing in a measurement is random.
+    pub fn publish(mut self, text: &str) -> Result<(), Failure> {
+        if let Some(out) = &mut self.out {
+            out.summary("summary.json", None, &self.summary)?;
             out.page(&self.page)?;
-            out.commit()?;
         }
-        // A closed standard output (`| head`) is no failure of the measurement.
-        let _ = std::io::Write::write_all(&mut std::io::stdout(), table.to_string().as_bytes());
-        Ok(())
+        self.results.publish(self.out, text)
     }
 }

@@ -19,13 +19,13 @@ pub struct Args {
     specimen: Specimen,
     /// Largest compression, mm
     #[arg(long, value_name = "MM", default_value_t = 40.0)]
-    bump: f64,
+    bump_mm: f64,
     /// Largest extension, mm
     #[arg(long, value_name = "MM", default_value_t = 100.0)]
-    rebound: f64,
+    rebound_mm: f64,
     /// Duration of the cycle, s
     #[arg(long, value_name = "S", default_value_t = 300.0)]
-    duration: f64,
+    duration_s: f64,
     /// Friction coefficient of the offset mounting: friction force divided by strut force, for the load cell of figure 18
     #[arg(long, value_name = "MU", default_value_t = 0.1)]
     side_load: f64,
@@ -33,16 +33,18 @@ pub struct Args {
 
 /// Runs the measurement.
 pub fn run(args: &Args) -> Result<ExitCode, Failure> {
-    within("--bump", args.bump, 1.0, 45.0, "mm")?;
-    within("--rebound", args.rebound, 1.0, 180.0, "mm")?;
-    within("--duration", args.duration, 1.0, 3600.0, "s")?;
+    within("--bump-mm", args.bump_mm, 1.0, 45.0, "mm")?;
+    within("--rebound-mm", args.rebound_mm, 1.0, 180.0, "mm")?;
+    within("--duration-s", args.duration_s, 1.0, 3600.0, "s")?;
     within("--side-load", args.side_load, 0.0, 0.5, "as a ratio")?;
     let model = args.specimen.model()?;
-    let mut sheet = args.specimen.sheet("Rig: spring characteristics", &model)?;
+    let mut sheet = args
+        .specimen
+        .sheet("spring", "Rig: spring characteristics", &model, None)?;
     let test = SpringTest {
-        bump_m: 1e-3 * args.bump,
-        rebound_m: 1e-3 * args.rebound,
-        duration_s: args.duration,
+        bump_m: 1e-3 * args.bump_mm,
+        rebound_m: 1e-3 * args.rebound_mm,
+        duration_s: args.duration_s,
     };
     let progress = Progress::new("spring", 3);
     let soft = test_spring(&model, Spring::Soft, test)?;
@@ -60,7 +62,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         sheet.summarise(name, summary(result));
     }
     compare_terms(&mut sheet, &model);
-    sheet.publish(&table)?;
+    sheet.publish(&table.to_string())?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -157,7 +159,7 @@ fn draw(
         "Cycle",
         &format!(
             "0, +{} mm, -{} mm, +{} mm, 0 in {} s",
-            args.bump, args.rebound, args.bump, args.duration
+            args.bump_mm, args.rebound_mm, args.bump_mm, args.duration_s
         ),
     );
     let mm = |values: &[f64]| values.iter().map(|x| 1e3 * x).collect::<Vec<f64>>();

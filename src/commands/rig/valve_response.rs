@@ -12,13 +12,13 @@ use crate::failure::Failure;
 
 /// Measure the response time of valve 3, from the 5 % and 95 % points of the pressure difference, and fit a parabola to it.
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  oleo rig valve-response --highest 14 --out valves")]
+#[command(after_help = "Example:\n  oleo rig valve-response --highest-mpa 14 --out valves")]
 pub struct Args {
     #[command(flatten)]
     specimen: Specimen,
     /// Highest pressure difference, MPa
     #[arg(long, value_name = "MPA", default_value_t = 14.0)]
-    highest: f64,
+    highest_mpa: f64,
     /// Number of pressure differences
     #[arg(long, value_name = "N", default_value_t = 14, value_parser = clap::value_parser!(u32).range(3..=100))]
     points: u32,
@@ -26,15 +26,17 @@ pub struct Args {
 
 /// Runs the measurement.
 pub fn run(args: &Args) -> Result<ExitCode, Failure> {
-    within("--highest", args.highest, 1.0, 16.0, "MPa")?;
+    within("--highest-mpa", args.highest_mpa, 1.0, 16.0, "MPa")?;
     let model = args.specimen.model()?;
-    let mut sheet = args.specimen.sheet("Rig: valve response times", &model)?;
+    let mut sheet = args
+        .specimen
+        .sheet("valve-response", "Rig: valve response times", &model, None)?;
     let progress = Progress::new("valve response", u64::from(args.points));
     let mut responses = Vec::new();
     for i in 1..=args.points {
         responses.push(measure_valve_response(
             &model,
-            1e6 * args.highest * f64::from(i) / f64::from(args.points),
+            1e6 * args.highest_mpa * f64::from(i) / f64::from(args.points),
         )?);
         progress.add(1);
     }
@@ -42,7 +44,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let fit = |time: &dyn Fn(&ValveResponse) -> f64| {
         let points: Vec<(f64, f64)> = responses.iter().map(|r| (1e-6 * r.initial_pa, 1e3 * time(r))).collect();
         Parabola::fit(&points).ok_or_else(|| {
-            Failure::new("fewer than three pressure differences were reached, which is too few to fit a parabola; raise --highest or the strut's gas volume")
+            Failure::new("fewer than three pressure differences were reached, which is too few to fit a parabola; raise --highest-mpa or the strut's gas volume")
         })
     };
     let (total, opening) = (fit(&|r| r.total_s)?, fit(&|r| r.opening_total_s)?);
@@ -83,8 +85,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     sheet.page.outcome(table.clone()).table(fits.clone());
     draw(&mut sheet, &responses, &total, &opening);
     write(&mut sheet, &responses, &total, &opening)?;
-    sheet.publish(&table)?;
-    let _ = std::io::Write::write_all(&mut std::io::stdout(), fits.to_string().as_bytes());
+    sheet.publish(&format!("{table}{fits}"))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,6 +1,5 @@
 //! `oleo study control`: the controller against every fixed setting, the vehicle as sold and an oracle.
 
-use std::io::Write as _;
 use std::process::ExitCode;
 
 use oleo_controller::{DamperPolicy, Strategy};
@@ -14,6 +13,7 @@ use serde_json::json;
 
 use super::drives::{Drives, controlled};
 use crate::failure::Failure;
+use crate::results::command_line;
 
 /// Compare the controller with every fixed valve setting, the vehicle as sold and an oracle, for ride and for roll
 #[derive(clap::Args)]
@@ -84,20 +84,18 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         )));
     }
     let bench = args.drives.bench()?;
-    let (records, out) = args.drives.results()?;
+    let (records, mut out) = args.drives.stage("control")?;
     let comparison = comparison(args, &bench, &records)?;
     let [own, ..] = &comparison.scores[..] else {
         return Err(Failure::new("the comparison has no controller"));
     };
     let tables = [ride_table(&comparison), roll_table(&comparison), goals_table(own)];
     let met = own.goals.iter().all(|goal| goal.met);
-    if let Some(mut out) = out {
-        write(&mut out, &comparison, own, &tables)?;
-        out.commit()?;
+    if let Some(out) = &mut out {
+        write(out, args.first_seed, &comparison, own, &tables)?;
     }
     let text: Vec<String> = tables.iter().map(ToString::to_string).collect();
-    // A closed standard output (`| head`) is no failure of the study.
-    let _ = std::io::stdout().write_all(text.join("\n").as_bytes());
+    args.drives.results.publish(out, &text.join("\n"))?;
     Ok(if args.check && !met {
         ExitCode::FAILURE
     } else {
@@ -187,7 +185,13 @@ fn goals_table(scores: &Scores) -> Table {
     table
 }
 
-fn write(out: &mut OutputDirectory, comparison: &Comparison, own: &Scores, tables: &[Table; 3]) -> Result<(), Failure> {
+fn write(
+    out: &mut OutputDirectory,
+    seed: u64,
+    comparison: &Comparison,
+    own: &Scores,
+    tables: &[Table; 3],
+) -> Result<(), Failure> {
     let Comparison {
         groups,
         settings,
@@ -199,8 +203,9 @@ fn write(out: &mut OutputDirectory, comparison: &Comparison, own: &Scores, table
         .zip(scores)
         .map(|((name, ..), scores)| ((*name).to_owned(), json!(scores)))
         .collect();
-    out.json(
+    out.summary(
         "summary.json",
+        Some(seed),
         &json!({
             "controller": CONTROLLERS[0].0,
             "ride_ratio_to_soft": own.ride_ratio_to_soft,
@@ -225,8 +230,7 @@ fn write(out: &mut OutputDirectory, comparison: &Comparison, own: &Scores, table
 
 fn page(comparison: &Comparison, own: &Scores, [ride, roll, goals]: &[Table; 3]) -> Page {
     let Comparison { settings, means, .. } = comparison;
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let mut page = Page::new("Control study", &format!("oleo {}", arguments.join(" ")));
+    let mut page = Page::new("Control study", &command_line());
     let met = own.goals.iter().filter(|goal| goal.met).count();
     let counted = format!("{met} of {} goals are met.", own.goals.len());
     if met == own.goals.len() {

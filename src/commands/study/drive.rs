@@ -10,6 +10,7 @@ use oleo_report::OutputDirectory;
 use crate::commands::parameter_files::parameters;
 use crate::commands::word::word;
 use crate::failure::Failure;
+use crate::results::ResultsArgs;
 
 /// What both studies drive.
 #[derive(clap::Args)]
@@ -35,14 +36,12 @@ pub struct Drive {
     duration_s: f64,
     /// Seed of the Belgian block
     #[arg(long, value_name = "N", default_value_t = 1)]
-    seed: u64,
+    pub seed: u64,
     /// Number of threads [default: all cores]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// Folder to which CSV data, summary.json, report.html and the finished runs are written; without it only the table is
-    /// printed
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    #[command(flatten)]
+    pub results: ResultsArgs,
 }
 
 impl Drive {
@@ -80,18 +79,13 @@ impl Drive {
         Ok(pool.install(work))
     }
 
-    /// The finished runs and the staged results. Finished runs are kept in the folder itself, as they end.
-    pub fn results(&self, bench: &Bench) -> Result<(Ledger, Option<OutputDirectory>), Failure> {
-        let Some(out) = &self.out else {
-            return Ok((Ledger::in_memory(bench), None));
-        };
-        // Staged once to be told of a folder that cannot be, and again when it is there.
-        drop(OutputDirectory::stage(out)?);
-        std::fs::create_dir_all(out)
-            .map_err(|error| Failure::new(format!("{}: cannot make the folder: {error}", out.display())))?;
-        Ok((
-            Ledger::open(&out.join("runs.csv"), bench)?,
-            Some(OutputDirectory::stage(out)?),
-        ))
+    /// The finished runs and the staged results of `study`. Finished runs are kept in the folder itself, as they end.
+    pub fn stage(&self, study: &str, bench: &Bench) -> Result<(Ledger, Option<OutputDirectory>), Failure> {
+        let inputs = self.vehicle.iter().chain(&self.handling).cloned().collect();
+        let (command, name) = (format!("oleo study {study}"), format!("study-{study}"));
+        match self.results.stage_with_ledger(&command, &name, inputs, "runs.csv")? {
+            Some((out, ledger)) => Ok((Ledger::open(&ledger, bench)?, Some(out))),
+            None => Ok((Ledger::in_memory(bench), None)),
+        }
     }
 }

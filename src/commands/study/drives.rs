@@ -9,6 +9,7 @@ use oleo_report::OutputDirectory;
 
 use crate::commands::parameter_files::parameters;
 use crate::failure::Failure;
+use crate::results::ResultsArgs;
 
 /// The vehicle, the threads and the folder.
 #[derive(clap::Args)]
@@ -22,9 +23,8 @@ pub struct Drives {
     /// Number of threads [default: all cores]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    /// Folder to which the results and the finished drives (drives.csv) are written; without it only the tables are printed
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    #[command(flatten)]
+    pub results: ResultsArgs,
 }
 
 impl Drives {
@@ -44,18 +44,14 @@ impl Drives {
         Ok(pool.install(work))
     }
 
-    /// The finished drives and the staged results. Finished drives are kept in the folder itself, as they end.
-    pub fn results(&self) -> Result<(Records, Option<OutputDirectory>), Failure> {
-        let Some(out) = &self.out else {
-            return Ok((Records::in_memory(), None));
-        };
-        // Staged once to be told of a folder that cannot be, and again when it is there.
-        drop(OutputDirectory::stage(out)?);
-        std::fs::create_dir_all(out)
-            .map_err(|error| Failure::new(format!("{}: cannot make the folder: {error}", out.display())))?;
-        let mut staged = OutputDirectory::stage(out)?;
-        staged.keep(self.vehicle.iter().chain(&self.handling));
-        Ok((Records::open(&out.join("drives.csv"))?, Some(staged)))
+    /// The finished drives and the staged results of `study`. Finished drives are kept in the folder itself, as they end.
+    pub fn stage(&self, study: &str) -> Result<(Records, Option<OutputDirectory>), Failure> {
+        let inputs = self.vehicle.iter().chain(&self.handling).cloned().collect();
+        let (command, name) = (format!("oleo study {study}"), format!("study-{study}"));
+        match self.results.stage_with_ledger(&command, &name, inputs, "drives.csv")? {
+            Some((out, ledger)) => Ok((Records::open(&ledger)?, Some(out))),
+            None => Ok((Records::in_memory(), None)),
+        }
     }
 }
 

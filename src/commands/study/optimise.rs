@@ -1,6 +1,5 @@
 //! `oleo study optimise`: finds the optimum of the sweep with fewer runs.
 
-use std::io::Write as _;
 use std::process::ExitCode;
 
 use oleo_interface::{Axle, Axles};
@@ -10,6 +9,7 @@ use serde_json::json;
 
 use super::drive::Drive;
 use crate::failure::Failure;
+use crate::results::command_line;
 
 /// Find the gas volume and damper factor that minimise a weighted sum of ride and handling measures
 #[derive(clap::Args)]
@@ -47,7 +47,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         ));
     }
     let bench = args.drive.bench()?;
-    let (ledger, out) = args.drive.results(&bench)?;
+    let (ledger, mut out) = args.drive.stage("optimise", &bench)?;
     let objective = Objective {
         weights,
         per_axle: args.per_axle,
@@ -61,12 +61,10 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     drop(progress);
 
     let table = outcome(&optimum);
-    if let Some(mut out) = out {
-        write(&mut out, &optimum, &table)?;
-        out.commit()?;
+    if let Some(out) = &mut out {
+        write(out, args.drive.seed, &optimum, &table)?;
     }
-    // A closed standard output (`| head`) is no failure of the study.
-    let _ = std::io::stdout().write_all(table.to_string().as_bytes());
+    args.drive.results.publish(out, &table.to_string())?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -106,7 +104,7 @@ fn outcome(optimum: &Optimum) -> Table {
     table
 }
 
-fn write(out: &mut OutputDirectory, optimum: &Optimum, table: &Table) -> Result<(), Failure> {
+fn write(out: &mut OutputDirectory, seed: u64, optimum: &Optimum, table: &Table) -> Result<(), Failure> {
     let column = |of: &dyn Fn(&Visit) -> f64| optimum.path.iter().map(of).collect::<Vec<f64>>();
     let volume = Axles::from_fn(|axle| column(&|v| 1e3 * v.case.gas_volume_m3[axle]));
     let factor = Axles::from_fn(|axle| column(&|v| v.case.damper_factor[axle]));
@@ -138,8 +136,7 @@ fn write(out: &mut OutputDirectory, optimum: &Optimum, table: &Table) -> Result<
         ],
     )?;
 
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let mut page = Page::new("Design study: optimiser", &format!("oleo {}", arguments.join(" ")));
+    let mut page = Page::new("Design study: optimiser", &command_line());
     page.outcome(table.clone());
     let mut path = Curves::new(
         "Path of the search",
@@ -165,8 +162,9 @@ fn write(out: &mut OutputDirectory, optimum: &Optimum, table: &Table) -> Result<
     panel.series(Style::Points, "evaluated", &number, &objective);
     panel.series(Style::Step, "best so far", &number, &best);
     page.section("Path").figure(path).figure(progress);
-    out.json(
+    out.summary(
         "summary.json",
+        Some(seed),
         &json!({
             "gas_volume_l": case.gas_volume_m3.map(|v| 1e3 * v).into_array(),
             "damper_factor": case.damper_factor.into_array(),

@@ -1,6 +1,5 @@
 //! `oleo study robust`: random vehicles under the controller of the nominal one.
 
-use std::io::Write as _;
 use std::process::ExitCode;
 
 use oleo_controller::{DamperPolicy, Strategy};
@@ -11,6 +10,7 @@ use serde_json::json;
 
 use super::drives::{Drives, controlled};
 use crate::failure::Failure;
+use crate::results::command_line;
 
 /// Drive random vehicles (load, inertia, tyres, gas, friction, valves, sensors, a weak strut) with the controller of the nominal one
 #[derive(clap::Args)]
@@ -68,7 +68,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         Strategy::default(),
         DamperPolicy::default(),
     )?;
-    let (records, out) = args.drives.results()?;
+    let (records, mut out) = args.drives.stage("robust")?;
     let progress = Progress::new("study robust", DRIVES * args.vehicles);
     let results = {
         // The first Ctrl-C lets the drives in hand end and keeps them.
@@ -93,13 +93,11 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         .map(|result| result.case)
         .collect();
     let table = table(&results);
-    if let Some(mut out) = out {
-        write(&mut out, &results, &over, &table)?;
-        out.commit()?;
+    if let Some(out) = &mut out {
+        write(out, args.first, &results, &over, &table)?;
     }
     let text = format!("{table}{}\n", verdict(results.len(), &over));
-    // A closed standard output (`| head`) is no failure of the study.
-    let _ = std::io::stdout().write_all(text.as_bytes());
+    args.drives.results.publish(out, &text)?;
     let failed = args.check && !over.is_empty();
     Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
@@ -157,7 +155,13 @@ fn table(results: &[VariedResult]) -> Table {
     table
 }
 
-fn write(out: &mut OutputDirectory, results: &[VariedResult], over: &[u64], table: &Table) -> Result<(), Failure> {
+fn write(
+    out: &mut OutputDirectory,
+    seed: u64,
+    results: &[VariedResult],
+    over: &[u64],
+    table: &Table,
+) -> Result<(), Failure> {
     let column = |of: &dyn Fn(&VariedResult) -> f64| results.iter().map(of).collect::<Vec<f64>>();
     let case = column(&|result| result.case as f64);
     let rolls_over = column(&|result| f64::from(u8::from(result.rolls_over)));
@@ -186,8 +190,9 @@ fn write(out: &mut OutputDirectory, results: &[VariedResult], over: &[u64], tabl
             (distribution.key.to_owned(), figures)
         })
         .collect();
-    out.json(
+    out.summary(
         "summary.json",
+        Some(seed),
         &json!({
             "vehicles": results.len(),
             "rolled_over": over,
@@ -195,8 +200,7 @@ fn write(out: &mut OutputDirectory, results: &[VariedResult], over: &[u64], tabl
         }),
     )?;
 
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let mut page = Page::new("Robustness study", &format!("oleo {}", arguments.join(" ")));
+    let mut page = Page::new("Robustness study", &command_line());
     let kind = if over.is_empty() { Verdict::Pass } else { Verdict::Fail };
     page.verdict(kind, &verdict(results.len(), over));
     page.outcome(table.clone());

@@ -1,6 +1,5 @@
 //! `oleo study sweep`: figures 8 and 9, and the conclusions drawn from them.
 
-use std::io::Write as _;
 use std::process::ExitCode;
 
 use oleo_plant_sim::study::{DAMPER_FACTORS, Finding, GAS_VOLUMES_M3, Surface, findings, sweep};
@@ -10,6 +9,7 @@ use serde_json::json;
 
 use super::drive::Drive;
 use crate::failure::Failure;
+use crate::results::command_line;
 
 /// Run 10 gas volumes x 7 damper factors over Belgian block and through a lane change
 #[derive(clap::Args)]
@@ -24,7 +24,7 @@ pub struct Args {
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let bench = args.drive.bench()?;
-    let (ledger, out) = args.drive.results(&bench)?;
+    let (ledger, mut out) = args.drive.stage("sweep", &bench)?;
     let progress = Progress::new("sweep", 2 * (GAS_VOLUMES_M3.len() * DAMPER_FACTORS.len()) as u64);
     let surface = {
         // After the first Ctrl-C the running simulations are completed and stored.
@@ -47,13 +47,11 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let met = conclusions.iter().all(|finding| finding.met || !finding.conclusion);
 
     let table = conclusions_table(&conclusions);
-    if let Some(mut out) = out {
-        write(&mut out, &surface, &conclusions, &table, met)?;
-        out.commit()?;
+    if let Some(out) = &mut out {
+        write(out, args.drive.seed, &surface, &conclusions, &table, met)?;
     }
     let text = format!("{}{table}", grid_table(&surface));
-    // A closed standard output (`| head`) is no failure of the study.
-    let _ = std::io::stdout().write_all(text.as_bytes());
+    args.drive.results.publish(out, &text)?;
     Ok(if args.check && !met {
         ExitCode::FAILURE
     } else {
@@ -134,6 +132,7 @@ fn field(surface: &Surface, value: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>
 
 fn write(
     out: &mut OutputDirectory,
+    seed: u64,
     surface: &Surface,
     conclusions: &[Finding],
     table: &Table,
@@ -165,11 +164,7 @@ fn write(
         [FieldStyle::Surface, FieldStyle::Contour]
             .map(|style| Field::new(title, style, axes(quantity, unit), &litres, factors, values))
     };
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let mut page = Page::new(
-        "Design study: gas volume and damping",
-        &format!("oleo {}", arguments.join(" ")),
-    );
+    let mut page = Page::new("Design study: gas volume and damping", &command_line());
     let verdict = if met { Verdict::Pass } else { Verdict::Fail };
     page.verdict(verdict, &verdict_sentence(conclusions));
     page.outcome(table.clone());
@@ -213,19 +208,19 @@ fn write(
         ("gas_volume_l", column(&|i, _| litres[i])),
         ("damper_factor", column(&|_, j| factors[j])),
         (
-            "driver_weighted_rms_m_s2",
+            "weighted_rms_driver_m_s2",
             column(&|i, j| surface.ride[i][j].driver_rms_m_s2),
         ),
         (
-            "passenger_weighted_rms_m_s2",
+            "weighted_rms_rear_left_m_s2",
             column(&|i, j| surface.ride[i][j].passenger_rms_m_s2),
         ),
         (
-            "driver_msdv_m_s1_5",
+            "msdv_driver_m_s1_5",
             column(&|i, j| surface.ride[i][j].driver_msdv_m_s1_5),
         ),
         (
-            "passenger_msdv_m_s1_5",
+            "msdv_rear_left_m_s1_5",
             column(&|i, j| surface.ride[i][j].passenger_msdv_m_s1_5),
         ),
         ("ride_completed", column(&|i, j| flag(surface.ride[i][j].completed))),
@@ -252,7 +247,8 @@ fn write(
         .iter()
         .map(|finding| json!({"report": finding.report, "found": finding.found, "met": finding.met, "conclusion": finding.conclusion}))
         .collect();
-    out.json("summary.json", &json!({"conclusions": conclusions, "all_met": met}))?;
+    let summary = json!({"conclusions": conclusions, "all_met": met});
+    out.summary("summary.json", Some(seed), &summary)?;
     out.page(&page)?;
     Ok(())
 }

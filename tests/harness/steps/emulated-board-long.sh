@@ -9,7 +9,7 @@ emulated_board_builds || exit 0
 while read -r file; do
     in_the_loop "$(basename "$file" .toml)"
 done < <(grep -LE '^strategy = "(always|ride)|^kind = "node-restarted"' hil/scenarios/*.toml)
-in_the_loop step-steer --duration 80
+in_the_loop step-steer --duration-s 80
 ticks=$(awk '{ sum += $1 } END { print sum + 0 }' "$OLEO_LOGS/emulated-ticks")
 enough() { echo "$ticks ticks"; [ "$ticks" -ge 60000 ]; }
 check "at least 60,000 ticks" enough

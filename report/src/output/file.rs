@@ -1,0 +1,111 @@
+//! One file of results, whole or absent, in a folder that may hold anything.
+
+use std::fs::{self, File};
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use super::csv_text::{self, Numbers};
+use super::marker::Marker;
+use super::{OutputError, PARTIAL, open_to_others, parent_of};
+use crate::interrupt;
+
+/// What makes a folder of recordings a campaign; recordings there are not replaced.
+const CAMPAIGN: &str = "model.toml";
+
+/// A file being written beside its place.
+#[derive(Debug)]
+pub struct OutputFile {
+    target: PathBuf,
+    staging: TempDir,
+}
+
+impl OutputFile {
+    /// Checks at once that `target` can be written. It may not be an input; a file in a folder of recordings is replaced with
+    /// `force` only.
+    ///
+    /// # Errors
+    /// Folder missing, `target` a folder or an input, no permission.
+    pub fn stage(target: &Path, inputs: &[PathBuf], force: bool) -> Result<Self, OutputError> {
+        interrupt::install();
+        let path = target.to_path_buf();
+        if target.is_dir() || target.file_name().is_none() {
+            return Err(OutputError::AFolder { path });
+        }
+        let same = |input: &PathBuf| {
+            let known = (fs::canonicalize(input), fs::canonicalize(target));
+            matches!(known, (Ok(a), Ok(b)) if a == b)
+        };
+        if inputs.iter().any(same) {
+            return Err(OutputError::Input { path });
+        }
+        let folder = parent_of(target)?;
+        let recordings = folder.join(CAMPAIGN).exists() && Marker::read(&folder).is_none();
+        if recordings && target.exists() && !force {
+            return Err(OutputError::NotOurs { path });
+        }
+        let mut folders = interrupt::staged();
+        let staging = (tempfile::Builder::new().prefix(PARTIAL))
+            .tempdir_in(&folder)
+            .map_err(|source| OutputError::Io {
+                action: "write here",
+                path: folder.clone(),
+                source,
+            })?;
+        folders.push(staging.path().to_path_buf());
+        Ok(Self { target: path, staging })
+    }
+
+    /// Writes columns of numbers and moves the file into place.
+    pub fn csv(self, columns: &[Numbers]) -> Result<PathBuf, OutputError> {
+        let refused = |source| OutputError::Io {
+            action: "write",
+            path: self.target.clone(),
+            source,
+        };
+        let rows = csv_text::check(&self.target.display().to_string(), columns, &[])?;
+        let staged = self.staging.path().join("file");
+        let mut file = BufWriter::new(File::create(&staged).map_err(refused)?);
+        csv_text::write(&mut file, rows, columns, &[]).map_err(refused)?;
+        open_to_others(&staged).map_err(refused)?;
+        // Held to the end: a signal waits for the file.
+        let mut folders = interrupt::staged();
+        fs::rename(&staged, &self.target).map_err(refused)?;
+        interrupt::forget(&mut folders, self.staging.path());
+        Ok(self.target)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn write(target: &Path, inputs: &[PathBuf], force: bool) -> Result<PathBuf, OutputError> {
+        OutputFile::stage(target, inputs, force)?.csv(&[("time_s", &[0.0, 0.1])])
+    }
+
+    #[test]
+    fn a_file_is_replaced_unless_it_is_an_input_or_a_recording() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = |name: &str| folder.path().join(name);
+        let inputs = [path("a.csv")];
+        for name in ["a.csv", "b.csv"] {
+            fs::write(path(name), "mine").expect("written");
+        }
+        let error = write(&path("./a.csv"), &inputs, true).expect_err("an input");
+        assert!(matches!(error, OutputError::Input { .. }), "{error}");
+        write(&path("b.csv"), &inputs, false).expect("replaced");
+        assert_eq!(fs::read_to_string(path("b.csv")).expect("a file"), "time_s\n0\n0.1\n");
+        fs::write(path("model.toml"), "").expect("written");
+        let error = write(&path("b.csv"), &inputs, false).expect_err("a recording");
+        assert!(matches!(error, OutputError::NotOurs { .. }), "{error}");
+        write(&path("b.csv"), &inputs, true).expect("forced");
+        write(&path("new.csv"), &inputs, false).expect("nothing is replaced");
+        assert!(matches!(
+            write(folder.path(), &inputs, true),
+            Err(OutputError::AFolder { .. })
+        ));
+        assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 4);
+    }
+}

@@ -1,0 +1,170 @@
+//! Where a command writes its results, and what it says at its end: tables on standard output, and the path of the page.
+
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use oleo_report::{Origin, OutputDirectory};
+
+use crate::failure::Failure;
+
+/// Version of this program, with the commit that it was built from.
+pub const VERSION: &str = env!("OLEO_VERSION");
+
+/// Name of the page in a folder of results.
+const PAGE: &str = "report.html";
+
+/// Folder, in the current one, that holds the results of commands without `--out`.
+const HOME: &str = "oleo-out";
+
+/// How long a browser may take to refuse.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Options of every command that writes a folder of results.
+#[derive(clap::Args)]
+#[group(id = "results")]
+pub struct ResultsArgs {
+    /// Folder to which data (CSV, JSON) and report.html, a page that opens offline, are written [default: a folder in oleo-out]
+    #[arg(long, value_name = "DIR", help_heading = "Results")]
+    out: Option<PathBuf>,
+    /// Write no files, and print the tables only
+    #[arg(long, conflicts_with_all = ["out", "force", "open"], help_heading = "Results")]
+    no_out: bool,
+    /// Write also among files that oleo did not write, and over results that were edited. Inputs are never replaced
+    #[arg(long, help_heading = "Results")]
+    force: bool,
+    /// Open the page in the browser
+    #[arg(long, help_heading = "Results")]
+    open: bool,
+}
+
+impl ResultsArgs {
+    /// Stages the folder of a command: `command` is `oleo hil`, `name` what the folder is called without `--out`. A folder that
+    /// cannot be written is refused here, before the work.
+    pub fn stage(&self, command: &str, name: &str, inputs: Vec<PathBuf>) -> Result<Option<OutputDirectory>, Failure> {
+        let Some(folder) = self.folder(name)? else {
+            return Ok(None);
+        };
+        Ok(Some(OutputDirectory::stage(
+            folder,
+            origin(command, inputs),
+            self.force,
+        )?))
+    }
+
+    /// As [`Self::stage`], with the path of a file of finished runs.
+    pub fn stage_with_ledger(
+        &self,
+        command: &str,
+        name: &str,
+        inputs: Vec<PathBuf>,
+        ledger: &str,
+    ) -> Result<Option<(OutputDirectory, PathBuf)>, Failure> {
+        let Some(folder) = self.folder(name)? else {
+            return Ok(None);
+        };
+        let staged = OutputDirectory::stage_with_ledger(folder, origin(command, inputs), self.force, ledger)?;
+        Ok(Some(staged))
+    }
+
+    /// The folder of the results; `None` where none are wanted. The folder that holds those without `--out` is made.
+    fn folder(&self, name: &str) -> Result<Option<PathBuf>, Failure> {
+        match &self.out {
+            _ if self.no_out => Ok(None),
+            Some(out) => Ok(Some(out.clone())),
+            None => default_path(name).map(Some),
+        }
+    }
+
+    /// Moves the results into place and prints `text`, and the path of the page as the last line.
+    pub fn publish(&self, out: Option<OutputDirectory>, text: &str) -> Result<(), Failure> {
+        let Some(out) = out else { return say(text) };
+        let page = out.commit()?.join(PAGE);
+        say(&format!("{text}{}\n", page.display()))?;
+        if self.open {
+            open(&page);
+        }
+        Ok(())
+    }
+}
+
+/// What results say of where they come from.
+pub fn origin(command: &str, inputs: Vec<PathBuf>) -> Origin {
+    Origin {
+        command: command.to_owned(),
+        version: VERSION.to_owned(),
+        inputs,
+    }
+}
+
+/// `name` in the folder of results without `--out`, which is made.
+pub fn default_path(name: &str) -> Result<PathBuf, Failure> {
+    std::fs::create_dir_all(HOME).map_err(|error| {
+        Failure::new(format!(
+            "{HOME}: cannot make this folder for the results: {error}; name another with --out, or add --no-out"
+        ))
+    })?;
+    let plain = |c: char| match c {
+        'a'..='z' | 'A'..='Z' | '0'..='9' | '-' | '_' | '.' => c,
+        _ => '-',
+    };
+    let name: String = name.trim_start_matches('.').chars().map(plain).collect();
+    Ok(Path::new(HOME).join(name))
+}
+
+/// Removes the folder of results without `--out` where a command that failed left it empty.
+pub fn tidy() {
+    let _ = std::fs::remove_dir(HOME);
+}
+
+/// The command as it was given, for the page.
+pub fn command_line() -> String {
+    let words = (std::env::args_os().skip(1)).map(|word| {
+        let word = word.to_string_lossy().into_owned();
+        if word.contains(' ') { format!("{word:?}") } else { word }
+    });
+    std::iter::once("oleo".to_owned())
+        .chain(words)
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+/// Writes to standard output. A reader that has gone away (`oleo hil | head`) is no failure, a full disk is.
+pub fn say(text: &str) -> Result<(), Failure> {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::new(format!(
+            "standard output: cannot be written: {error}; the files of the results, if any, are complete"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// Shows a page with the first program that takes it. Where none does, the user is told, and the results are as good.
+fn open(page: &Path) {
+    let page = std::path::absolute(page).unwrap_or_else(|_| page.to_path_buf());
+    let opened = open::commands(&page).into_iter().any(starts);
+    if !opened {
+        let _ = writeln!(
+            std::io::stderr(),
+            "--open: no browser could be started; open {} yourself",
+            page.display()
+        );
+    }
+}
+
+/// Whether a program starts, and does not refuse at once.
+fn starts(mut command: Command) -> bool {
+    let quiet = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    let Ok(mut child) = quiet.spawn() else { return false };
+    let begun = Instant::now();
+    while begun.elapsed() < PATIENCE {
+        match child.try_wait() {
+            Ok(Some(status)) => return status.success(),
+            Ok(None) => std::thread::sleep(Duration::from_millis(20)),
+            Err(_) => return false,
+        }
+    }
+    true
+}

@@ -27,6 +27,7 @@ pub mod clock;
 pub mod comparison;
 pub mod controller_node;
 pub mod description;
+pub mod drive_log;
 pub mod emulator;
 pub mod frame;
 pub mod handshake;

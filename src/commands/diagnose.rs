@@ -1,6 +1,7 @@
 //! `oleo diagnose`: finds the physics that a model leaves out.
 
 mod self_test;
+mod vehicle;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -29,9 +30,12 @@ use crate::failure::Failure;
     and it resumes there. After a new build of oleo, use a new DIR."
 )]
 pub struct Args {
-    /// Folder with model.toml and the recordings (*.csv)
-    #[arg(value_name = "CAMPAIGN", required_unless_present = "self_test")]
-    campaign: Option<PathBuf>,
+    /// Folder with model.toml and the recordings (*.csv, or *.log of a vehicle); with --vehicle the logs themselves
+    #[arg(value_name = "CAMPAIGN|LOG", required_unless_present = "self_test")]
+    campaign: Vec<PathBuf>,
+    /// Model of a vehicle (kind = "vehicle"), beside which the models of its four struts lie
+    #[arg(long, value_name = "MODEL.toml", conflicts_with_all = ["fit_until", "hold_out", "self_test"])]
+    vehicle: Option<PathBuf>,
     /// Folder to which report.json, report.html and model.toml are written
     #[arg(long, value_name = "DIR", required_unless_present = "self_test")]
     out: Option<PathBuf>,
@@ -57,9 +61,12 @@ const STEPS: u64 = 100;
 
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
-    let (Some(folder), Some(destination)) = (&args.campaign, &args.out) else {
+    let (Some(folder), Some(destination)) = (args.campaign.first(), &args.out) else {
         return self_test::run_self_test(&args.self_test, args.out.as_deref());
     };
+    if let Some(logs) = args.logs(folder)? {
+        return vehicle::run(&logs, &args.command(destination), destination);
+    }
     let begun = Instant::now();
     let kept_back = KeptBack {
         fit_until: args.fit_until,
@@ -85,7 +92,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     drop(progress);
     let runtime_s = begun.elapsed().as_secs_f64();
     let mut report = json::report(&campaign, &diagnosis, runtime_s);
-    let mut page = page::page(&campaign, &diagnosis, &args.command(folder, destination), runtime_s);
+    let mut page = page::page(&campaign, &diagnosis, &args.command(destination), runtime_s);
     if let Some(predictions) = &predictions {
         report["kept_back"] = predictions.json(&kept_back);
         page.section("Prediction of held-out data");
@@ -120,9 +127,39 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
 }
 
 impl Args {
+    /// The logs of a vehicle, if one is to be diagnosed.
+    fn logs(&self, first: &Path) -> Result<Option<vehicle::Logs>, Failure> {
+        if let Some(model) = &self.vehicle {
+            return Ok(Some(vehicle::Logs {
+                model: model.clone(),
+                logs: self.campaign.clone(),
+            }));
+        }
+        if let Some(second) = self.campaign.get(1) {
+            return Err(Failure::new(format!(
+                "{}: is a second campaign; diagnose one folder at a time, or add --vehicle MODEL.toml if these are logs of a vehicle",
+                second.display()
+            )));
+        }
+        let logs = vehicle::Logs::in_folder(first)?;
+        if logs.is_some() && (self.fit_until.is_some() || !self.hold_out.is_empty()) {
+            return Err(Failure::new(
+                "--fit-until and --hold-out: no part of a vehicle's drives can be held out yet; leave the options out"
+                    .to_owned(),
+            ));
+        }
+        Ok(logs)
+    }
+
     /// The command line again, for the page.
-    fn command(&self, folder: &Path, destination: &Path) -> String {
-        let mut line = format!("oleo diagnose {}", folder.display());
+    fn command(&self, destination: &Path) -> String {
+        let mut line = "oleo diagnose".to_owned();
+        for path in &self.campaign {
+            line += &format!(" {}", path.display());
+        }
+        if let Some(model) = &self.vehicle {
+            line += &format!(" --vehicle {}", model.display());
+        }
         if let Some(part) = self.fit_until {
             line += &format!(" --fit-until {part}");
         }

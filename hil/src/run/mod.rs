@@ -37,7 +37,7 @@ use crate::vehicle::Vehicle;
 pub use error::RunError;
 pub use outcome::{ControllerOutcome, Outcome};
 pub use parameters::Parameters;
-pub use plant::vehicle;
+pub use plant::{vehicle, vehicle_on};
 pub use plant_loop::Watch;
 use waiting::{CONTROLLER_PHASE, PATIENCE, TICK, partner_timeout};
 

@@ -126,6 +126,8 @@ fn what_cannot_be_used_is_refused_in_one_line() {
     assert!(refused(&[path(folder.path())]).contains("holds no drive"));
     write("a.log", "(1.000000) can0 123#00\n(1.100000) can0 124#00\n");
     assert!(refused(&[path(folder.path())]).contains("strut.toml"));
+    write("strut.toml", &format!("starts_at_rest = false\n{strut}"));
+    assert!(refused(&[path(folder.path())]).contains("starts_at_rest is false"));
     write("strut.toml", &strut);
     let text = refused(&[path(folder.path())]);
     assert!(

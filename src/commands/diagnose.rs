@@ -22,6 +22,9 @@ use crate::failure::Failure;
     The command writes three files into DIR: report.json, report.html (opens offline) and model.toml, the improved model. \
     oleo predict accepts the improved model unchanged; oleo rig and oleo hil accept it if the specimen is a strut. The exit \
     status is 0 whatever the verdict.\n\n\
+    A vehicle (kind = \"vehicle\" in model.toml) is diagnosed from logs of its bus, as candump -L writes them (*.log or *.log.gz):\n  \
+    oleo diagnose drives --out found                           a folder with model.toml, four strut files and logs\n  \
+    oleo diagnose a.log b.log --vehicle model.toml --out found\n\n\
     To test the improved model on data that it was not fitted to, hold part of the data out:\n  \
     oleo diagnose gas-spring --fit-until 0.5 --out found       fits the first half of every recording\n  \
     oleo diagnose cylinder --hold-out 5bar --out found         fits all recordings except 5bar.csv\n\

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::model_file::{Checked, InvalidValue, Limit, read};
+use oleo_plant_sim::specimen::specimen_name;
 use oleo_plant_sim::strut::StrutModel;
 use serde::{Deserialize, Serialize};
 
@@ -52,10 +53,6 @@ impl Checked for File {
     const LIMITS: &'static [Limit<Self>] = &[];
 
     fn check_together(&self) -> Result<(), InvalidValue> {
-        if self.specimen.kind != VEHICLE {
-            let what = format!("is {:?}: must be {VEHICLE:?}", self.specimen.kind);
-            return Err(InvalidValue::new("kind", what).inside("specimen"));
-        }
         let Struts {
             front_left,
             front_right,
@@ -82,15 +79,27 @@ impl Checked for File {
 /// Whether the text of a model file is that of a vehicle.
 #[must_use]
 pub fn is_vehicle(text: &str) -> bool {
-    #[derive(Deserialize)]
-    struct Head {
-        specimen: Kind,
+    specimen_name(text, "").is_ok_and(|head| head.kind == VEHICLE)
+}
+
+/// The text of a strut's file without the key `starts_at_rest`, which only files of a vehicle's struts have.
+fn starting_at_rest(text: String, path: &Path) -> Result<String, DiagnoseError> {
+    const KEY: &str = "starts_at_rest";
+    // What is no TOML gets the message of the model's reader.
+    let Ok(mut table) = toml::from_str::<toml::Table>(&text) else {
+        return Ok(text);
+    };
+    let inside = (table.get_mut("specimen")).and_then(|s| s.as_table_mut()?.remove(KEY));
+    let Some(says) = table.remove(KEY).or(inside) else {
+        return Ok(text);
+    };
+    if says.as_bool() != Some(true) {
+        let what = format!(
+            "{KEY} is {says}: only drives that begin at rest can be diagnosed; log drives from standstill, and leave the key out"
+        );
+        return Err(DiagnoseError::file(path, what));
     }
-    #[derive(Deserialize)]
-    struct Kind {
-        kind: String,
-    }
-    toml::from_str::<Head>(text).is_ok_and(|head| head.specimen.kind == VEHICLE)
+    toml::to_string(&table).map_err(|e| DiagnoseError::Output(e.to_string()))
 }
 
 impl VehicleModel {
@@ -107,7 +116,16 @@ impl VehicleModel {
                 )
             })
         };
-        let File { specimen, strut } = read::<File>(&text_of(path)?, &path.display().to_string())?;
+        let text = text_of(path)?;
+        let source = path.display().to_string();
+        let kind = specimen_name(&text, &source)?.kind;
+        if kind != VEHICLE {
+            let what = format!(
+                "is the model of a {kind}; give that of a vehicle (kind = {VEHICLE:?}), which names the files of its struts"
+            );
+            return Err(DiagnoseError::file(path, what));
+        }
+        let File { specimen, strut } = read::<File>(&text, &source)?;
         let Struts {
             front_left,
             front_right,
@@ -119,7 +137,7 @@ impl VehicleModel {
         let strut = |corner: Corner| {
             let path = folder.join(&files[corner]);
             let source = path.display().to_string();
-            let model = StrutModel::from_toml(&text_of(&path)?, &source)?;
+            let model = StrutModel::from_toml(&starting_at_rest(text_of(&path)?, &path)?, &source)?;
             model
                 .check_noise_is_complete()
                 .map_err(|invalid| DiagnoseError::file(&path, invalid.to_string()))?;

@@ -83,9 +83,9 @@ impl TwoStageStrut {
         Ok(strut)
     }
 
-    /// Adds to the noise of each channel what the motion leaves unknown: the smaller one of what the estimate of the motion says of
-    /// itself, and of what the readings show as white. A model that lacks something leaves residuals that change slowly, and
-    /// their second difference is next to nothing.
+    /// Adds to the noise of each channel what the motion leaves unknown. Its course in time is that of the difference between two
+    /// motions; its size is measured by the second difference of the residuals, in which a model that lacks something shows next
+    /// to nothing, because that changes slowly.
     fn add_noise_of_motion(&mut self, possible: &[Inputs]) {
         let believed = Hypothesis {
             calibration: vec![0.0; self.parameters.len()],
@@ -105,7 +105,7 @@ impl TwoStageStrut {
         }
         for (channel, sum) in self.channels.iter_mut().zip(sums) {
             let variance = channel.noise * channel.noise;
-            channel.noise = (variance + sum.of_motion().min((sum.white() - variance).max(0.0))).sqrt();
+            channel.noise = (variance + sum.of_motion(variance)).sqrt();
         }
     }
 
@@ -360,35 +360,47 @@ impl Specimen for TwoStageStrut {
     }
 }
 
-/// Sums of squares over a channel.
+/// Most by which the readings may exceed what the estimate of the motion says of its own error, in its variance.
+const MOST_BEYOND_ESTIMATE: f64 = 4.0;
+/// Variance of the second difference of white noise of variance one.
+const OF_WHITE_NOISE: f64 = 6.0;
+
+/// Mean squares over a channel: of the difference that two motions make, of its second difference, and of the second difference
+/// of the residuals.
 #[derive(Clone, Copy, Default)]
 struct Unknown {
-    differences: (f64, usize),
-    white: (f64, usize),
+    difference: (f64, usize),
+    second: (f64, usize),
+    residual: (f64, usize),
 }
 
 impl Unknown {
-    fn add(&mut self, measured: &[f64], differences: &[f64], simulated: &[f64]) {
-        let residual: Vec<f64> = measured.iter().zip(simulated).map(|(m, s)| m - s).collect();
-        for (difference, _) in differences.iter().zip(&residual).filter(|(_, r)| !r.is_nan()) {
-            self.differences = (self.differences.0 + difference * difference, self.differences.1 + 1);
-        }
-        for w in residual
+    fn add(&mut self, measured: &[f64], difference: &[f64], simulated: &[f64]) {
+        let square = |sum: &mut (f64, usize), v: f64| {
+            if !v.is_nan() {
+                *sum = (sum.0 + v * v, sum.1 + 1);
+            }
+        };
+        let second = |a: f64, b: f64, c: f64| a - 2.0 * b + c;
+        difference.iter().for_each(|d| square(&mut self.difference, *d));
+        difference
             .windows(3)
-            .map(|w| w[0] - 2.0 * w[1] + w[2])
-            .filter(|second| !second.is_nan())
-        {
-            // White noise is six times as large in its second difference.
-            self.white = (self.white.0 + w * w / 6.0, self.white.1 + 1);
+            .for_each(|w| square(&mut self.second, second(w[0], w[1], w[2])));
+        let residual: Vec<f64> = measured.iter().zip(simulated).map(|(m, s)| m - s).collect();
+        residual
+            .windows(3)
+            .for_each(|w| square(&mut self.residual, second(w[0], w[1], w[2])));
+    }
+
+    /// Variance that the unknown motion adds to that of the sensor.
+    fn of_motion(&self, sensor: f64) -> f64 {
+        let mean = |(sum, count): (f64, usize)| sum / count.max(1) as f64;
+        let [estimated, second, residual] = [self.difference, self.second, self.residual].map(mean);
+        if second <= 0.0 {
+            return 0.0;
         }
-    }
-
-    fn of_motion(&self) -> f64 {
-        self.differences.0 / self.differences.1.max(1) as f64
-    }
-
-    fn white(&self) -> f64 {
-        self.white.0 / self.white.1.max(1) as f64
+        let measured = (residual - OF_WHITE_NOISE * sensor).max(0.0) * estimated / second;
+        measured.min(MOST_BEYOND_ESTIMATE * estimated)
     }
 }
 

@@ -231,7 +231,7 @@ fn shares(lengths: &[usize], excitation: &[Excitation]) -> Vec<usize> {
         order.extend(best);
     }
     for limit in [FIRST_SHARE, usize::MAX] {
-        for &k in &order {
+        for &k in order.iter().filter(|k| lengths[**k] >= MIN_SAMPLES) {
             let more = lengths[k].min(limit).saturating_sub(used[k]).min(left);
             // A few samples of a drive cost a simulation and show nothing.
             if used[k] > 0 || more >= lengths[k].min(FIRST_SHARE / 4) {

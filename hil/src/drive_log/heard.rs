@@ -4,7 +4,7 @@ use std::io::BufRead;
 
 use oleo_controller::can::{COMMAND, CheckStatus, Checker, FRAME_BYTES, MESSAGES, STATUS};
 
-use super::LogAccount;
+use super::content::{LogAccount, MessageAccount};
 use crate::candump::parse_line;
 
 /// Longest line that is read as a whole, bytes. A line of `candump -L` has 50.
@@ -41,27 +41,6 @@ impl HeardFrame {
 
 /// All frames that can be used, in the order of the log.
 pub type Heard = Vec<HeardFrame>;
-
-/// What became of the frames of one message.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct MessageAccount {
-    /// Name of the message in the database.
-    pub name: &'static str,
-    /// Number of frames with a right CRC.
-    pub received: u64,
-    /// Number of frames with a wrong CRC or length, or with a content that cannot be.
-    pub corrupted: u64,
-    /// Number of frames that came once more for the same tick.
-    pub repeated: u64,
-    /// Number of frames that were logged after the frame of a later tick.
-    pub late: u64,
-    /// Number of frames whose tick fits into no drive.
-    pub out_of_sequence: u64,
-    /// Number of ticks of all drives for which there is no frame.
-    pub lost: u64,
-    /// Most ticks in a row without a frame.
-    pub longest_gap_ticks: u64,
-}
 
 /// Reads all lines. A byte that is not text makes its line unreadable, and nothing else.
 pub fn hear(mut log: impl BufRead) -> std::io::Result<(Heard, LogAccount)> {

@@ -18,10 +18,12 @@
 //!
 //! | file | what it holds |
 //! |---|---|
+//! | `content` | what a log holds |
 //! | `heard` | the frames of the database in a log, and an account of all others |
 //! | `ticks` | the tick of every displacement message, and the drives |
 //! | `place` | the tick of every other message, and the samples of a drive |
 
+mod content;
 mod heard;
 mod place;
 mod ticks;
@@ -30,59 +32,8 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use flate2::read::MultiGzDecoder;
-use oleo_controller::{Reading, ValveCommand};
-use oleo_interface::{Corners, StrutPressures};
 
-pub use heard::MessageAccount;
-
-/// What a log holds.
-#[derive(Clone, Debug)]
-pub struct DriveLog {
-    /// The drives in the order of the log, at least one.
-    pub drives: Vec<LoggedDrive>,
-    /// What was read, and what could not be used.
-    pub account: LogAccount,
-}
-
-/// One drive: a sample for every tick from the first displacement message to the last.
-#[derive(Clone, Debug)]
-pub struct LoggedDrive {
-    /// Time of the first displacement message as the log says it, s.
-    pub begins_s: f64,
-    /// The samples, one tick (5 ms) apart.
-    pub samples: Vec<LoggedSample>,
-}
-
-/// What was logged for one tick. A reading that is missing, or that its sensor called invalid, is [`Reading::INVALID`].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct LoggedSample {
-    /// Strut displacement, m, compression positive.
-    pub displacement_m: Corners<Reading>,
-    /// Gauge pressures, Pa.
-    pub pressure_pa: Corners<StrutPressures<Reading>>,
-    /// The command that echoes this tick; `None` if it is missing.
-    pub command: Option<ValveCommand>,
-}
-
-/// What was read from a log, and what could not be used.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct LogAccount {
-    /// Number of lines.
-    pub lines: u64,
-    /// Number of lines that are not a classic CAN frame, such as a last line that was cut off.
-    pub unreadable_lines: u64,
-    /// Number of frames whose identifier is not in the database.
-    pub foreign_frames: u64,
-    /// One entry for each message of the database except `STATUS`, in the order of [`oleo_controller::can::MESSAGES`].
-    pub messages: Vec<MessageAccount>,
-}
-
-impl LogAccount {
-    /// The sum of one figure over all messages.
-    pub fn total(&self, figure: impl Fn(&MessageAccount) -> u64) -> u64 {
-        self.messages.iter().map(figure).sum()
-    }
-}
+pub use content::{DriveLog, LogAccount, LoggedDrive, LoggedSample, MessageAccount};
 
 /// A log that holds no drive.
 #[derive(Debug, thiserror::Error)]

@@ -4,9 +4,9 @@ use oleo_controller::can::{CommandMessage, DisplacementMessage, PressureMessage}
 use oleo_interface::tick::TICK_US;
 use oleo_interface::{Axle, Corner, Side};
 
-use super::heard::{COMMAND_AT, Heard, HeardFrame, MESSAGES_OF_A_SAMPLE};
+use super::content::{LogAccount, LoggedDrive, LoggedSample};
+use super::heard::{COMMAND_AT, DISPLACEMENT, Heard, HeardFrame, MESSAGES_OF_A_SAMPLE};
 use super::ticks::{Run, signed_low_byte};
-use super::{LogAccount, LoggedDrive, LoggedSample};
 
 /// Frames before and after a frame that tell how its counter goes with the tick.
 const NEIGHBOURS: usize = 8;
@@ -59,7 +59,7 @@ fn drive(heard: &Heard, run: &Run, share: Share, account: &mut LogAccount) -> Lo
     let mut samples = vec![LoggedSample::default(); count];
     let mut has = vec![[false; MESSAGES_OF_A_SAMPLE]; count];
     for (message, mut placed) in coarsely_placed(heard, run, share).into_iter().enumerate() {
-        if !super::heard::DISPLACEMENT.contains(&message) {
+        if !DISPLACEMENT.contains(&message) {
             correct_by_counter(heard, &mut placed);
         }
         let entry = &mut account.messages[message];
@@ -126,7 +126,7 @@ fn coarsely_placed(heard: &Heard, run: &Run, share: Share) -> [Vec<Placed>; MESS
                     .filter(|away| away.abs() <= MOST_OUTSIDE_TICKS)
                     .map(|away| near.tick + away)
             }
-            message if super::heard::DISPLACEMENT.contains(&message) => continue,
+            message if DISPLACEMENT.contains(&message) => continue,
             // Pressures go before the displacements of their tick.
             _ => match (run.get(next), before) {
                 (Some(after), _) => Some(after.tick + ticks_from(after.time_us).clamp(-MOST_OUTSIDE_TICKS, 0)),
@@ -173,9 +173,9 @@ fn enter(frame: &HeardFrame, sample: &mut LoggedSample) -> bool {
             Some(message) => sample.command = Some(message.command),
             None => return false,
         },
-        message if super::heard::DISPLACEMENT.contains(&message) => {
+        message if DISPLACEMENT.contains(&message) => {
             let content = DisplacementMessage::decode(data);
-            let axle = Axle::ALL[message - super::heard::DISPLACEMENT.start];
+            let axle = Axle::ALL[message - DISPLACEMENT.start];
             sample.displacement_m[axle.corner(Side::Left)] = content.left;
             sample.displacement_m[axle.corner(Side::Right)] = content.right;
         }

@@ -3,7 +3,7 @@
 use oleo_controller::can::DisplacementMessage;
 use oleo_interface::tick::TICK_US;
 
-use super::LogAccount;
+use super::content::LogAccount;
 use super::heard::{DISPLACEMENT, Heard};
 
 /// A frame may be this many ticks away from where the time of its line puts it.

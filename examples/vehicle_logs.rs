@@ -22,8 +22,11 @@ use vehicle_campaign::{Case, Concealed, drives, write};
 /// Length of each of the three drives of a campaign, s.
 const DURATION_S: f64 = 24.0;
 
+/// Effect, variant and amount, as the effect's own self-test counts them; `None` of a healthy vehicle.
+type Altered = Option<(EffectId, usize, f64)>;
+
 /// Name of a case, what it conceals, and whether all four corners have it.
-const CASES: [(&str, Option<(EffectId, usize, f64)>, bool); 16] = [
+const CASES: [(&str, Altered, bool); 16] = [
     ("healthy", None, false),
     ("gas_heat_transfer", Some((EffectId::GasHeatTransfer, 0, 3.0)), false),
     ("gas_charge_error_1", Some((EffectId::GasChargeError, 0, 0.08)), false),

@@ -105,6 +105,24 @@ fn candump() {
 }
 
 #[test]
+fn drive_log() {
+    use oleo_controller::Inputs;
+    use oleo_hil::Frame;
+    use oleo_interface::{Corners, Gauge, StrutPressures};
+    let pressure = Corners::splat(StrutPressures::splat(Gauge(4.0e6)));
+    let inputs = Inputs::from_values(Corners::splat(0.01), pressure);
+    let mut plant = oleo_controller::PlantEnd::new();
+    let mut proper = Vec::new();
+    for tick in 0..12 {
+        for frame in plant.encode(tick, &inputs) {
+            let time_us = u64::from(tick) * 5000;
+            oleo_hil::candump::write_line(&mut proper, time_us, "can0", &Frame::from(frame)).expect("memory takes it");
+        }
+    }
+    drive(targets::drive_log, &[&proper]);
+}
+
+#[test]
 fn scenario() {
     drive(
         targets::scenario,

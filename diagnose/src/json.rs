@@ -129,7 +129,8 @@ fn region(r: &Region) -> Value {
             "share_of_samples": rounded(r.share_of_samples) })
 }
 
-fn parameters(estimates: &[Estimate]) -> Value {
+/// Estimates by their keys.
+pub(crate) fn parameters(estimates: &[Estimate]) -> Value {
     let mut out = Map::new();
     for e in estimates {
         out.insert(e.key.clone(), json!({ "value": e.value, "ci95": interval(e) }));
@@ -143,6 +144,7 @@ fn interval(e: &Estimate) -> Value {
     json!([end(e.ci95[0]), end(e.ci95[1])])
 }
 
-fn rounded(v: f64) -> f64 {
+/// Four digits after the point, which is more than any ratio is known to; 0 for what is not finite.
+pub(crate) fn rounded(v: f64) -> f64 {
     if v.is_finite() { (v * 1e4).round() / 1e4 } else { 0.0 }
 }

@@ -70,6 +70,7 @@ pub mod recording;
 pub mod search;
 pub mod selftest;
 pub mod specimen;
+pub mod vehicle;
 pub mod vocabulary;
 pub mod whiteness;
 

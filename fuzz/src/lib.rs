@@ -64,6 +64,23 @@ pub fn candump(bytes: &[u8]) {
     }
 }
 
+/// A candump log as `oleo diagnose` reads it. A drive that is accepted has samples, all of them finite or missing.
+pub fn drive_log(bytes: &[u8]) {
+    match oleo_hil::drive_log::parse(bytes) {
+        Ok(log) => {
+            assert!(!log.drives.is_empty());
+            for sample in log.drives.iter().flat_map(|drive| &drive.samples) {
+                let values = sample
+                    .displacement_m
+                    .values()
+                    .chain(sample.pressure_pa.values().flat_map(|p| [&p.p1, &p.p2, &p.p3, &p.p4]));
+                assert!(values.filter_map(|reading| reading.value()).all(f32::is_finite));
+            }
+        }
+        Err(error) => assert!(!error.is_empty() && !error.contains('\n'), "{error}"),
+    }
+}
+
 /// Reads the bytes as a scenario file.
 pub fn scenario(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };

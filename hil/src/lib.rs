@@ -18,6 +18,7 @@
 //! * [`scenario`] describes what is driven, which faults occur and which checks must be met; [`run`] turns a scenario into a recording.
 //! * [`metrics`] and [`output`] turn a recording into figures and files; [`bit_timing`] computes when a wire would have carried each
 //!   frame.
+//! * [`drive_log`] reads what a vehicle's bus carried from a candump log.
 #![forbid(unsafe_code)]
 
 pub mod bit_timing;
@@ -28,6 +29,7 @@ pub mod comparison;
 pub mod controller_node;
 mod deadline;
 pub mod description;
+pub mod drive_log;
 pub mod emulator;
 pub mod frame;
 pub mod handshake;

@@ -1,6 +1,7 @@
 //! `oleo diagnose`: finds the physics that a model leaves out.
 
 mod self_test;
+mod vehicle;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -22,6 +23,9 @@ use crate::results::{ResultsArgs, command_line};
     The command writes three files into DIR: report.json, report.html (opens offline) and model.toml, the improved model. \
     oleo predict accepts the improved model unchanged; oleo rig and oleo hil accept it if the specimen is a strut. The exit \
     status is 0 whatever the verdict.\n\n\
+    A vehicle (kind = \"vehicle\" in model.toml) is diagnosed from logs of its bus, as candump -L writes them (*.log or *.log.gz):\n  \
+    oleo diagnose drives --out found                           a folder with model.toml, four strut files and logs\n  \
+    oleo diagnose a.log b.log --vehicle model.toml --out found\n\n\
     To test the improved model on data that it was not fitted to, hold part of the data out:\n  \
     oleo diagnose gas-spring --fit-until 0.5 --out found       fits the first half of every recording\n  \
     oleo diagnose cylinder --hold-out 5bar --out found         fits all recordings except 5bar.csv\n\
@@ -30,9 +34,12 @@ use crate::results::{ResultsArgs, command_line};
     and it resumes there. After a new build of oleo, use a new DIR."
 )]
 pub struct Args {
-    /// Folder with model.toml and the recordings (*.csv)
-    #[arg(value_name = "CAMPAIGN", required_unless_present = "self_test")]
-    campaign: Option<PathBuf>,
+    /// Folder with model.toml and the recordings (*.csv, or *.log of a vehicle); with --vehicle the logs themselves
+    #[arg(value_name = "CAMPAIGN|LOG", required_unless_present = "self_test")]
+    campaign: Vec<PathBuf>,
+    /// Model of a vehicle (kind = "vehicle"), beside which the models of its four struts lie
+    #[arg(long, value_name = "MODEL.toml", conflicts_with_all = ["fit_until", "hold_out", "self_test"])]
+    vehicle: Option<PathBuf>,
     /// Fit only this fraction at the beginning of every recording (0.05 to 0.95), and predict the rest
     #[arg(long, value_name = "FRACTION", value_parser = part)]
     fit_until: Option<f64>,
@@ -57,9 +64,12 @@ const STEPS: u64 = 100;
 
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
-    let Some(folder) = &args.campaign else {
+    let Some(folder) = args.campaign.first() else {
         return self_test::run_self_test(&args.self_test, &args.results);
     };
+    if let Some(logs) = args.logs(folder)? {
+        return vehicle::run(&logs, &args.results);
+    }
     let begun = Instant::now();
     let kept_back = KeptBack {
         fit_until: args.fit_until,
@@ -123,6 +133,32 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     }
     args.results.publish(out, &text)?;
     Ok(ExitCode::SUCCESS)
+}
+
+impl Args {
+    /// The logs of a vehicle, if one is to be diagnosed.
+    fn logs(&self, first: &Path) -> Result<Option<vehicle::Logs>, Failure> {
+        if let Some(model) = &self.vehicle {
+            return Ok(Some(vehicle::Logs {
+                model: model.clone(),
+                logs: self.campaign.clone(),
+            }));
+        }
+        if let Some(second) = self.campaign.get(1) {
+            return Err(Failure::new(format!(
+                "{}: is a second campaign; diagnose one folder at a time, or add --vehicle MODEL.toml if these are logs of a vehicle",
+                second.display()
+            )));
+        }
+        let logs = vehicle::Logs::in_folder(first)?;
+        if logs.is_some() && (self.fit_until.is_some() || !self.hold_out.is_empty()) {
+            return Err(Failure::new(
+                "--fit-until and --hold-out: no part of a vehicle's drives can be held out yet; leave the options out"
+                    .to_owned(),
+            ));
+        }
+        Ok(logs)
+    }
 }
 
 /// The models and recordings of a campaign, by name.

@@ -66,6 +66,12 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         "cylinder" => cylinder(&text, &model_file, source, &file)?,
         "damper" => damper(&text, &model_file, source, &file)?,
         "drive" => drive(&text, &model_file, source, &file)?,
+        oleo_diagnose::vehicle::VEHICLE => {
+            return Err(Failure::new(format!(
+                "{model_file}: is the model of a vehicle, and logs cannot be predicted; give the model file of one of its struts and a \
+                 recording of it as CSV"
+            )));
+        }
         _ => strut(&text, &model_file, source, &file)?,
     };
 

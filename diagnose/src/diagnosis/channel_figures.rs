@@ -41,14 +41,21 @@ impl ChannelFigures {
         fitted: &Residuals,
         held_out: &Residuals,
     ) -> Vec<Self> {
-        (problem.specimen().channels().iter().enumerate())
-            .map(|(c, channel)| Self {
-                column: channel.column.clone(),
-                before: ratio(given, c),
-                after: ratio(&fitted.improved, c),
-                held_out_before: ratio(&held_out.calibrated, c),
-                held_out_after: ratio(&held_out.improved, c),
-                lag_one: lag_one(&fitted.improved, c),
+        let specimen = problem.specimen();
+        (specimen.channels().iter().enumerate())
+            .map(|(c, channel)| {
+                let measured: usize = (0..specimen.recordings().len())
+                    .map(|r| specimen.measured(r, c).iter().filter(|v| !v.is_nan()).count())
+                    .sum();
+                let ratio = |residuals: &[Series]| ratio(residuals, c, measured);
+                Self {
+                    column: channel.column.clone(),
+                    before: ratio(given),
+                    after: ratio(&fitted.improved),
+                    held_out_before: ratio(&held_out.calibrated),
+                    held_out_after: ratio(&held_out.improved),
+                    lag_one: lag_one(&fitted.improved, c),
+                }
             })
             .collect()
     }
@@ -68,12 +75,11 @@ pub(super) fn held_out_residuals(problem: &LeastSquares<'_>, fit: &Fit) -> Resul
     Ok(out)
 }
 
-fn ratio(residuals: &[Series], channel: usize) -> f64 {
-    let n: usize = residuals.iter().map(|r| r[channel].len()).sum();
+fn ratio(residuals: &[Series], channel: usize, measured: usize) -> f64 {
     let sum: f64 = (residuals.iter())
         .map(|r| r[channel].iter().map(|v| v * v).sum::<f64>())
         .sum();
-    (sum / n as f64).sqrt()
+    (sum / measured as f64).sqrt()
 }
 
 fn lag_one(residuals: &[Series], channel: usize) -> f64 {

@@ -21,7 +21,7 @@ pub struct Evaluation<'a> {
     simulated: Arc<AtomicUsize>,
 }
 
-/// Residuals and derivatives of one recording, in units of noise.
+/// Residuals and derivatives of one recording, in units of noise. Both are zero where nothing was measured.
 #[derive(Debug, Clone)]
 pub struct Sensitivity {
     /// `(measured - predicted) / noise`, one series a channel.
@@ -95,7 +95,7 @@ impl<'a> Evaluation<'a> {
         Ok(self.observed(point, &self.truths(point)?))
     }
 
-    /// `(measured - predicted) / noise`, every recording.
+    /// `(measured - predicted) / noise`, every recording; zero where nothing was measured (NaN).
     #[must_use]
     pub fn residuals(&self, predicted: &[Series]) -> Vec<Series> {
         predicted.iter().enumerate().map(|(r, p)| self.residual(r, p)).collect()
@@ -175,7 +175,11 @@ impl<'a> Evaluation<'a> {
         };
         let weight = |c: usize| 1.0 / (self.specimen.channels()[c].noise * moved.step);
         Ok((there.iter().zip(shown).enumerate())
-            .map(|(c, (a, b))| a.iter().zip(b).map(|(a, b)| (a - b) * weight(c)).collect())
+            .map(|(c, (a, b))| {
+                (a.iter().zip(b).zip(self.specimen.measured(recording, c)))
+                    .map(|((a, b), measured)| if measured.is_nan() { 0.0 } else { (a - b) * weight(c) })
+                    .collect()
+            })
             .collect())
     }
 
@@ -195,7 +199,7 @@ impl<'a> Evaluation<'a> {
             .map(|(c, channel)| {
                 let weight = 1.0 / channel.noise;
                 (self.specimen.measured(recording, c).iter().zip(&predicted[c]))
-                    .map(|(m, p)| (m - p) * weight)
+                    .map(|(m, p)| if m.is_nan() { 0.0 } else { (m - p) * weight })
                     .collect()
             })
             .collect()

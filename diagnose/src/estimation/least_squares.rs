@@ -76,11 +76,14 @@ impl<'a> LeastSquares<'a> {
         self.specimen().simulates_in_milliseconds() && few_folds
     }
 
-    /// Number of residuals.
+    /// Number of residuals: all values of the channels that were measured.
     #[must_use]
     pub fn residuals(&self) -> usize {
-        let samples: usize = self.blocks.as_slice().iter().map(Block::samples).sum();
-        samples * self.specimen().channels().len()
+        let specimen = self.specimen();
+        (self.blocks.as_slice().iter())
+            .flat_map(|b| (0..specimen.channels().len()).map(move |c| b.of(specimen.measured(b.recording, c))))
+            .map(|measured| measured.iter().filter(|v| !v.is_nan()).count())
+            .sum()
     }
 
     /// Sum of squared residuals of every block.

@@ -43,11 +43,7 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
          simulation receives {} and no other measured value.",
         specimen.inputs_in_words()
     ));
-    portrait::section(&mut page, specimen, diagnosis);
-    locations::section(&mut page, campaign, diagnosis);
-    effects::section(&mut page, campaign, diagnosis);
-    model::section(&mut page, specimen.kind(), diagnosis);
-    improvement::section(&mut page, campaign, diagnosis);
+    evidence(&mut page, campaign, diagnosis);
     next(&mut page, campaign, diagnosis);
     if !campaign.notes.is_empty() {
         page.section("Notes on the recordings");
@@ -56,6 +52,16 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
         });
     }
     page
+}
+
+/// The sections that show why the diagnosis says what it says.
+pub(crate) fn evidence(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
+    let specimen = &*campaign.specimen;
+    portrait::section(page, specimen, diagnosis);
+    locations::section(page, campaign, diagnosis);
+    effects::section(page, campaign, diagnosis);
+    model::section(page, specimen.kind(), diagnosis);
+    improvement::section(page, campaign, diagnosis);
 }
 
 fn colour(diagnosis: &Diagnosis) -> Colour {

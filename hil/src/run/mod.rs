@@ -40,7 +40,7 @@ pub use controller_loop::PlantLost;
 pub use error::RunError;
 pub use outcome::{ControllerOutcome, Outcome};
 pub use parameters::Parameters;
-pub use plant::vehicle;
+pub use plant::{vehicle, vehicle_on};
 pub use plant_loop::Watch;
 use waiting::{CONTROLLER_PHASE, PATIENCE, TICK, partner_timeout};
 

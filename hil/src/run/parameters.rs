@@ -1,7 +1,7 @@
 //! What the files of a scenario say of its vehicle: body, axles, steering, struts.
 
 use oleo_controller::VehicleDescription;
-use oleo_interface::{Corners, StrutValves};
+use oleo_interface::{Corner, Corners, StrutValves};
 use oleo_plant_sim::handling::HandlingParameters;
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::VehicleParameters;
@@ -17,8 +17,10 @@ pub struct Parameters {
     pub vehicle: VehicleParameters,
     /// Steering, links, driver.
     pub handling: HandlingParameters,
-    /// The struts, charged for some load.
+    /// The strut that the controller is told of, charged for some load.
     strut: StrutModel,
+    /// The struts that the vehicle stands on, charged for some load.
+    struts: Corners<StrutModel>,
 }
 
 impl Parameters {
@@ -33,7 +35,13 @@ impl Parameters {
                 source,
             })
         };
+        let strut = match scenario.strut.as_str() {
+            DEFENDER => StrutModel::defender110(1.0),
+            path => StrutModel::from_toml(&text(path)?, path)?,
+        };
         Ok(Self {
+            struts: Corners::from_fn(|_| strut.clone()),
+            strut,
             vehicle: match scenario.vehicle.as_str() {
                 DEFENDER => VehicleParameters::defender110(),
                 path => VehicleParameters::from_toml(&text(path)?, path)?,
@@ -42,11 +50,12 @@ impl Parameters {
                 DEFENDER => HandlingParameters::defender110(),
                 path => HandlingParameters::from_toml(&text(path)?, path)?,
             },
-            strut: match scenario.strut.as_str() {
-                DEFENDER => StrutModel::defender110(1.0),
-                path => StrutModel::from_toml(&text(path)?, path)?,
-            },
         })
+    }
+
+    /// The same vehicle on other struts, of which the controller is not told.
+    pub fn on_struts(self, struts: Corners<StrutModel>) -> Self {
+        Self { struts, ..self }
     }
 
     /// What the controller knows of the vehicle.
@@ -59,12 +68,12 @@ impl Parameters {
     /// # Errors
     /// A strut that cannot be charged for its load.
     pub fn struts(&self, load_n: Corners<f64>) -> Result<Corners<Strut>, RunError> {
-        let strut = |load_n: f64| {
-            let mut model = self.strut.clone();
-            model.cylinder.static_pressure_pa = load_n / model.piston_area_m2();
+        let strut = |corner: Corner| {
+            let mut model = self.struts[corner].clone();
+            model.cylinder.static_pressure_pa = load_n[corner] / model.piston_area_m2();
             Strut::at_rest(&model, StrutValves::default())
         };
-        let [a, b, c, d] = load_n.into_array();
-        Ok(Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]))
+        let [a, b, c, d] = Corner::ALL.map(strut);
+        Ok(Corners::from_array([a?, b?, c?, d?]))
     }
 }

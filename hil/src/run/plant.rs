@@ -1,8 +1,10 @@
 //! Builds the road, the struts and the vehicle of a scenario before the clock starts.
 
+use oleo_interface::Corners;
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::Drive;
 use oleo_plant_sim::road;
+use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::vehicle::RideVehicle;
 use oleo_plant_sim::vehicle::suspension::StrutElement;
 
@@ -16,7 +18,18 @@ use crate::vehicle::Vehicle;
 /// # Errors
 /// A file is missing or wrong, or the parts do not fit together.
 pub fn vehicle(scenario: &Scenario) -> Result<Vehicle, RunError> {
-    let parameters = Parameters::read(scenario)?;
+    begin(scenario, &Parameters::read(scenario)?)
+}
+
+/// The same vehicle on four struts that differ, of which the controller is not told. Each is charged for the load that it carries.
+///
+/// # Errors
+/// As [`vehicle`].
+pub fn vehicle_on(scenario: &Scenario, struts: Corners<StrutModel>) -> Result<Vehicle, RunError> {
+    begin(scenario, &Parameters::read(scenario)?.on_struts(struts))
+}
+
+fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunError> {
     let loaded = scenario.load.at_ride_height(&parameters.vehicle);
     let step_s = loaded.solver.step_s;
     let steps = TICK_S / step_s;

@@ -65,7 +65,7 @@ pub use motion::{Motion, Segment};
 pub use nitrogen::Nitrogen;
 pub use pressure::ATMOSPHERE_PA;
 pub use replay::{Inputs, Prediction, replay};
-pub use smoothing::smooth_displacement;
+pub use smoothing::{FreeMotion, smooth_displacement, smooth_free_motion};
 pub use terms::{
     AccumulatorPistonFriction, BumpStop, COLUMNS, DamperLeakage, DampingFade, Effects, EntrainedAir, Equation,
     GasChargeError, GasEquation, GasHeatTransfer, LaminarLine, LawArgument, LawForm, LawPlace, LineInertance,

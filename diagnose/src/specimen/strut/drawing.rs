@@ -66,7 +66,7 @@ mod tests {
         assert_eq!(drawn("accumulator-2").matches("box found").count(), 1);
         let (mut model, excitation) = (StrutModel::defender110(8000.0), excitation::Strut::of_everything());
         model.effects = Effects::default();
-        let all = super::super::candidates(&model, &excitation);
+        let all = super::super::candidates(&model, &excitation, super::super::Layout::RIG);
         assert!(all.len() > 60);
         for place in all.iter().map(|c| c.place.to_string()) {
             let place = place.as_str();

@@ -8,7 +8,8 @@ use oleo_plant_sim::strut::{Inputs, StrutModel, replay};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::specimen::channel::Channel;
+use super::channels::Layout;
+use crate::specimen::channel::{Channel, Series};
 
 /// Fixed, so that a report is the same every time.
 const SEED: u64 = 1;
@@ -34,18 +35,31 @@ pub fn jittered(inputs: &Inputs, noise_m: f64) -> Inputs {
 
 /// Mean square of the difference that displacement noise makes, in units of the channels' noise, and the number of values.
 #[must_use]
-pub fn excess(model: &StrutModel, inputs: &Inputs, jittered: &Inputs, channels: &[Channel]) -> Option<(f64, usize)> {
-    let (a, b) = (replay(model, inputs).ok()?, replay(model, jittered).ok()?);
-    let series = |p: &oleo_plant_sim::strut::Prediction| {
-        let [p1, p2, p3, p4] = p.pressure_pa.clone();
-        [p.force_n.clone(), p1, p2, p3, p4]
-    };
+pub fn excess(
+    model: &StrutModel,
+    inputs: &Inputs,
+    jittered: &Inputs,
+    layout: Layout,
+    channels: &[Channel],
+) -> Option<(f64, usize)> {
     let (mut sum, mut count) = (0.0, 0);
-    for ((a, b), channel) in series(&a).iter().zip(&series(&b)).zip(channels) {
-        sum += a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>() / (channel.noise * channel.noise);
-        count += a.len();
+    for (difference, channel) in differences(model, inputs, jittered, layout)?.iter().zip(channels) {
+        sum += difference.iter().map(|d| d * d).sum::<f64>() / (channel.noise * channel.noise);
+        count += difference.len();
     }
     Some((sum, count))
+}
+
+/// What two motions make different, every recorded channel, in the unit of its column; `None` if the model cannot be simulated.
+#[must_use]
+pub fn differences(model: &StrutModel, one: &Inputs, other: &Inputs, layout: Layout) -> Option<Series> {
+    let (a, b) = (replay(model, one).ok()?, replay(model, other).ok()?);
+    let series = |p: &oleo_plant_sim::strut::Prediction| {
+        let [p1, p2, p3, p4] = p.pressure_pa.clone();
+        layout.recorded(vec![p.force_n.clone(), p1, p2, p3, p4])
+    };
+    let difference = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
+    Some(series(&a).iter().zip(&series(&b)).map(difference).collect())
 }
 
 #[cfg(test)]
@@ -67,7 +81,9 @@ mod tests {
                 noise: if *c == "force_N" { 12.0 } else { 4e3 },
             })
             .collect();
-        let mean = |noise| excess(&model, &inputs, &jittered(&inputs, noise), &channels).map(|(s, n)| s / n as f64);
+        let mean = |noise| {
+            excess(&model, &inputs, &jittered(&inputs, noise), Layout::RIG, &channels).map(|(s, n)| s / n as f64)
+        };
         let (none, some, more) = (mean(0.0).unwrap(), mean(5e-6).unwrap(), mean(2e-5).unwrap());
         // A motion that was smooth is changed a little by being smoothed once more, also without noise.
         assert!(none < 0.01 && some > none && more > 2.0 * some, "{none} {some} {more}");

@@ -8,14 +8,14 @@ mod relations;
 
 use std::sync::OnceLock;
 
-use oleo_interface::{StrutValves, Valve};
+use oleo_interface::Valve;
 use oleo_plant_sim::model_file::InvalidValue;
-use oleo_plant_sim::strut::{COLUMNS, Inputs, StrutModel, record_column, replay};
+use oleo_plant_sim::strut::{COLUMNS, Inputs, StrutModel, record_column, replay, smooth_free_motion};
 use rayon::prelude::*;
 
 use calibration::Calibration;
 pub use channels::{CHANNELS, columns};
-use channels::{FORCE, P1, P2, P3, P4};
+use channels::{FORCE, Layout, P1, P2, P3, P4};
 use relations::Measured;
 
 use super::channel::{Channel, Series, StateSeries};
@@ -34,6 +34,7 @@ use crate::vocabulary::{Branch, Column, EffectId, Place, Site, State};
 pub struct TwoStageStrut {
     model: StrutModel,
     recordings: Vec<Recording>,
+    layout: Layout,
     inputs: Vec<Inputs>,
     channels: Vec<Channel>,
     calibration: Vec<Calibration>,
@@ -49,26 +50,84 @@ impl TwoStageStrut {
     /// # Errors
     /// A model whose numbers are impossible, or that states no noise for a channel.
     pub fn new(model: StrutModel, recordings: Vec<Recording>) -> Result<Self, String> {
-        let channels: Vec<Channel> = CHANNELS
+        let noise = displacement_noise(&model);
+        let inputs = (recordings.iter())
+            .map(|r| Inputs::from_recording(&r.time_s, &r.columns[0], &Layout::RIG.signals(r), noise))
+            .collect();
+        Self::with_layout(model, recordings, inputs, Layout::RIG)
+    }
+
+    /// A strut in a vehicle, whose recordings hold no force: displacement, p1 to p4, and the three switching signals. A pressure
+    /// that was not received is NaN and does not count.
+    ///
+    /// Between two samples of 5 ms a wheel moves in a way that is not recorded, and the dampers turn what is not known of its speed
+    /// into pressure. This is noise of p1 and p3 as the sensor's is, and is added to it: its size is the difference that two
+    /// motions make which the readings cannot tell apart.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn in_vehicle(model: StrutModel, recordings: Vec<Recording>) -> Result<Self, String> {
+        let (mut inputs, mut possible) = (Vec::new(), Vec::new());
+        for r in &recordings {
+            let motion = smooth_free_motion(&r.columns[0], r.interval_s(), displacement_noise(&model));
+            let with = |motion| Inputs {
+                time_s: r.time_s.clone(),
+                motion,
+                signals: Layout::VEHICLE.signals(r),
+            };
+            inputs.push(with(motion.best));
+            possible.push(with(motion.possible));
+        }
+        let mut strut = Self::with_layout(model, recordings, inputs, Layout::VEHICLE)?;
+        strut.add_noise_of_motion(&possible);
+        Ok(strut)
+    }
+
+    /// Adds to the noise of each channel what the motion leaves unknown. Its course in time is that of the difference between two
+    /// motions; its size is measured by the second difference of the residuals, in which a model that lacks something shows next
+    /// to nothing, because that changes slowly.
+    fn add_noise_of_motion(&mut self, possible: &[Inputs]) {
+        let believed = Hypothesis {
+            calibration: vec![0.0; self.parameters.len()],
+            effects: vec![],
+        };
+        let mut sums = vec![Unknown::default(); self.channels.len()];
+        for (r, (best, possible)) in self.inputs.iter().zip(possible).enumerate() {
+            let Some(differences) = floor::differences(&self.model, best, possible, self.layout) else {
+                continue;
+            };
+            let Ok(simulated) = self.simulate(&believed, r) else {
+                continue;
+            };
+            for (c, sum) in sums.iter_mut().enumerate() {
+                sum.add(self.measured(r, c), &differences[c], &simulated[c]);
+            }
+        }
+        for (channel, sum) in self.channels.iter_mut().zip(sums) {
+            let variance = channel.noise * channel.noise;
+            channel.noise = (variance + sum.of_motion(variance)).sqrt();
+        }
+    }
+
+    fn with_layout(
+        model: StrutModel,
+        recordings: Vec<Recording>,
+        inputs: Vec<Inputs>,
+        layout: Layout,
+    ) -> Result<Self, String> {
+        let channels: Vec<Channel> = (layout.channels())
             .iter()
             .map(|c| Channel::of(Column::known(c), &model.noise))
             .collect::<Result<_, _>>()
             .map_err(|invalid| invalid.to_string())?;
-        let displacement_noise = model.noise.get("displacement_m").copied().unwrap_or(0.0);
-        let inputs: Vec<Inputs> = recordings
-            .iter()
-            .map(|r| {
-                let signals: Vec<StrutValves<bool>> = (0..r.len())
-                    .map(|k| StrutValves::from_fn(|valve| r.columns[6 + valve.index()][k] > 0.5))
-                    .collect();
-                Inputs::from_recording(&r.time_s, &r.columns[0], &signals, displacement_noise)
-            })
-            .collect();
-        let noises = std::array::from_fn(|c| channels[c].noise);
+        let displacement_noise = displacement_noise(&model);
+        let noise = |channel: usize| channels[layout.channel(channel)].noise;
+        let pressure_noise = noise(P3).max(noise(P4));
         let (calibration, parameters) = calibration::of(&model);
         let mut strut = Self {
             model,
             recordings,
+            layout,
             inputs,
             channels,
             calibration,
@@ -76,10 +135,10 @@ impl TwoStageStrut {
             candidates: vec![],
             jittered: OnceLock::new(),
         };
-        let excited = |recordings: &[Recording]| excitation::Strut::of(recordings, &noises, displacement_noise);
+        let excited = |recordings: &[Recording]| excitation::Strut::of(recordings, pressure_noise, displacement_noise);
         let believed = excited(&strut.as_believed()?);
         let excitation = excitation::Strut::of_measured_or_believed(excited(&strut.recordings), &believed);
-        strut.candidates = candidates(&strut.model, &excitation);
+        strut.candidates = candidates(&strut.model, &excitation, layout);
         Ok(strut)
     }
 
@@ -137,7 +196,7 @@ impl TwoStageStrut {
     /// What was measured, for relations that need no model.
     fn as_measured(&self) -> Measured<'_> {
         let area = self.model.piston_area_m2();
-        Measured::new(&self.recordings, &self.inputs, &self.channels, area)
+        Measured::new(&self.recordings, &self.inputs, self.layout, &self.channels, area)
     }
 
     /// Time since the last switching edge, s; the time itself before the first.
@@ -199,7 +258,7 @@ impl Specimen for TwoStageStrut {
         model.effects.retain_sensor_faults(|column| column == COLUMNS[0]);
         let p = replay(&model, &self.inputs[recording]).map_err(|e| e.to_string())?;
         let [p1, p2, p3, p4] = p.pressure_pa;
-        let series = vec![p.force_n, p1, p2, p3, p4];
+        let series = self.layout.recorded(vec![p.force_n, p1, p2, p3, p4]);
         if series.iter().all(|s| s.iter().all(|v| v.is_finite())) {
             Ok(series)
         } else {
@@ -211,13 +270,17 @@ impl Specimen for TwoStageStrut {
         let effects = self.applied(hypothesis).effects;
         let time_s = &self.recordings[recording].time_s;
         let mut shown = truth.clone();
-        for (column, series) in CHANNELS.iter().zip(&mut shown) {
+        for (column, series) in self.layout.channels().iter().zip(&mut shown) {
             record_column(&effects, column, time_s, series);
         }
         shown
     }
 
     fn noise_floor(&self, hypothesis: &Hypothesis) -> f64 {
+        if self.layout == Layout::VEHICLE {
+            // What the motion leaves unknown is part of the channels' noise.
+            return 1.0;
+        }
         let model = self.applied(hypothesis);
         let noise = model.noise.get("displacement_m").copied().unwrap_or(0.0);
         let jittered = self
@@ -225,7 +288,7 @@ impl Specimen for TwoStageStrut {
             .get_or_init(|| (self.inputs.par_iter()).map(|i| floor::jittered(i, noise)).collect());
         let excesses: Vec<(f64, usize)> = (self.inputs.par_iter())
             .zip(jittered)
-            .filter_map(|(as_is, jittered)| floor::excess(&model, as_is, jittered, &self.channels))
+            .filter_map(|(as_is, jittered)| floor::excess(&model, as_is, jittered, self.layout, &self.channels))
             .collect();
         // Summed in order, so that the figure has the same bits on any number of threads.
         let (sum, count) = (excesses.iter()).fold((0.0, 0), |(sum, count), (s, c)| (sum + s, count + c));
@@ -280,14 +343,15 @@ impl Specimen for TwoStageStrut {
         let motion = &self.inputs[recording].motion;
         let mut speed: Vec<f64> = motion.segments.iter().map(|s| s.to_m_s).collect();
         speed.insert(0, 0.0);
-        let across = |a: usize, b: usize| r.columns[a].iter().zip(&r.columns[b]).map(|(a, b)| a - b).collect();
+        let column = |channel: usize| &r.columns[self.layout.column(channel)];
+        let across = |a: usize, b: usize| column(a).iter().zip(column(b)).map(|(a, b)| a - b).collect();
         let mut states = vec![
             StateSeries::new(State::Displacement, r.columns[0].clone()),
             StateSeries::new(State::Speed, speed),
-            StateSeries::new(State::P1, r.columns[2].clone()),
-            StateSeries::new(State::P1MinusP2, across(2, 3)),
-            StateSeries::new(State::P1MinusP3, across(2, 4)),
-            StateSeries::new(State::P3MinusP4, across(4, 5)),
+            StateSeries::new(State::P1, column(P1).clone()),
+            StateSeries::new(State::P1MinusP2, across(P1, P2)),
+            StateSeries::new(State::P1MinusP3, across(P1, P3)),
+            StateSeries::new(State::P3MinusP4, across(P3, P4)),
         ];
         if let Some(since) = self.since_edge(recording) {
             states.push(StateSeries::new(State::TimeSinceSwitching, since));
@@ -296,8 +360,56 @@ impl Specimen for TwoStageStrut {
     }
 }
 
+/// Most by which the readings may exceed what the estimate of the motion says of its own error, in its variance.
+const MOST_BEYOND_ESTIMATE: f64 = 4.0;
+/// Variance of the second difference of white noise of variance one.
+const OF_WHITE_NOISE: f64 = 6.0;
+
+/// Mean squares over a channel: of the difference that two motions make, of its second difference, and of the second difference
+/// of the residuals.
+#[derive(Clone, Copy, Default)]
+struct Unknown {
+    difference: (f64, usize),
+    second: (f64, usize),
+    residual: (f64, usize),
+}
+
+impl Unknown {
+    fn add(&mut self, measured: &[f64], difference: &[f64], simulated: &[f64]) {
+        let square = |sum: &mut (f64, usize), v: f64| {
+            if !v.is_nan() {
+                *sum = (sum.0 + v * v, sum.1 + 1);
+            }
+        };
+        let second = |a: f64, b: f64, c: f64| a - 2.0 * b + c;
+        difference.iter().for_each(|d| square(&mut self.difference, *d));
+        difference
+            .windows(3)
+            .for_each(|w| square(&mut self.second, second(w[0], w[1], w[2])));
+        let residual: Vec<f64> = measured.iter().zip(simulated).map(|(m, s)| m - s).collect();
+        residual
+            .windows(3)
+            .for_each(|w| square(&mut self.residual, second(w[0], w[1], w[2])));
+    }
+
+    /// Variance that the unknown motion adds to that of the sensor.
+    fn of_motion(&self, sensor: f64) -> f64 {
+        let mean = |(sum, count): (f64, usize)| sum / count.max(1) as f64;
+        let [estimated, second, residual] = [self.difference, self.second, self.residual].map(mean);
+        if second <= 0.0 {
+            return 0.0;
+        }
+        let measured = (residual - OF_WHITE_NOISE * sensor).max(0.0) * estimated / second;
+        measured.min(MOST_BEYOND_ESTIMATE * estimated)
+    }
+}
+
+fn displacement_noise(model: &StrutModel) -> f64 {
+    model.noise.get(COLUMNS[0]).copied().unwrap_or(0.0)
+}
+
 /// Everything that a strut's model may lack: physics, then the instruments column by column, then laws without a name.
-fn candidates(model: &StrutModel, excitation: &excitation::Strut) -> Vec<Candidate> {
+fn candidates(model: &StrutModel, excitation: &excitation::Strut, layout: Layout) -> Vec<Candidate> {
     let of_effect = |id: EffectId| of(id).in_strut().map_or(vec![], |e| e.candidates(model, excitation));
     let physics = ALL.iter().filter(|id| id.is_physics()).flat_map(|&id| of_effect(id));
     let mut faults: Vec<Candidate> = sensor::IN_ORDER.into_iter().flat_map(of_effect).collect();
@@ -308,6 +420,10 @@ fn candidates(model: &StrutModel, excitation: &excitation::Strut) -> Vec<Candida
     });
     let nameless = of_effect(EffectId::Unlisted);
     (physics.chain(faults).chain(nameless))
-        .map(|candidate| candidate.testable_unless(excitation.still()))
+        .filter(|candidate| layout.has(FORCE) || candidate.place.sensor() != Some(&Column::FORCE))
+        .map(|candidate| {
+            let unseen = layout.unseen(&candidate.place.site);
+            candidate.testable_unless(excitation.still().or(unseen))
+        })
         .collect()
 }

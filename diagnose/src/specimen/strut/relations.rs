@@ -3,7 +3,7 @@
 use oleo_interface::Valve;
 use oleo_plant_sim::strut::Inputs;
 
-use super::channels::{FORCE, P1, P2, P3, P4};
+use super::channels::{FORCE, Layout, P1, P2, P3, P4};
 use crate::recording::Recording;
 use crate::specimen::channel::Channel;
 use crate::specimen::relation::MeasuredRelation;
@@ -21,6 +21,7 @@ const STEADY_NOISE: f64 = 4.0;
 pub struct Measured<'a> {
     recordings: &'a [Recording],
     inputs: &'a [Inputs],
+    layout: Layout,
     channels: &'a [Channel],
     piston_area_m2: f64,
     /// Samples of each recording after which a valve or a pressure has settled.
@@ -32,6 +33,7 @@ impl<'a> Measured<'a> {
     pub fn new(
         recordings: &'a [Recording],
         inputs: &'a [Inputs],
+        layout: Layout,
         channels: &'a [Channel],
         piston_area_m2: f64,
     ) -> Self {
@@ -40,6 +42,7 @@ impl<'a> Measured<'a> {
             settled: recordings.iter().map(settled).collect(),
             recordings,
             inputs,
+            layout,
             channels,
             piston_area_m2,
         }
@@ -47,18 +50,20 @@ impl<'a> Measured<'a> {
 
     /// Every relation, tested on all samples that can test it.
     pub fn relations(&self) -> Vec<MeasuredRelation> {
-        let noise = |c: usize| self.channels[c].noise;
+        let noise = |c: usize| self.noise(c);
         let area = self.piston_area_m2;
-        let force_noise = (noise(FORCE) * noise(FORCE) + area * area * noise(P1) * noise(P1)).sqrt();
         let difference = |a: usize, b: usize| (noise(a) * noise(a) + noise(b) * noise(b)).sqrt();
-        let m = |r: usize, c: usize, k: usize| self.recordings[r].columns[1 + c][k];
+        let m = |r: usize, c: usize, k: usize| self.recordings[r].columns[self.layout.column(c)][k];
         // At rest: nothing moves, and no oil flows from one accumulator to the other after a valve has opened.
         let rest = |r: usize, k: usize| self.is_quiet(r, k) && self.is_steady(r, k);
         let open = |r: usize, k: usize, valve: Valve| self.is_held(r, k, valve, true);
-        vec![
+        let force_balance = self.layout.has(FORCE).then(|| {
+            let force_noise = (noise(FORCE) * noise(FORCE) + area * area * noise(P1) * noise(P1)).sqrt();
             self.tested("force balance: force - A p1", force_noise, |r, k| {
                 Some(m(r, FORCE, k) - area * m(r, P1, k))
-            }),
+            })
+        });
+        let others = [
             self.tested("closed valve 3: p3 = p1", difference(P1, P3), |r, k| {
                 (self.is_held(r, k, Valve::Spring, false)).then(|| m(r, P1, k) - m(r, P3, k))
             }),
@@ -75,7 +80,13 @@ impl<'a> Measured<'a> {
                         .then(|| m(r, P1, k) - m(r, P4, k))
                 },
             ),
-        ]
+        ];
+        force_balance.into_iter().chain(others).collect()
+    }
+
+    /// Noise of a recorded channel of [`CHANNELS`](super::CHANNELS), in the unit of its column.
+    fn noise(&self, channel: usize) -> f64 {
+        self.channels[self.layout.channel(channel)].noise
     }
 
     /// What the valves were at a sample: "valve 1 open", for each that has settled.
@@ -93,7 +104,7 @@ impl<'a> Measured<'a> {
     fn tested(&self, name: &'static str, noise: f64, misfit: impl Fn(usize, usize) -> Option<f64>) -> MeasuredRelation {
         let misfit = &misfit;
         let values: Vec<f64> = (self.recordings.iter().enumerate())
-            .flat_map(|(r, recording)| (0..recording.len()).filter_map(move |k| misfit(r, k)))
+            .flat_map(|(r, recording)| (0..recording.len()).filter_map(move |k| misfit(r, k).filter(|v| v.is_finite())))
             .collect();
         MeasuredRelation::tested(name, noise, &values)
     }
@@ -119,8 +130,8 @@ impl<'a> Measured<'a> {
             return false;
         };
         [P2, P4].iter().all(|&c| {
-            let p = &r.columns[1 + c];
-            (p[sample] - p[before]).abs() < STEADY_NOISE * self.channels[c].noise
+            let p = &r.columns[self.layout.column(c)];
+            (p[sample] - p[before]).abs() < STEADY_NOISE * self.noise(c)
         })
     }
 }

@@ -14,11 +14,14 @@
 //! | `holds` | stretches without motion, and how moves begin and end at them |
 //! | `samples` | what is known of each sample so far |
 //! | `smooth` | the smoothed motion |
+//! | `free_motion` | the smoothed motion of a strut in a vehicle |
 
 mod chi_square;
+mod free_motion;
 mod holds;
 mod local_fit;
 mod samples;
 mod smooth;
 
+pub use free_motion::{FreeMotion, smooth_free_motion};
 pub use smooth::smooth_displacement;

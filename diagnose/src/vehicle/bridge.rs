@@ -1,0 +1,213 @@
+//! Missing readings of one strut in one drive.
+//!
+//! A missing displacement must not become a step: it is interpolated, and the pressures about it do not count. A missing pressure
+//! does not count. Where a command is missing, the valves are taken to stay as they were; if they were switched meanwhile, nobody
+//! knows in which tick, so the pressures do not count until the valve has settled. The drive is cut where more than
+//! [`LONGEST_BRIDGE`] readings in a row are missing, because the state of the strut is not known after it.
+
+use oleo_interface::StrutValves;
+use oleo_interface::tick::TICKS_PER_SECOND;
+
+use super::drive::StrutSamples;
+
+/// Most missing readings in a row that are bridged: 0.1 s.
+pub const LONGEST_BRIDGE: usize = TICKS_PER_SECOND as usize / 10;
+/// Gaps up to this length are interpolated so well that only the pressures next to them are touched.
+const SHORT_GAP: usize = 3;
+/// Pressures that do not count before a gap, and after a short one: the dampers' pressures settle within milliseconds.
+const BESIDE_SHORT: (usize, usize) = (2, 6);
+/// Pressures that do not count after a long gap, or after an edge whose time is not known: 0.3 s, three times the slowest valve.
+const AFTER_LONG: usize = 3 * TICKS_PER_SECOND as usize / 10;
+/// Known readings on each side of a gap through which the interpolating polynomial goes.
+const NODES: usize = 3;
+
+/// A strut's samples without gaps in what drives the model.
+#[derive(Debug, Clone)]
+pub struct Bridged {
+    /// Displacement, m, from the first reading to the cut.
+    pub displacement_m: Vec<f64>,
+    /// Pressures, Pa; NaN where they do not count.
+    pub pressure_pa: [Vec<f64>; 4],
+    /// Switching signals.
+    pub valves: Vec<StrutValves<bool>>,
+    /// Index of the first sample in the drive.
+    pub from: usize,
+    /// Number of displacements that were interpolated.
+    pub interpolated: usize,
+    /// Number of commands that are missing.
+    pub without_command: usize,
+    /// The sample at which the drive was cut, where it was.
+    pub cut_at: Option<usize>,
+}
+
+/// Bridges what is missing; `None` of a drive without a displacement.
+#[must_use]
+pub fn bridge(samples: &StrutSamples) -> Option<Bridged> {
+    let x = &samples.displacement_m;
+    let from = x.iter().position(|v| v.is_finite())?;
+    let last = x.iter().rposition(|v| v.is_finite())? + 1;
+    let gaps = gaps(from, last, |k| x[k].is_finite());
+    // Before the first command all valves are closed, however long that takes.
+    let first_command = samples.valves.iter().position(Option::is_some).unwrap_or(last);
+    let silences = self::gaps(first_command.max(from), last, |k| samples.valves[k].is_some());
+    let long = |gap: &&(usize, usize)| gap.1 - gap.0 > LONGEST_BRIDGE;
+    let cut_at = (gaps.iter().find(long).into_iter().chain(silences.iter().find(long)))
+        .map(|gap| gap.0)
+        .min();
+    let to = cut_at.unwrap_or(last);
+    let mut displacement_m = x[from..to].to_vec();
+    let mut pressure_pa = samples.pressure_pa.each_ref().map(|p| p[from..to].to_vec());
+    let mut uncounted = |start: usize, end: usize| {
+        for p in &mut pressure_pa {
+            p[start.max(from) - from..end.min(to) - from].fill(f64::NAN);
+        }
+    };
+    let mut interpolated = 0;
+    for &(start, end) in gaps.iter().filter(|gap| gap.1 <= to) {
+        interpolated += end - start;
+        let after = if end - start <= SHORT_GAP {
+            BESIDE_SHORT.1
+        } else {
+            AFTER_LONG
+        };
+        uncounted(start.saturating_sub(BESIDE_SHORT.0), end + after);
+        for k in start..end {
+            displacement_m[k - from] = interpolated_at(x, k, (start, end));
+        }
+    }
+    let mut valves: Vec<StrutValves<bool>> = Vec::with_capacity(to - from);
+    let mut held = StrutValves::default();
+    for signal in &samples.valves[from..to] {
+        held = signal.unwrap_or(held);
+        valves.push(held);
+    }
+    let mut without_command = first_command.clamp(from, to) - from;
+    for &(start, end) in silences.iter().filter(|gap| gap.1 <= to) {
+        without_command += end - start;
+        let known = |k: usize| samples.valves.get(k).copied().flatten();
+        if start.checked_sub(1).and_then(known) != known(end) {
+            uncounted(start, end + AFTER_LONG);
+        }
+    }
+    Some(Bridged {
+        displacement_m,
+        pressure_pa,
+        valves,
+        from,
+        interpolated,
+        without_command,
+        cut_at,
+    })
+}
+
+/// Stretches `start..end` within `from..to` in which nothing is known.
+fn gaps(from: usize, to: usize, known: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
+    let mut found = Vec::new();
+    let mut k = from;
+    while k < to {
+        let start = k;
+        while k < to && !known(k) {
+            k += 1;
+        }
+        if k > start {
+            found.push((start, k));
+        }
+        k += 1;
+    }
+    found
+}
+
+/// The polynomial through the nearest readings before and after a gap (Lagrange), at sample `k`.
+fn interpolated_at(x: &[f64], k: usize, (start, end): (usize, usize)) -> f64 {
+    let known = |i: &usize| x.get(*i).is_some_and(|v| v.is_finite());
+    let before = (0..start).rev().take(2 * NODES).filter(known).take(NODES);
+    let after = (end..x.len()).take(2 * NODES).filter(known).take(NODES);
+    let nodes: Vec<usize> = before.chain(after).collect();
+    (nodes.iter())
+        .map(|&i| {
+            let weight: f64 = (nodes.iter().filter(|&&j| j != i))
+                .map(|&j| (k as f64 - j as f64) / (i as f64 - j as f64))
+                .product();
+            weight * x[i]
+        })
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Wheel hop of 12 Hz and 5 mm on a slow stroke.
+    fn motion(k: usize) -> f64 {
+        let t = 0.005 * k as f64;
+        0.005 * libm::sin(75.0 * t) + 0.03 * libm::sin(6.0 * t)
+    }
+
+    fn samples(n: usize) -> StrutSamples {
+        StrutSamples {
+            displacement_m: (0..n).map(motion).collect(),
+            pressure_pa: std::array::from_fn(|_| vec![4e6; n]),
+            valves: vec![Some(StrutValves::default()); n],
+        }
+    }
+
+    #[test]
+    fn a_lost_displacement_becomes_no_step() {
+        let mut s = samples(400);
+        for k in [100, 200, 201, 390] {
+            s.displacement_m[k] = f64::NAN;
+        }
+        let b = bridge(&s).expect("a drive");
+        assert_eq!((b.interpolated, b.cut_at, b.displacement_m.len()), (4, None, 400));
+        for (k, x) in b.displacement_m.iter().enumerate() {
+            // Half a step of the bus for one, ten steps for two; a straight line would be off by 0.7 mm.
+            let within = if (200..202).contains(&k) { 2e-5 } else { 5e-6 };
+            assert!((x - motion(k)).abs() < within, "{k}: {:e}", x - motion(k));
+        }
+        assert!(b.pressure_pa[0][98..107].iter().all(|p| p.is_nan()));
+        assert!(b.pressure_pa[0][107].is_finite() && b.pressure_pa[0][97].is_finite());
+    }
+
+    #[test]
+    fn a_long_gap_cuts_the_drive() {
+        let mut s = samples(400);
+        s.displacement_m[150..150 + LONGEST_BRIDGE].fill(f64::NAN);
+        s.displacement_m[250..251 + LONGEST_BRIDGE].fill(f64::NAN);
+        let b = bridge(&s).expect("a drive");
+        assert_eq!(
+            (b.cut_at, b.displacement_m.len(), b.interpolated),
+            (Some(250), 250, LONGEST_BRIDGE)
+        );
+        assert!(b.displacement_m.iter().all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn an_edge_whose_time_is_not_known_does_not_count() {
+        let open = StrutValves::new(true, true, false);
+        let mut s = samples(400);
+        s.valves[200..].fill(Some(open));
+        // One command is lost in the middle of nothing, another where the valves are switched.
+        s.valves[50] = None;
+        s.valves[200] = None;
+        let b = bridge(&s).expect("a drive");
+        assert_eq!(b.without_command, 2);
+        assert!(b.pressure_pa[0][50].is_finite() && b.pressure_pa[0][200].is_nan() && b.pressure_pa[0][260].is_nan());
+        assert!(b.pressure_pa[0][262].is_finite());
+        // Before the first command the valves are closed.
+        s.valves[..60].fill(None);
+        let b = bridge(&s).expect("a drive");
+        assert_eq!(
+            (b.valves[0], b.cut_at, b.without_command),
+            (StrutValves::default(), None, 61)
+        );
+    }
+
+    #[test]
+    fn nothing_is_made_of_nothing() {
+        let mut s = samples(30);
+        s.displacement_m.fill(f64::NAN);
+        assert!(bridge(&s).is_none() && bridge(&StrutSamples::default()).is_none());
+        s.displacement_m[7] = 0.01;
+        assert_eq!(bridge(&s).expect("one").displacement_m, [0.01]);
+    }
+}

@@ -1,0 +1,143 @@
+//! Model and drives of a vehicle put together: a strut with its recordings at every corner.
+
+use std::sync::atomic::AtomicBool;
+
+use oleo_interface::{Corner, Corners, Valve};
+use oleo_plant_sim::strut::StrutModel;
+
+use super::bridge::bridge;
+use super::drive::{Drive, Resolution};
+use super::model::VehicleModel;
+use super::stretch::{BridgedDrive, Chosen, choose};
+use crate::campaign::{Campaign, MODEL_FILE};
+use crate::error::DiagnoseError;
+use crate::estimation::{LeastSquares, Point};
+use crate::recording::Recording;
+use crate::specimen::strut::TwoStageStrut;
+
+/// A rounded reading is off by at most half a step, and its error is even within: variance step^2 / 12.
+const VARIANCE_OF_ROUNDING: f64 = 1.0 / 12.0;
+
+/// A vehicle ready to be diagnosed.
+pub struct VehicleCampaign {
+    /// The model files as they are believed.
+    pub model: VehicleModel,
+    /// Each strut with its recordings.
+    pub corners: Corners<Campaign>,
+    /// What was used of the drives, one sentence each.
+    pub notes: Vec<String>,
+}
+
+impl VehicleCampaign {
+    /// Puts the model of a vehicle and its drives together. `source` names the drives in messages.
+    ///
+    /// # Errors
+    /// Drives of which nothing can be used; a strut that cannot be at rest.
+    pub fn of(
+        model: VehicleModel,
+        drives: &[Drive],
+        resolution: Resolution,
+        source: &str,
+    ) -> Result<Self, DiagnoseError> {
+        let bridged: Vec<BridgedDrive> = (drives.iter())
+            .map(|drive| BridgedDrive {
+                name: drive.name.clone(),
+                is_first: drive.is_first,
+                struts: drive.struts.each_ref().map(bridge),
+            })
+            .collect();
+        let Chosen { recordings, mut notes } = choose(&bridged);
+        if let Some(corner) = Corner::ALL.into_iter().find(|corner| recordings[*corner].is_empty()) {
+            let why = notes.first().map_or_else(String::new, |note| format!(" ({note})"));
+            let what = format!(
+                "nothing of the {} strut can be used{why}; log drives that begin at rest, for at least a minute",
+                corner.name()
+            );
+            return Err(DiagnoseError::file(source, what));
+        }
+        let struts = model.struts.each_ref().map(|strut| as_read(strut, resolution));
+        let at_once = specimens(&struts, &recordings)?;
+        let a_tick_later = specimens(
+            &struts,
+            &recordings.map(|all| all.into_iter().map(a_tick_later).collect()),
+        )?;
+        let is_later = misfit(&a_tick_later) < misfit(&at_once);
+        if is_later {
+            notes.push(
+                "The commands act one tick (5 ms) after the sample whose tick they echo: with this the believed models fit the edges of \
+                 the valves better."
+                    .to_owned(),
+            );
+        }
+        let mut specimens = if is_later { a_tick_later } else { at_once }.into_array().into_iter();
+        let [a, b, c, d] = Corner::ALL.map(|corner| {
+            let specimen = specimens.next().ok_or(DiagnoseError::Interrupted)?;
+            Ok::<_, DiagnoseError>(Campaign {
+                folder: source.into(),
+                name: format!("{} strut", corner.name()),
+                specimen: Box::new(specimen),
+                notes: vec![],
+            })
+        });
+        Ok(Self {
+            corners: Corners::from_array([a?, b?, c?, d?]),
+            model,
+            notes,
+        })
+    }
+
+    /// Names of the files in which the improved model is written: the struts', and `model.toml`.
+    #[must_use]
+    pub fn model_files(&self) -> Vec<String> {
+        let struts = self.model.distinct_files().into_array();
+        std::iter::once(MODEL_FILE.to_owned()).chain(struts).collect()
+    }
+}
+
+fn specimens(
+    struts: &Corners<StrutModel>,
+    recordings: &Corners<Vec<Recording>>,
+) -> Result<Corners<TwoStageStrut>, DiagnoseError> {
+    let of = |corner: Corner| {
+        TwoStageStrut::in_vehicle(struts[corner].clone(), recordings[corner].clone()).map_err(DiagnoseError::Model)
+    };
+    let [a, b, c, d] = Corner::ALL.map(of);
+    Ok(Corners::from_array([a?, b?, c?, d?]))
+}
+
+/// The recording with its switching signals one sample later. Whether a command acts at the sample whose tick it echoes or at the next
+/// one depends on what a node calls the end of its tick.
+fn a_tick_later(mut recording: Recording) -> Recording {
+    let first_signal = recording.columns.len() - Valve::ALL.len();
+    for signal in &mut recording.columns[first_signal..] {
+        if let Some(&first) = signal.first() {
+            signal.rotate_right(1);
+            signal[0] = first;
+        }
+    }
+    recording
+}
+
+/// Sum over the corners of the logarithm of what the believed model costs, so that one bad strut does not decide for all.
+fn misfit(specimens: &Corners<TwoStageStrut>) -> f64 {
+    let stop = AtomicBool::new(false);
+    let of = |specimen: &TwoStageStrut| {
+        let cost = LeastSquares::new(specimen, &stop).cost_at(&Point::nominal(specimen));
+        cost.map_or(f64::INFINITY, libm::log)
+    };
+    specimens.values().map(of).sum()
+}
+
+/// A strut whose readings are rounded besides being noisy.
+fn as_read(strut: &StrutModel, resolution: Resolution) -> StrutModel {
+    let mut strut = strut.clone();
+    for (column, noise) in &mut strut.noise {
+        let step = match column.as_str() {
+            "displacement_m" => resolution.displacement_m,
+            "force_N" => 0.0,
+            _ => resolution.pressure_pa,
+        };
+        *noise = (*noise * *noise + VARIANCE_OF_ROUNDING * step * step).sqrt();
+    }
+    strut
+}

@@ -1,0 +1,48 @@
+//! What a drive recorded.
+
+use oleo_interface::{Corners, StrutValves};
+
+/// One drive: what was recorded of every strut, one sample for each tick of 5 ms.
+#[derive(Debug, Clone)]
+pub struct Drive {
+    /// Name of the drive, such as the name of its log without `.log`.
+    pub name: String,
+    /// Whether the drive is the first of its log. Such a drive begins at rest; that of a later one must be seen.
+    pub is_first: bool,
+    /// The four struts. All series have the same length.
+    pub struts: Corners<StrutSamples>,
+}
+
+impl Drive {
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.struts.values().map(|s| s.displacement_m.len()).min().unwrap_or(0)
+    }
+
+    /// True without samples.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// The samples of one strut. What was not received is NaN or `None`.
+#[derive(Debug, Clone, Default)]
+pub struct StrutSamples {
+    /// Displacement, m, compression positive.
+    pub displacement_m: Vec<f64>,
+    /// Gauge pressures p1 to p4, Pa.
+    pub pressure_pa: [Vec<f64>; 4],
+    /// Switching signals that hold from this sample to the next.
+    pub valves: Vec<Option<StrutValves<bool>>>,
+}
+
+/// Steps to which readings are rounded on the bus.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resolution {
+    /// Step of a displacement, m.
+    pub displacement_m: f64,
+    /// Step of a pressure, Pa.
+    pub pressure_pa: f64,
+}

@@ -1,0 +1,44 @@
+//! A vehicle: the four struts of its corners, diagnosed from what its bus carried while it drove.
+//!
+//! ```text
+//!   model.toml + four strut files --> VehicleModel ---+
+//!                                                     +--> VehicleCampaign: a strut with recordings at every corner
+//!   drives (from whatever log) --> usable stretches --+                |
+//!                                                       the search for each corner on its own
+//!                                                                      |
+//!                         effects with their corner, and what is common to all four --> report.json, page, model files
+//! ```
+//!
+//! A corner is a strut as on a test rig, with three differences: no force is recorded, readings are rounded to the steps of the
+//! bus, and some are missing. What is common to all four is decided afterwards, from the four estimates and their intervals.
+//!
+//! This module knows nothing of CAN: a [`Drive`] may come from any log.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `model` | the model files of a vehicle |
+//! | `drive` | what a drive recorded |
+//! | `bridge` | missing readings: what is interpolated, and what no longer counts |
+//! | `stretch` | the parts of the drives that are used, and why |
+//! | `campaign` | model and drives put together |
+//! | `common` | effects that all four corners have with one value |
+//! | `diagnosis` | the diagnosis of the vehicle |
+//! | `report` | `report.json` |
+//! | `page` | `report.html` |
+
+mod bridge;
+mod campaign;
+mod common;
+mod diagnosis;
+mod drive;
+mod model;
+mod page;
+mod report;
+mod stretch;
+
+pub use campaign::VehicleCampaign;
+pub use diagnosis::{VehicleDiagnosis, VehicleEffect};
+pub use drive::{Drive, Resolution, StrutSamples};
+pub use model::{VEHICLE, VehicleModel, is_vehicle};
+pub use page::{effects_table, headline, page};
+pub use report::report;

@@ -1,0 +1,188 @@
+//! The model files of a vehicle: `model.toml` names the files of its four struts.
+
+use std::path::Path;
+
+use oleo_interface::{Corner, Corners};
+use oleo_plant_sim::model_file::{Checked, InvalidValue, Limit, read};
+use oleo_plant_sim::specimen::specimen_name;
+use oleo_plant_sim::strut::StrutModel;
+use serde::{Deserialize, Serialize};
+
+use crate::error::DiagnoseError;
+
+/// What `[specimen] kind` says of a vehicle.
+pub const VEHICLE: &str = "vehicle";
+
+/// A vehicle as it is believed to be: the models of its struts.
+#[derive(Debug, Clone)]
+pub struct VehicleModel {
+    /// Name of the vehicle.
+    pub name: String,
+    /// Names of the struts' files, without a folder.
+    pub files: Corners<String>,
+    /// The struts.
+    pub struts: Corners<StrutModel>,
+}
+
+/// `model.toml` of a vehicle.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    specimen: Specimen,
+    strut: Struts,
+}
+
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Specimen {
+    name: String,
+    kind: String,
+}
+
+/// Names of the struts' files.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Struts {
+    front_left: String,
+    front_right: String,
+    rear_left: String,
+    rear_right: String,
+}
+
+impl Checked for File {
+    const LIMITS: &'static [Limit<Self>] = &[];
+
+    fn check_together(&self) -> Result<(), InvalidValue> {
+        let Struts {
+            front_left,
+            front_right,
+            rear_left,
+            rear_right,
+        } = &self.strut;
+        for (corner, name) in Corner::ALL
+            .into_iter()
+            .zip([front_left, front_right, rear_left, rear_right])
+        {
+            if Path::new(name)
+                .file_name()
+                .is_none_or(|file| file.to_str() != Some(name))
+            {
+                let what =
+                    format!("is {name:?}: must be the name of a strut's model file beside this file, without a folder");
+                return Err(InvalidValue::new(corner.key(), what).inside("strut"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether the text of a model file is that of a vehicle.
+#[must_use]
+pub fn is_vehicle(text: &str) -> bool {
+    specimen_name(text, "").is_ok_and(|head| head.kind == VEHICLE)
+}
+
+/// The text of a strut's file without the key `starts_at_rest`, which only files of a vehicle's struts have.
+fn starting_at_rest(text: String, path: &Path) -> Result<String, DiagnoseError> {
+    const KEY: &str = "starts_at_rest";
+    // What is no TOML gets the message of the model's reader.
+    let Ok(mut table) = toml::from_str::<toml::Table>(&text) else {
+        return Ok(text);
+    };
+    let inside = (table.get_mut("specimen")).and_then(|s| s.as_table_mut()?.remove(KEY));
+    let Some(says) = table.remove(KEY).or(inside) else {
+        return Ok(text);
+    };
+    if says.as_bool() != Some(true) {
+        let what = format!(
+            "{KEY} is {says}: only drives that begin at rest can be diagnosed; log drives from standstill, and leave the key out"
+        );
+        return Err(DiagnoseError::file(path, what));
+    }
+    toml::to_string(&table).map_err(|e| DiagnoseError::Output(e.to_string()))
+}
+
+impl VehicleModel {
+    /// Reads `model.toml` of a vehicle and the files of its struts, which lie beside it.
+    ///
+    /// # Errors
+    /// One line: file, line or key, what is wrong, what to do.
+    pub fn read(path: &Path) -> Result<Self, DiagnoseError> {
+        let text_of = |path: &Path| {
+            std::fs::read_to_string(path).map_err(|e| {
+                DiagnoseError::file(
+                    path,
+                    format!("{e}; it is needed as the model of the vehicle or of one of its struts"),
+                )
+            })
+        };
+        let text = text_of(path)?;
+        let source = path.display().to_string();
+        let kind = specimen_name(&text, &source)?.kind;
+        if kind != VEHICLE {
+            let what = format!(
+                "is the model of a {kind}; give that of a vehicle (kind = {VEHICLE:?}), which names the files of its struts"
+            );
+            return Err(DiagnoseError::file(path, what));
+        }
+        let File { specimen, strut } = read::<File>(&text, &source)?;
+        let Struts {
+            front_left,
+            front_right,
+            rear_left,
+            rear_right,
+        } = strut;
+        let files = Corners::from_array([front_left, front_right, rear_left, rear_right]);
+        let folder = path.parent().unwrap_or(Path::new("."));
+        let strut = |corner: Corner| {
+            let path = folder.join(&files[corner]);
+            let source = path.display().to_string();
+            let model = StrutModel::from_toml(&starting_at_rest(text_of(&path)?, &path)?, &source)?;
+            model
+                .check_noise_is_complete()
+                .map_err(|invalid| DiagnoseError::file(&path, invalid.to_string()))?;
+            Ok::<_, DiagnoseError>(model)
+        };
+        let [a, b, c, d] = Corner::ALL.map(strut);
+        Ok(Self {
+            name: specimen.name,
+            struts: Corners::from_array([a?, b?, c?, d?]),
+            files,
+        })
+    }
+
+    /// Names for the files of the improved struts: those given, or `front_left.toml` and so on where two corners share one.
+    #[must_use]
+    pub fn distinct_files(&self) -> Corners<String> {
+        let shared = Corner::ALL.iter().any(|a| {
+            let same = |b: &Corner| self.files[*a].eq_ignore_ascii_case(&self.files[*b]);
+            Corner::ALL.iter().filter(|b| same(b)).count() > 1 || self.files[*a].eq_ignore_ascii_case(crate::MODEL_FILE)
+        });
+        if shared {
+            Corners::from_fn(|corner| format!("{}.toml", corner.key()))
+        } else {
+            self.files.clone()
+        }
+    }
+
+    /// The text of a `model.toml` that names these files.
+    ///
+    /// # Errors
+    /// A name that TOML cannot hold; there is none.
+    pub fn to_toml(&self, files: &Corners<String>) -> Result<String, DiagnoseError> {
+        let [front_left, front_right, rear_left, rear_right] = files.clone().into_array();
+        let file = File {
+            specimen: Specimen {
+                name: self.name.clone(),
+                kind: VEHICLE.to_owned(),
+            },
+            strut: Struts {
+                front_left,
+                front_right,
+                rear_left,
+                rear_right,
+            },
+        };
+        toml::to_string_pretty(&file).map_err(|e| DiagnoseError::Output(e.to_string()))
+    }
+}

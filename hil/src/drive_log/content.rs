@@ -1,0 +1,74 @@
+//! What a log holds: drives with their samples, and an account of what was read.
+
+use oleo_controller::{Reading, ValveCommand};
+use oleo_interface::{Corners, StrutPressures};
+
+/// What a log holds.
+#[derive(Clone, Debug)]
+pub struct DriveLog {
+    /// The drives in the order of the log, at least one.
+    pub drives: Vec<LoggedDrive>,
+    /// What was read, and what could not be used.
+    pub account: LogAccount,
+}
+
+/// One drive: a sample for every tick from the first displacement message to the last.
+#[derive(Clone, Debug)]
+pub struct LoggedDrive {
+    /// Time of the first displacement message as the log says it, s.
+    pub begins_s: f64,
+    /// The samples, one tick (5 ms) apart.
+    pub samples: Vec<LoggedSample>,
+}
+
+/// What was logged for one tick. A reading that is missing, or that its sensor called invalid, is [`Reading::INVALID`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LoggedSample {
+    /// Strut displacement, m, compression positive.
+    pub displacement_m: Corners<Reading>,
+    /// Gauge pressures, Pa.
+    pub pressure_pa: Corners<StrutPressures<Reading>>,
+    /// The command that echoes this tick; `None` if it is missing.
+    pub command: Option<ValveCommand>,
+}
+
+/// What was read from a log, and what could not be used.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LogAccount {
+    /// Number of lines.
+    pub lines: u64,
+    /// Number of lines that are not a classic CAN frame, such as a last line that was cut off.
+    pub unreadable_lines: u64,
+    /// Number of frames whose identifier is not in the database.
+    pub foreign_frames: u64,
+    /// One entry for each message of the database except `STATUS`, in the order of [`oleo_controller::can::MESSAGES`].
+    pub messages: Vec<MessageAccount>,
+}
+
+impl LogAccount {
+    /// The sum of one figure over all messages.
+    pub fn total(&self, figure: impl Fn(&MessageAccount) -> u64) -> u64 {
+        self.messages.iter().map(figure).sum()
+    }
+}
+
+/// What became of the frames of one message.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct MessageAccount {
+    /// Name of the message in the database.
+    pub name: &'static str,
+    /// Number of frames with a right CRC.
+    pub received: u64,
+    /// Number of frames with a wrong CRC or length, or with a content that cannot be.
+    pub corrupted: u64,
+    /// Number of frames that came once more for the same tick.
+    pub repeated: u64,
+    /// Number of frames that were logged after the frame of a later tick.
+    pub late: u64,
+    /// Number of frames whose tick fits into no drive.
+    pub out_of_sequence: u64,
+    /// Number of ticks of all drives for which there is no frame.
+    pub lost: u64,
+    /// Most ticks in a row without a frame.
+    pub longest_gap_ticks: u64,
+}

@@ -1,0 +1,143 @@
+//! `oleo diagnose` on what the bus of a vehicle carried: from logs to the corner, the effect and the improved model files.
+//!
+//! Short drives in the development profile. How often what is found, over many seeds, is measured by `examples/vehicle_logs.rs`.
+
+mod support;
+#[path = "support/vehicle_campaign.rs"]
+mod vehicle_campaign;
+
+use std::path::Path;
+
+use oleo_diagnose::vocabulary::EffectId;
+use oleo_interface::Corner;
+use oleo_plant_sim::strut::StrutModel;
+use serde_json::Value;
+use support::{complaint, run};
+use vehicle_campaign::{Case, Concealed, drives, write};
+
+/// Length of each drive, s.
+const DURATION_S: f64 = 9.0;
+
+fn path(path: &Path) -> &str {
+    path.to_str().expect("a path in UTF-8")
+}
+
+fn diagnosed(case: &Case) -> (tempfile::TempDir, Value) {
+    let folder = tempfile::tempdir().expect("a folder");
+    write(case, folder.path());
+    let out = folder.path().join("found");
+    let ran = run(&["diagnose", path(folder.path()), "--out", path(&out)]);
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let text = std::fs::read_to_string(out.join("report.json")).expect("a report");
+    (folder, serde_json::from_str(&text).expect("JSON"))
+}
+
+fn effects(report: &Value) -> Vec<String> {
+    let all = report["effects"].as_array().expect("a list");
+    let text = |v: &Value| v.as_str().unwrap_or_default().to_owned();
+    all.iter()
+        .map(|e| format!("{}@{}", text(&e["id"]), text(&e["place"])))
+        .collect()
+}
+
+#[test]
+fn one_altered_strut_is_named_with_its_corner() {
+    let concealed = Concealed {
+        id: EffectId::GasChargeError,
+        variant: 1,
+        amount: 0.1,
+        corners: vec![Corner::RearLeft],
+    };
+    let case = Case {
+        seed: 3,
+        concealed: vec![concealed],
+        drives: drives(3, DURATION_S),
+        first_edition: true,
+    };
+    let (folder, report) = diagnosed(&case);
+    assert_eq!(
+        effects(&report),
+        ["gas_charge_error@rear-left/accumulator-2"],
+        "{:#}",
+        report["fit"]
+    );
+    assert_eq!(report["verdict"], "missing_physics");
+    let error = &report["effects"][0]["parameters"]["relative_error_2"]["value"];
+    assert!((error.as_f64().expect("a number") - 0.1).abs() < 0.02, "{error}");
+    // Five channels of a rig less the force, at four corners.
+    assert_eq!(report["fit"].as_object().expect("channels").len(), 16);
+    let used = report["notes"]
+        .as_array()
+        .expect("notes")
+        .iter()
+        .filter(|n| n.as_str().is_some_and(|n| n.contains("lost,")));
+    assert_eq!(used.count(), 3, "{}", report["notes"]);
+    // The improved model reads back, with the sensor's noise as it was stated and the charge in the right file.
+    let read = |name: &str| {
+        let file = folder.path().join("found").join(name);
+        StrutModel::from_toml(&std::fs::read_to_string(file).expect("a file"), name).expect("a strut")
+    };
+    assert!(
+        read("rear-left.toml").effects.gas_charge_error.is_some()
+            && read("rear-right.toml").effects.gas_charge_error.is_none()
+    );
+    assert!((read("front-left.toml").noise["p1_Pa"] - 4e3).abs() < 1e-9);
+    let page = std::fs::read_to_string(folder.path().join("found/report.html")).expect("a page");
+    assert!(page.contains("of the rear-left strut") && page.contains("lane-change"));
+    // Diagnosed again with what was found, nothing is missing.
+    let again = folder.path().join("again");
+    let logs = ["belgian.log", "lane-change.log", "random-road.log"].map(|name| folder.path().join(name));
+    let model = folder.path().join("found/model.toml");
+    let mut arguments = vec!["diagnose"];
+    arguments.extend(logs.iter().map(|log| path(log)));
+    arguments.extend(["--vehicle", path(&model), "--out", path(&again)]);
+    let ran = run(&arguments);
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    assert!(
+        String::from_utf8_lossy(&ran.stdout).contains("consistent"),
+        "{}",
+        String::from_utf8_lossy(&ran.stdout)
+    );
+}
+
+#[test]
+fn what_cannot_be_used_is_refused_in_one_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let strut = StrutModel::defender110(4000.0).to_toml();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).expect("written");
+    let vehicle = |strut: &str| {
+        let corners =
+            ["front_left", "front_right", "rear_left", "rear_right"].map(|corner| format!("{corner} = \"{strut}\"\n"));
+        format!(
+            "[specimen]\nname = \"car\"\nkind = \"vehicle\"\n[strut]\n{}",
+            corners.concat()
+        )
+    };
+    let out = folder.path().join("found");
+    let refused = |arguments: &[&str]| {
+        let mut all = vec!["diagnose"];
+        all.extend(arguments);
+        all.extend(["--out", path(&out)]);
+        let text = complaint(&run(&all));
+        assert!(!out.exists(), "{text}");
+        text
+    };
+    write("model.toml", &vehicle("strut.toml"));
+    assert!(refused(&[path(folder.path())]).contains("holds no drive"));
+    write("a.log", "(1.000000) can0 123#00\n(1.100000) can0 124#00\n");
+    assert!(refused(&[path(folder.path())]).contains("strut.toml"));
+    write("strut.toml", &format!("starts_at_rest = false\n{strut}"));
+    assert!(refused(&[path(folder.path())]).contains("starts_at_rest is false"));
+    write("strut.toml", &strut);
+    let text = refused(&[path(folder.path())]);
+    assert!(
+        text.contains("a.log") && text.contains("2 frames with other identifiers"),
+        "{text}"
+    );
+    write("model.toml", &vehicle("../strut.toml"));
+    assert!(refused(&[path(folder.path())]).contains("front_left"));
+    let log = folder.path().join("a.log");
+    let strut = folder.path().join("strut.toml");
+    assert!(refused(&[path(&log), "--vehicle", path(&strut)]).contains("vehicle"));
+    assert!(refused(&[path(&log), path(&log)]).contains("--vehicle MODEL.toml"));
+}

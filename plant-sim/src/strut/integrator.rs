@@ -14,7 +14,8 @@ use super::gas::GasState;
 use super::model::StrutModel;
 use super::motion::{Cubic, Segment};
 use super::network::{LastSolution, Network, StageEnd, State};
-use super::rod_forces::{Acceleration, RodForces, RodState};
+use super::rod_forces::RodForces;
+use super::rod_state::{Acceleration, RodState};
 use super::terms::{DampingFade, LawArgument, LawPlace, Mount, ValveTransition, law_at, total_response_s};
 use super::valve::ValveMotion;
 

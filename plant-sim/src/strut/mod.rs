@@ -28,7 +28,7 @@
 //! | `terms` | the vocabulary of effects: one file for each, with struct, limits, equation, source, tests |
 //! | `network` | the hydraulic network and its solver: one implicit stage |
 //! | `integrator` | the strut in time: steps, valves' edges, the rod |
-//! | `valve`, `rod_forces`, `friction` | movement of a valve; forces between rod and cylinder |
+//! | `valve`, `rod_forces`, `rod_state`, `friction` | movement of a valve; forces between rod and cylinder, and what they depend on |
 //! | `gas`, `nitrogen`, `orifice`, `damper`, `characteristic` | laws of the elements |
 //! | `instruments` | what faulty instruments make of the columns |
 //! | `motion`, `smoothing` | a motion from sample to sample, and how a recorded displacement becomes one |
@@ -49,6 +49,7 @@ mod orifice;
 mod pressure;
 mod replay;
 mod rod_forces;
+mod rod_state;
 mod smoothing;
 mod terms;
 mod valve;

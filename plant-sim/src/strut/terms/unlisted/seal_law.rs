@@ -4,7 +4,7 @@ use super::argument::LawArgument;
 use super::law::UnlistedLaw;
 use super::place::LawPlace;
 use crate::strut::characteristic::Characteristic;
-use crate::strut::rod_forces::RodState;
+use crate::strut::rod_state::RodState;
 
 /// A force or a friction between rod and cylinder, N.
 #[derive(Debug, Clone)]
@@ -37,7 +37,7 @@ impl SealLaw {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::strut::rod_forces::Acceleration;
+    use crate::strut::rod_state::Acceleration;
 
     #[test]
     fn reads_the_quantity_that_it_depends_on() {

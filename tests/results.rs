@@ -388,14 +388,16 @@ fn a_full_disk_is_no_success_and_a_reader_that_left_is_no_failure() {
     }
 }
 
-/// Sends a signal once a file is there, and returns the exit status and the last line on standard error.
+/// Sends a signal once a file has grown, and returns the exit status and the last line on standard error.
 fn stopped(folder: &Path, arguments: &[&str], signal: &str, file: &str) -> (Option<i32>, String) {
+    let length = || std::fs::metadata(folder.join(file)).map_or(0, |found| found.len());
+    let before = length();
     let mut child = oleo(folder, arguments)
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .spawn()
         .expect("the binary runs");
-    while !folder.join(file).exists() {
+    while length() <= before {
         assert!(child.try_wait().expect("a child").is_none(), "it ended too early");
         std::thread::sleep(std::time::Duration::from_millis(5));
     }

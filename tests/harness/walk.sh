@@ -9,7 +9,7 @@ walk() {
         skip "the page's files and changes apply" "no patch to be had"
         return 1
     fi
-    rm -rf -- "$copy/diagnose" "$copy/plant-sim"
+    rm -rf -- "$copy"
     check "the page's files and changes apply" python3 tests/harness/walk.py docs/adding-physics.md "$copy"
 }
 

@@ -25,7 +25,8 @@ pub(in crate::strut) struct Chamber {
     air: Option<EntrainedAir>,
     /// Volume that the mount's deflection adds, m3/Pa.
     mount_m3_pa: f64,
-    laws: ChamberLaws,
+    /// Unmodelled laws; `None` where the model has none.
+    laws: Option<Box<ChamberLaws>>,
 }
 
 /// What the chamber does between the beginning of a stage and a trial pressure at its end.
@@ -58,7 +59,7 @@ impl Chamber {
             air: effects.entrained_air.clone(),
             mount_m3_pa: (effects.mount_compliance.as_ref())
                 .map_or(0.0, |mount| mount.mount().volume_per_pressure_m3_pa(area_m2)),
-            laws: ChamberLaws::of(&effects.unlisted),
+            laws: (!effects.unlisted.is_empty()).then(|| Box::new(ChamberLaws::of(&effects.unlisted))),
         }
     }
 
@@ -66,7 +67,11 @@ impl Chamber {
     /// gauge pressure from which the stage starts, m3/s.
     #[inline(always)]
     pub fn supply_m3_s(&self, speed_m_s: f64, p1_pa: f64, time_s: f64) -> f64 {
-        self.area_m2 * speed_m_s - self.laws.loss(p1_pa, time_s)
+        let supply = self.area_m2 * speed_m_s;
+        match &self.laws {
+            Some(laws) => supply - laws.loss(p1_pa, time_s),
+            None => supply,
+        }
     }
 
     /// Volume that the chamber holds at a gauge pressure beyond what it holds at static pressure, m3, and its derivative.
@@ -84,7 +89,7 @@ impl Chamber {
                 volume -= self.oil_volume_m3 * left;
                 slope += self.oil_volume_m3 * shrinking;
             }
-            if let Some((taken_up, by_pressure)) = self.laws.volume(p1_pa) {
+            if let Some((taken_up, by_pressure)) = self.laws.as_ref().and_then(|laws| laws.volume(p1_pa)) {
                 volume += taken_up;
                 slope += by_pressure;
             }
@@ -104,7 +109,7 @@ impl Chamber {
                 fraction -= left;
                 slope += shrinking;
             }
-            if let Some((taken_up, by_pressure)) = self.laws.volume(p1_pa) {
+            if let Some((taken_up, by_pressure)) = self.laws.as_ref().and_then(|laws| laws.volume(p1_pa)) {
                 fraction += taken_up / self.oil_volume_m3;
                 slope += by_pressure / self.oil_volume_m3;
             }

@@ -32,7 +32,8 @@ pub(super) struct Path {
     pub static_gas_m3: f64,
     piston_seal: PistonSeal,
     pub fade: PackFade,
-    laws: PathLaws,
+    /// Unmodelled laws; `None` where the model has none, which then costs one comparison.
+    laws: Option<Box<PathLaws>>,
 }
 
 /// Where a path starts from in a stage, and what does not change while the stage is solved.
@@ -118,7 +119,7 @@ impl Path {
                 |friction| friction.seal(which),
             ),
             fade: (effects.damping_fade.as_ref()).map_or_else(PackFade::default, |fade| fade.pack(which)),
-            laws: PathLaws::of(&effects.unlisted, which),
+            laws: (!effects.unlisted.is_empty()).then(|| Box::new(PathLaws::of(&effects.unlisted, which))),
         }
     }
 
@@ -134,26 +135,28 @@ impl Path {
         real: &'a Departure,
     ) -> PathStart<'a> {
         let bypass = at.opening[which.bypass_valve()] * self.valve_coefficient;
-        PathStart {
+        let mut start = PathStart {
             duration_s: at.duration_s,
             time_s: at.time_s,
             gas: which.of(base.gas),
             shear: which.of(base.shear),
-            weakening: self.fade.weakening(which.of(base.heat_j)) * self.laws.weakening(at.displacement_m, at.time_s),
-            beside_pack: bypass + self.leak_coefficient + self.laws.groove(at.displacement_m, at.time_s),
+            weakening: self.fade.weakening(which.of(base.heat_j)),
+            beside_pack: bypass + self.leak_coefficient,
             bypass,
             transition_pa,
             real,
-            breakaway_pa: match self
-                .laws
-                .held_back_pa(which.of(base.gas).volume_m3 / self.static_gas_m3)
-            {
-                Some(held_back_pa) => self.piston_seal.breakaway_pa + held_back_pa,
-                None => self.piston_seal.breakaway_pa,
-            },
+            breakaway_pa: self.piston_seal.breakaway_pa,
             mean_volume: which.of(base.mean_volume),
-            remembered: self.laws.remembered(at.duration_s),
+            remembered: 0.0,
+        };
+        if let Some(laws) = &self.laws {
+            start.weakening *= laws.weakening(at.displacement_m, at.time_s);
+            start.beside_pack += laws.groove(at.displacement_m, at.time_s);
+            let held_back_pa = laws.held_back_pa(start.gas.volume_m3 / self.static_gas_m3);
+            start.breakaway_pa += held_back_pa.unwrap_or(0.0);
+            start.remembered = laws.remembered(at.duration_s);
         }
+        start
     }
 
     /// The path's answer to a trial drop across its pack. `segment` is where in the pack's table the last one was.
@@ -163,11 +166,16 @@ impl Path {
         flow_slope *= start.weakening;
         if start.beside_pack > 0.0 {
             let (unit, slope) = unit_flow(drop_pa, start.transition_pa);
-            let coefficient = start.beside_pack - start.bypass * self.laws.throttled_fraction(drop_pa);
+            let mut coefficient = start.beside_pack;
+            if let Some(laws) = &self.laws {
+                coefficient -= start.bypass * laws.throttled_fraction(drop_pa);
+            }
             flow += coefficient * unit;
             flow_slope += coefficient * slope;
         }
-        if let Some((parallel, slope)) = self.laws.parallel_flow(drop_pa) {
+        if let Some(laws) = &self.laws
+            && let Some((parallel, slope)) = laws.parallel_flow(drop_pa)
+        {
             flow += parallel;
             flow_slope += slope;
         }
@@ -179,11 +187,15 @@ impl Path {
     pub fn answer_to_flow(&self, start: &PathStart<'_>, flow: f64, flow_slope: f64) -> PathAnswer {
         let step = self.gas.implicit(start.gas, start.duration_s, flow, start.real);
         let (mut oil_pa, mut oil_slope) = (step.pressure.gauge().pa(), step.pressure_by_flow);
-        let relative_volume = step.state.volume_m3 / self.static_gas_m3;
-        let changed = start.remembered * (relative_volume - start.mean_volume);
-        if let Some(factor) = self.laws.gas_factor(relative_volume, changed, start.time_s) {
-            oil_pa = Absolute(factor * step.pressure.pa()).gauge().pa();
-            oil_slope *= factor;
+        let mut mean_volume = start.mean_volume;
+        if let Some(laws) = &self.laws {
+            let relative_volume = step.state.volume_m3 / self.static_gas_m3;
+            let changed = start.remembered * (relative_volume - start.mean_volume);
+            mean_volume = relative_volume - changed;
+            if let Some(factor) = laws.gas_factor(relative_volume, changed, start.time_s) {
+                oil_pa = Absolute(factor * step.pressure.pa()).gauge().pa();
+                oil_slope *= factor;
+            }
         }
         let (mut shear, mut shear_slope) = (start.shear, 0.0);
         if start.breakaway_pa > 0.0 {
@@ -192,7 +204,9 @@ impl Path {
             oil_slope += start.breakaway_pa * shear_slope;
         }
         let (mut line_pa, mut line_slope) = self.line.drop(flow);
-        if let Some((drop, slope)) = self.laws.series_drop(flow) {
+        if let Some(laws) = &self.laws
+            && let Some((drop, slope)) = laws.series_drop(flow)
+        {
             line_pa += drop;
             line_slope += slope;
         }
@@ -207,7 +221,7 @@ impl Path {
             temperature_slope: step.temperature_by_flow,
             shear,
             shear_slope,
-            mean_volume: relative_volume - changed,
+            mean_volume,
         }
     }
 

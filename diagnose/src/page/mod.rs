@@ -222,6 +222,11 @@ fn text(value: &serde_json::Value) -> Cell {
 /// The effects, as printed on standard output.
 #[must_use]
 pub fn effects_table(diagnosis: &Diagnosis) -> Table {
+    table_of_effects((diagnosis.effects.iter()).map(|e| (e, [e.ratio_without, e.ratio_with])))
+}
+
+/// Effects, each with its noise ratio without and with it, as a table.
+pub(crate) fn table_of_effects<'a>(effects: impl Iterator<Item = (&'a Effect, [f64; 2])>) -> Table {
     let mut table = Table::new([
         Column::text("Effect"),
         Column::text("Place"),
@@ -230,7 +235,7 @@ pub fn effects_table(diagnosis: &Diagnosis) -> Table {
         Column::number("Noise ratio without it"),
         Column::number("Noise ratio with it"),
     ]);
-    for e in &diagnosis.effects {
+    for (e, [without, with]) in effects {
         let numbers: Vec<String> = (e.parameters.iter())
             .map(|p| {
                 let (value, interval) = words::value_and_interval(p.value, p.ci95);
@@ -245,8 +250,8 @@ pub fn effects_table(diagnosis: &Diagnosis) -> Table {
                 Some(n) if !effects::has_readable_numbers(e) => format!("a law of {n} points"),
                 _ => numbers.join("; "),
             },
-            format!("{:.2}", e.ratio_without),
-            format!("{:.2}", e.ratio_with),
+            format!("{without:.2}"),
+            format!("{with:.2}"),
         ]);
     }
     table

@@ -7,7 +7,7 @@ use super::campaign::VehicleCampaign;
 use super::diagnosis::{VehicleDiagnosis, VehicleEffect};
 use crate::diagnosis::Verdict;
 use crate::effect::of;
-use crate::page::{evidence, words};
+use crate::page::{evidence, table_of_effects, words};
 use crate::vocabulary::{Place, SpecimenKind, VehiclePart};
 
 /// Builds `report.html`.
@@ -116,32 +116,7 @@ fn phrase(found: &VehicleEffect) -> String {
 /// The effects, for the page and for standard output.
 #[must_use]
 pub fn effects_table(diagnosis: &VehicleDiagnosis) -> Table {
-    let mut table = Table::new([
-        Column::text("Effect"),
-        Column::text("Place"),
-        Column::number("Confidence"),
-        Column::text("Parameters (95 % interval)"),
-        Column::number("Noise ratio without it"),
-        Column::number("Noise ratio with it"),
-    ]);
-    for found in &diagnosis.effects {
-        let e = &found.effect;
-        let numbers: Vec<String> = (e.parameters.iter())
-            .map(|p| {
-                let (value, interval) = words::value_and_interval(p.value, p.ci95);
-                format!("{} = {value} ({interval})", p.key)
-            })
-            .collect();
-        table.row([
-            words::effect_name(e),
-            e.place.as_reported(),
-            format!("{:.2}", e.confidence),
-            numbers.join("; "),
-            format!("{:.2}", found.ratios[0]),
-            format!("{:.2}", found.ratios[1]),
-        ]);
-    }
-    table
+    table_of_effects(diagnosis.effects.iter().map(|found| (&found.effect, found.ratios)))
 }
 
 fn corners(diagnosis: &VehicleDiagnosis) -> Table {

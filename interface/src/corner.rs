@@ -163,6 +163,15 @@ impl<T> Corners<T> {
         Self(Corner::ALL.map(value))
     }
 
+    /// From a function of the corner that may fail.
+    ///
+    /// # Errors
+    /// The error of the first corner, in the order of [`Corner::ALL`], at which it fails. The function is called for all four.
+    pub fn try_from_fn<E>(value: impl FnMut(Corner) -> Result<T, E>) -> Result<Self, E> {
+        let [a, b, c, d] = Corner::ALL.map(value);
+        Ok(Self([a?, b?, c?, d?]))
+    }
+
     /// From the values on the left and on the right of each axle.
     pub fn from_left_right(axles: Axles<[T; 2]>) -> Self {
         let ([front_left, front_right], [rear_left, rear_right]) = (axles.front, axles.rear);
@@ -373,6 +382,19 @@ impl<T> IndexMut<Axle> for Axles<T> {
 mod tests {
     extern crate std;
     use super::*;
+
+    #[test]
+    fn the_first_corner_that_fails_is_told() {
+        let right = |corner: Corner| {
+            if corner.side() == Side::Right {
+                Err(corner)
+            } else {
+                Ok(())
+            }
+        };
+        assert_eq!(Corners::try_from_fn(right), Err(Corner::FrontRight));
+        assert_eq!(Corners::try_from_fn(Ok::<_, ()>), Ok(Corners::from_array(Corner::ALL)));
+    }
 
     #[test]
     fn index_finds_what_was_put_there() {

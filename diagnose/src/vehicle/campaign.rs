@@ -69,21 +69,16 @@ impl VehicleCampaign {
                     .to_owned(),
             );
         }
-        let mut specimens = if is_later { a_tick_later } else { at_once }.into_array().into_iter();
-        let [a, b, c, d] = Corner::ALL.map(|corner| {
-            let specimen = specimens.next().ok_or(DiagnoseError::Interrupted)?;
-            Ok::<_, DiagnoseError>(Campaign {
+        let specimens = if is_later { a_tick_later } else { at_once };
+        let corners = specimens
+            .zip(Corners::from_fn(|corner| corner))
+            .map(|(specimen, corner)| Campaign {
                 folder: source.into(),
                 name: format!("{} strut", corner.name()),
                 specimen: Box::new(specimen),
                 notes: vec![],
-            })
-        });
-        Ok(Self {
-            corners: Corners::from_array([a?, b?, c?, d?]),
-            model,
-            notes,
-        })
+            });
+        Ok(Self { corners, model, notes })
     }
 
     /// Names of the files in which the improved model is written: the struts', and `model.toml`.
@@ -98,11 +93,9 @@ fn specimens(
     struts: &Corners<StrutModel>,
     recordings: &Corners<Vec<Recording>>,
 ) -> Result<Corners<TwoStageStrut>, DiagnoseError> {
-    let of = |corner: Corner| {
+    Corners::try_from_fn(|corner| {
         TwoStageStrut::in_vehicle(struts[corner].clone(), recordings[corner].clone()).map_err(DiagnoseError::Model)
-    };
-    let [a, b, c, d] = Corner::ALL.map(of);
-    Ok(Corners::from_array([a?, b?, c?, d?]))
+    })
 }
 
 /// The recording with its switching signals one sample later. Whether a command acts at the sample whose tick it echoes or at the next

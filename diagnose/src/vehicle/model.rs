@@ -143,10 +143,9 @@ impl VehicleModel {
                 .map_err(|invalid| DiagnoseError::file(&path, invalid.to_string()))?;
             Ok::<_, DiagnoseError>(model)
         };
-        let [a, b, c, d] = Corner::ALL.map(strut);
         Ok(Self {
             name: specimen.name,
-            struts: Corners::from_array([a?, b?, c?, d?]),
+            struts: Corners::try_from_fn(strut)?,
             files,
         })
     }

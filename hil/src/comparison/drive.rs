@@ -9,7 +9,7 @@ use oleo_plant_sim::course::{Course, Drive, NotFinite};
 use oleo_plant_sim::handling::HandlingModel;
 use oleo_plant_sim::measures::SeatMeter;
 use oleo_plant_sim::road::{self, RoadError};
-use oleo_plant_sim::strut::{Strut, StrutModel};
+use oleo_plant_sim::strut::Strut;
 use oleo_plant_sim::vehicle::suspension::{CoilElement, StrutElement, SuspensionElement};
 use oleo_plant_sim::vehicle::{RideError, Seats};
 
@@ -107,9 +107,7 @@ pub fn estimates(bench: &Bench, case: &DriveCase) -> Result<Vec<Estimate>, Compa
 
 /// The bench's four struts at rest.
 fn struts(bench: &Bench, open: StrutValves<bool>) -> Result<Corners<StrutElement>, ComparisonError> {
-    let strut = |model: &StrutModel| Strut::at_rest(model, open).map(StrutElement::new);
-    let [a, b, c, d] = bench.struts.each_ref().into_array();
-    Ok(Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]))
+    Corners::try_from_fn(|corner| Ok(StrutElement::new(Strut::at_rest(&bench.struts[corner], open)?)))
 }
 
 /// A drive of the bench's vehicle on these springs, at its beginning.

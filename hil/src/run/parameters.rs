@@ -1,7 +1,7 @@
 //! What the files of a scenario say of its vehicle: body, axles, steering, struts.
 
 use oleo_controller::VehicleDescription;
-use oleo_interface::{Corner, Corners, StrutValves};
+use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::handling::HandlingParameters;
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::VehicleParameters;
@@ -68,12 +68,11 @@ impl Parameters {
     /// # Errors
     /// A strut that cannot be charged for its load.
     pub fn struts(&self, load_n: Corners<f64>) -> Result<Corners<Strut>, RunError> {
-        let strut = |corner: Corner| {
+        let strut = |corner| {
             let mut model = self.struts[corner].clone();
             model.cylinder.static_pressure_pa = load_n[corner] / model.piston_area_m2();
-            Strut::at_rest(&model, StrutValves::default())
+            Ok(Strut::at_rest(&model, StrutValves::default())?)
         };
-        let [a, b, c, d] = Corner::ALL.map(strut);
-        Ok(Corners::from_array([a?, b?, c?, d?]))
+        Corners::try_from_fn(strut)
     }
 }

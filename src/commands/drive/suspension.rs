@@ -59,7 +59,5 @@ impl Valves {
 
 /// Four struts at rest.
 pub fn struts(models: &Corners<TemperedStrut>, signals: StrutValves<bool>) -> Result<Corners<Strut>, InvalidValue> {
-    let [a, b, c, d] = models.each_ref().into_array();
-    let strut = |strut: &TemperedStrut| Strut::at_rest(&strut.model, signals);
-    Ok(Corners::from_array([strut(a)?, strut(b)?, strut(c)?, strut(d)?]))
+    Corners::try_from_fn(|corner| Strut::at_rest(&models[corner].model, signals))
 }

@@ -10,6 +10,7 @@ use std::path::Path;
 use oleo_controller::can::{COMMAND, CommandMessage, FRAME_BYTES, MESSAGES, Protector};
 use oleo_controller::{Inputs, PlantEnd, Strategy, ValveCommand};
 use oleo_diagnose::effect::{Drawn, of};
+use oleo_diagnose::selftest::{Draw, nominal};
 use oleo_diagnose::vocabulary::EffectId;
 use oleo_hil::candump::write_line;
 use oleo_hil::frame::standard;
@@ -19,9 +20,6 @@ use oleo_interface::{Corner, Corners, Gauge, PressurePoint, StrutPressures};
 use oleo_plant_sim::course::{CourseSettings, ManoeuvreKind};
 use oleo_plant_sim::strut::{COLUMNS, StrutModel, record_column};
 use oleo_plant_sim::vehicle::VehicleParameters;
-use rand::{RngExt as _, SeedableRng as _};
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution as _, StandardNormal};
 
 /// What is concealed.
 #[derive(Clone, Debug)]
@@ -84,61 +82,6 @@ pub fn drives(seed: u64, duration_s: f64) -> Vec<(String, Scenario)> {
     ]
 }
 
-/// Draws from one seed.
-struct Draw(ChaCha8Rng);
-
-impl Draw {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0.random_range(low..high)
-    }
-
-    fn normal(&mut self) -> f64 {
-        StandardNormal.sample(&mut self.0)
-    }
-
-    fn chance(&mut self, probability: f64) -> bool {
-        self.0.random_range(0.0..1.0) < probability
-    }
-}
-
-/// Numbers of a strut's file, drawn as the labelled campaigns have them.
-fn nominal(name: &str, draw: &mut Draw) -> String {
-    let flow = "[-2e-3, -1e-3, -4e-4, -1.2e-4, 0.0, 1.2e-4, 4e-4, 1e-3, 2e-3]";
-    let shape = [-1.0, -0.673, -0.442, -0.1385, 0.0, 0.0731, 0.2, 0.369, 0.615];
-    let first = 2.68e6 * draw.between(0.8, 1.15);
-    let drop = |scale: f64| shape.map(|part| format!("{:e}", scale * part)).join(", ");
-    let second = first * draw.between(0.74, 0.84);
-    let tau = draw.between(2.3, 4.6);
-    format!(
-        "[specimen]\nname = \"{name}\"\nkind = \"two-stage hydropneumatic strut\"\n\
-         [cylinder]\nbore_m = 0.05\noil_volume_m3 = {:e}\nstatic_pressure_Pa = 4e6\n\
-         [gas]\nspecies = \"nitrogen\"\ntemperature_K = 293.15\n\
-         [[accumulator]]\nstatic_gas_volume_m3 = 1e-4\n[[accumulator]]\nstatic_gas_volume_m3 = 4e-4\n\
-         [[damper]]\nflow_m3_s = {flow}\npressure_drop_Pa = [{}]\n[[damper]]\nflow_m3_s = {flow}\npressure_drop_Pa = [{}]\n\
-         [[valve]]\nflow_coefficient = {:e}\n[[valve]]\nflow_coefficient = {:e}\n[[valve]]\nflow_coefficient = {:e}\n\
-         [orifice]\ntransition_pressure_Pa = 2e4\n\
-         [valve_timing]\nresponse_polynomial_s = [{:e}, {:e}, {:e}]\ninitial_delay_fraction = 0.4\n\
-         [effects.oil_compressibility]\nbulk_modulus_Pa = {:e}\n\
-         [effects.gas_heat_transfer]\ntime_constant_1_s = {tau:e}\ntime_constant_2_s = {:e}\n\
-         [effects.valve_transition]\nshape = \"linear\"\n\
-         [tolerance]\nstatic_gas_volume = 0.01\nstatic_pressure = 0.01\ndisplacement_offset_m = 2e-4\n\
-         pressure_offset_Pa = 1.5e4\ntemperature_K = 2.0\noil_volume = 0.03\nflow_coefficient = 0.02\nbulk_modulus = 0.03\n\
-         time_constant = 0.08\n\
-         [noise]\ndisplacement_m = 5e-6\nforce_N = 12.0\np1_Pa = 4e3\np2_Pa = 4e3\np3_Pa = 4e3\np4_Pa = 4e3\n",
-        draw.between(6.5e-4, 9.5e-4),
-        drop(first),
-        drop(second),
-        draw.between(2.6e-6, 3.6e-6),
-        draw.between(2.6e-6, 3.6e-6),
-        draw.between(3.3e-6, 4.3e-6),
-        draw.between(0.0395, 0.0425),
-        draw.between(0.0019, 0.0024),
-        draw.between(1e-4, 1.3e-4),
-        draw.between(1.2e9, 1.65e9),
-        tau * draw.between(1.4, 2.5),
-    )
-}
-
 /// The strut as it is: every number that has a tolerance is off by up to it.
 fn within_tolerance(given: &StrutModel, draw: &mut Draw) -> StrutModel {
     let mut model = given.clone();
@@ -175,7 +118,7 @@ fn within_tolerance(given: &StrutModel, draw: &mut Draw) -> StrutModel {
 
 /// Writes `model.toml`, the four strut files and one log for each drive into a folder.
 pub fn write(case: &Case, folder: &Path) {
-    let mut draw = Draw(ChaCha8Rng::seed_from_u64(case.seed));
+    let mut draw = Draw::named(&format!("vehicle {}", case.seed));
     let load_n = VehicleParameters::defender110().static_strut_load_n();
     // The struts are of one design.
     let design = nominal("strut", &mut draw);
@@ -184,7 +127,7 @@ pub fn write(case: &Case, folder: &Path) {
         case.seed
     );
     let truth = Corner::ALL.map(|corner| {
-        let mut given = StrutModel::from_toml(&design, "design").expect("a strut");
+        let mut given = design.clone();
         given.specimen.name = format!("{} strut", corner.name());
         let own: Vec<&Concealed> = case.concealed.iter().filter(|c| c.corners.contains(&corner)).collect();
         let effect = |c: &Concealed| of(c.id).in_strut().expect("an effect of struts");
@@ -317,17 +260,17 @@ fn damaged(lines: Vec<Line>, draw: &mut Draw) -> Vec<u8> {
     let mut kept: Vec<Line> = Vec::with_capacity(lines.len());
     for (k, (time_us, frame)) in lines.into_iter().enumerate() {
         // Twelve ticks of seven frames.
-        if draw.chance(0.004) || (silence..silence + 84).contains(&k) {
+        if draw.uniform() < 0.004 || (silence..silence + 84).contains(&k) {
             continue;
         }
-        let frame = if draw.chance(0.002) {
+        let frame = if draw.uniform() < 0.002 {
             frame.with_flipped_bit(29)
         } else {
             frame
         };
-        let late_us = if draw.chance(0.002) { 7_000 } else { 0 };
+        let late_us = if draw.uniform() < 0.002 { 7_000 } else { 0 };
         kept.push((time_us + late_us, frame));
-        if draw.chance(0.002) {
+        if draw.uniform() < 0.002 {
             kept.push((time_us + late_us + 120, frame));
         }
     }

@@ -26,7 +26,9 @@ mod trial;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+pub use draw::Draw;
 pub use ledger::Ledger;
+pub use nominal_strut::nominal;
 pub use page::{page, tables};
 pub use plan::{Case, Plan, Subject, UnknownTerm};
 pub use save::save;

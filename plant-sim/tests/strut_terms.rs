@@ -3,48 +3,18 @@
 //! Slow moves make the gas isothermal (no `gas_heat_transfer` in these models) and the paths lossless; steady moves make
 //! flows known: `Q = A v` where only one path is open. Signs: compression positive.
 
-use oleo_interface::{Absolute, Gauge, StrutValves, Valve};
+mod slow_and_steady;
+
+use oleo_interface::{Absolute, StrutValves, Valve};
 use oleo_plant_sim::model_file::Checked;
 use oleo_plant_sim::strut::{
-    ATMOSPHERE_PA, AccumulatorPistonFriction, BumpStop, Characteristic, DamperLeakage, DampingFade, Effects,
-    EntrainedAir, GasChargeError, GasHeatTransfer, GasState, LawArgument, LawPlace, LineInertance, LineResistance,
-    MountCompliance, Nitrogen, OilCompressibility, OilCount, RealGas, SealFriction, SideLoadFriction, Strut,
-    StrutModel, StrutOutput, UnlistedLaw, Valve3Leakage, ValveDelay,
+    ATMOSPHERE_PA, AccumulatorPistonFriction, BumpStop, DamperLeakage, DampingFade, EntrainedAir, GasChargeError,
+    GasHeatTransfer, GasState, LineInertance, LineResistance, MountCompliance, Nitrogen, OilCompressibility, OilCount,
+    RealGas, SealFriction, SideLoadFriction, Strut, StrutModel, StrutOutput, Valve3Leakage, ValveDelay,
 };
-
-const STIFF: StrutValves<bool> = StrutValves::new(true, true, false);
-const SOFT: StrutValves<bool> = StrutValves::new(true, true, true);
-const CLOSED: StrutValves<bool> = StrutValves::new(false, false, false);
-const BYPASS_1: StrutValves<bool> = StrutValves::new(true, false, false);
-
-/// The preset without any term.
-fn bare() -> StrutModel {
-    let mut model = StrutModel::defender110(8000.0);
-    model.effects = Effects::default();
-    model
-}
-
-fn absolute(gauge: f64) -> f64 {
-    Gauge(gauge).absolute().pa()
-}
-
-/// Slowly to a displacement: 2 mm/s in 10 ms steps.
-fn slowly(strut: &mut Strut, to_m: f64, signals: StrutValves<bool>) -> StrutOutput {
-    let from = strut.displacement_m();
-    let steps = ((to_m - from).abs() / 2e-5).ceil().max(1.0);
-    for i in 1..=steps as usize {
-        strut.advance(from + (to_m - from) * i as f64 / steps, 0.01, signals);
-    }
-    (0..200).map(|_| strut.advance(to_m, 0.01, signals)).last().unwrap()
-}
-
-fn slow_pressure(model: &StrutModel, to_m: f64, signals: StrutValves<bool>) -> f64 {
-    slowly(&mut Strut::at_rest(model, signals).unwrap(), to_m, signals).pressure_pa[0]
-}
-
-fn close(a: f64, b: f64, relative: f64) {
-    assert!((a / b - 1.0).abs() < relative, "{a} is not {b}");
-}
+use slow_and_steady::{
+    BYPASS_1, CLOSED, SOFT, STIFF, absolute, bare, beside_pressure, close, slow_pressure, slowly, steady_drop,
+};
 
 /// Solve a rising function by bisection.
 fn solve(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
@@ -192,16 +162,6 @@ fn heat_transfer_decays_with_its_time_constant() {
     let later = wait(&mut strut, 3).pressure_pa[0];
     let end = wait(&mut strut, 60).pressure_pa[0];
     close((later - end) / (settle - end), libm::exp(-1.0), 5e-3);
-}
-
-/// Pressure drop p1 - p2 at a steady speed through path 1 alone.
-fn steady_drop(model: &StrutModel, speed: f64, signals: StrutValves<bool>) -> (f64, f64) {
-    let mut strut = Strut::at_rest(model, signals).unwrap();
-    let out = (1..=100)
-        .map(|i| strut.advance(speed * 5e-4 * f64::from(i), 5e-4, signals))
-        .last()
-        .unwrap();
-    (out.pressure_pa[0] - out.pressure_pa[1], model.piston_area_m2() * speed)
 }
 
 #[test]
@@ -396,11 +356,6 @@ fn bubbles_that_open_and_close_keep_the_oil() {
     close(total(strut.gas()), before, 1e-4);
 }
 
-/// Load cell less the pressure's force.
-fn beside_pressure(model: &StrutModel, out: &StrutOutput) -> f64 {
-    out.force_n - model.piston_area_m2() * out.pressure_pa[0]
-}
-
 #[test]
 fn seal_friction_slides_on_the_stribeck_curve_and_turns_with_the_motion() {
     let mut model = bare();
@@ -475,248 +430,4 @@ fn valves_in_parallel_pass_the_sum_of_their_flows() {
     two.valve[1].in_parallel = 0;
     let error = two.check().unwrap_err().to_string();
     assert!(error.starts_with("[valve 2] in_parallel is 0: "), "{error}");
-}
-
-fn law(place: LawPlace, depends_on: LawArgument, argument: [f64; 2], value: [f64; 2]) -> UnlistedLaw {
-    UnlistedLaw {
-        place,
-        depends_on,
-        argument: argument.to_vec(),
-        value: value.to_vec(),
-        time_constant_s: None,
-    }
-}
-
-#[test]
-fn laws_of_paths_and_valves_in_steady_flow() {
-    let model = bare();
-    let with = |law: UnlistedLaw| {
-        let mut changed = model.clone();
-        changed.effects.unlisted = vec![law];
-        changed
-    };
-    let pack = |drop: f64| model.damper[0].characteristic().value(drop);
-    let orifice = |c: f64, d: f64| c * d / (d.abs() + model.orifice.transition_pressure_pa).sqrt();
-    // The move ends at 15 mm of jounce, where the groove is open by 2.15e-7.
-    let groove = law(
-        LawPlace::BesidePack1,
-        LawArgument::Displacement,
-        [-0.1, 0.1],
-        [1e-7, 3e-7],
-    );
-    let (drop, q) = steady_drop(&with(groove), 0.3, CLOSED);
-    close(pack(drop) + orifice(2.15e-7, drop), q, 1e-3);
-    let weak = law(LawPlace::Pack1, LawArgument::Displacement, [-0.1, 0.1], [0.5, 0.5]);
-    let (drop, q) = steady_drop(&with(weak), 0.3, CLOSED);
-    close(pack(drop / 0.5), q, 1e-3);
-    let choking = law(LawPlace::Valves, LawArgument::PressureDrop, [0.0, 1e6], [1.0, 0.2]);
-    let (drop, q) = steady_drop(&with(choking), 0.3, BYPASS_1);
-    let left = 1.0 - 0.8 * drop / 1e6;
-    close(
-        pack(drop) + orifice(left * model.valve[0].total_flow_coefficient(), drop),
-        q,
-        1e-3,
-    );
-}
-
-#[test]
-fn a_choking_valve_3_passes_what_its_law_leaves_even_where_more_drop_means_less_flow() {
-    // 1/(1 + dp/0.8 MPa) as a table: above 0.8 MPa the flow falls while the drop rises.
-    let argument: Vec<f64> = (0..200).map(|k| 5e4 * f64::from(k)).collect();
-    let value: Vec<f64> = argument.iter().map(|dp| 1.0 / (1.0 + dp / 0.8e6)).collect();
-    let mut model = bare();
-    model.effects.oil_compressibility = Some(OilCompressibility {
-        bulk_modulus_pa: 1.5e9,
-        counted_at: OilCount::default(),
-    });
-    let table = Characteristic::through(&argument, &value);
-    model.effects.unlisted = vec![UnlistedLaw {
-        place: LawPlace::Valve3,
-        depends_on: LawArgument::PressureDrop,
-        argument,
-        value,
-        time_constant_s: None,
-    }];
-    let mut strut = Strut::at_rest(&model, STIFF).unwrap();
-    slowly(&mut strut, 0.03, STIFF);
-    let mut seen = 0;
-    for _ in 0..400 {
-        let out = strut.advance(0.03, 5e-4, SOFT);
-        let drop = out.pressure_pa[2] - out.pressure_pa[3];
-        let coefficient = model.valve[2].total_flow_coefficient() * strut.openings()[Valve::Spring];
-        if coefficient > 0.0 && drop > 2e5 {
-            let passed = table.value(drop) * coefficient * drop / (drop + model.orifice.transition_pressure_pa).sqrt();
-            close(strut.flow_m3_s()[1], passed, 5e-3);
-            seen += usize::from(drop > 1.5e6);
-        }
-    }
-    assert!(seen > 5, "{seen} samples where the flow falls with the drop");
-}
-
-#[test]
-fn laws_of_seal_gas_and_chamber() {
-    let mut model = bare();
-    model.effects.unlisted = vec![law(
-        LawPlace::MainSealFriction,
-        LawArgument::P1,
-        [0.0, 1e7],
-        [150.0, 150.0],
-    )];
-    let mut strut = Strut::at_rest(&model, SOFT).unwrap();
-    close(beside_pressure(&model, &slowly(&mut strut, 0.02, SOFT)), 150.0, 1e-3);
-    close(beside_pressure(&model, &slowly(&mut strut, 0.0, SOFT)), -150.0, 1e-3);
-
-    let believed = absolute(slow_pressure(&bare(), 0.02, STIFF));
-    let volume = model.accumulator[0].static_gas_volume_m3;
-    let part = 1.0 - model.piston_area_m2() * 0.02 / volume;
-    model.effects.unlisted = vec![law(
-        LawPlace::Accumulator1,
-        LawArgument::RelativeVolume,
-        [0.2, 1.0],
-        [1.4, 1.0],
-    )];
-    close(
-        absolute(slow_pressure(&model, 0.02, STIFF)),
-        believed * (1.0 + 0.5 * (1.0 - part)),
-        1e-4,
-    );
-
-    model.effects.unlisted = vec![law(
-        LawPlace::MainChamberLoss,
-        LawArgument::P1,
-        [0.0, 1e7],
-        [1e-8, 1e-8],
-    )];
-    let mut strut = Strut::at_rest(&model, SOFT).unwrap();
-    let gas = |s: &Strut| s.gas()[0].volume_m3 + s.gas()[1].volume_m3;
-    let before = gas(&strut);
-    (0..1000).for_each(|_| _ = strut.advance(0.0, 0.1, SOFT));
-    close(gas(&strut) - before, 1e-6, 1e-3);
-}
-
-#[test]
-fn laws_over_time_and_acceleration() {
-    let static_pa = absolute(slow_pressure(&bare(), 0.0, STIFF));
-    let with = |law: UnlistedLaw| {
-        let mut model = bare();
-        model.effects.unlisted = vec![law];
-        Strut::at_rest(&model, STIFF).unwrap()
-    };
-    // Nothing moves, so the gas pressure falls as the law says.
-    let time = LawArgument::Time;
-    let mut leaking = with(law(LawPlace::Accumulator1, time, [0.0, 10.0], [1.0, 0.9]));
-    let out = (0..100).map(|_| leaking.advance(0.0, 0.1, STIFF)).last().unwrap();
-    close(absolute(out.pressure_pa[0]), 0.9 * static_pa, 1e-4);
-
-    let mut losing = with(law(LawPlace::MainChamberLoss, time, [0.0, 10.0], [0.0, 2e-8]));
-    let before = losing.gas()[0].volume_m3;
-    (0..100).for_each(|_| _ = losing.advance(0.0, 0.1, STIFF));
-    close(losing.gas()[0].volume_m3 - before, 1e-7, 2e-3);
-
-    // 12 kg between load cell and oil, at 3 m/s2.
-    let mass = law(
-        LawPlace::MainSeal,
-        LawArgument::Acceleration,
-        [-100.0, 100.0],
-        [-1200.0, 1200.0],
-    );
-    let (mut heavy, mut light) = (with(mass), Strut::at_rest(&bare(), STIFF).unwrap());
-    for k in 0..20 {
-        let (from, to) = (0.01 * f64::from(k), 0.01 * f64::from(k + 1));
-        let (at, from, to) = (1.5 * to * to, 3.0 * from, 3.0 * to);
-        let [heavy, light] = [&mut heavy, &mut light].map(|s| s.advance_with_speeds(at, from, to, 0.01, STIFF).force_n);
-        close(heavy - light, 36.0, 1e-9);
-    }
-}
-
-#[test]
-fn laws_with_a_memory_and_of_pistons_and_valves() {
-    let with = |law: UnlistedLaw| {
-        let mut model = bare();
-        model.effects.unlisted = vec![law];
-        model
-    };
-    // A jump of the gas volume by r shows as the factor 1 - 2 r at first, and is forgotten with 4 s.
-    let memory = |place| UnlistedLaw {
-        time_constant_s: Some(4.0),
-        ..law(place, LawArgument::VolumeChange, [-1.0, 1.0], [3.0, -1.0])
-    };
-    for place in [LawPlace::Accumulator1, LawPlace::Accumulators] {
-        let (mut plain, mut remembering) = (
-            Strut::at_rest(&bare(), STIFF).unwrap(),
-            Strut::at_rest(&with(memory(place)), STIFF).unwrap(),
-        );
-        let believed = absolute(plain.advance(0.02, 0.01, STIFF).pressure_pa[1]);
-        let jump = bare().piston_area_m2() * 0.02 / bare().accumulator[0].static_gas_volume_m3;
-        close(
-            absolute(remembering.advance(0.02, 0.01, STIFF).pressure_pa[1]),
-            believed * (1.0 + 2.0 * jump),
-            5e-3,
-        );
-        let out = (0..400).map(|_| remembering.advance(0.02, 0.01, STIFF)).last().unwrap();
-        let left = 2.0 * jump * libm::exp(-1.0);
-        let believed = absolute(
-            (0..400)
-                .map(|_| plain.advance(0.02, 0.01, STIFF))
-                .last()
-                .unwrap()
-                .pressure_pa[1],
-        );
-        close(absolute(out.pressure_pa[1]), believed * (1.0 + left), 5e-3);
-    }
-
-    // The floating piston holds back 50 kPa in either direction.
-    let held = law(
-        LawPlace::Accumulator1Friction,
-        LawArgument::RelativeVolume,
-        [0.0, 2.0],
-        [5e4, 5e4],
-    );
-    let mut strut = Strut::at_rest(&with(held), STIFF).unwrap();
-    let up = slowly(&mut strut, 0.02, STIFF).pressure_pa[1];
-    slowly(&mut strut, 0.03, STIFF);
-    let down = slowly(&mut strut, 0.02, STIFF).pressure_pa[1];
-    close(up - down, 1e5, 2e-2);
-
-    // What passes beside a closed valve 3 is an orifice.
-    let beside = law(LawPlace::BesideValve3, LawArgument::Time, [0.0, 1.0], [2e-8, 2e-8]);
-    let mut strut = Strut::at_rest(&with(beside), STIFF).unwrap();
-    let out = strut.advance(0.02, 0.2, STIFF);
-    let drop = out.pressure_pa[2] - out.pressure_pa[3];
-    let expected = 2e-8 * drop / (drop + bare().orifice.transition_pressure_pa).sqrt();
-    assert!(drop > 1e5);
-    close(strut.flow_m3_s()[1], expected, 1e-2);
-
-    // A valve that needs 30 ms longer opens 30 ms later.
-    let late = law(
-        LawPlace::ValveTiming,
-        LawArgument::PressureDrop,
-        [0.0, 1e7],
-        [0.03, 0.03],
-    );
-    let opens_after = |model: &StrutModel| {
-        let mut strut = Strut::at_rest(model, STIFF).unwrap();
-        (0..1000).position(|_| {
-            strut.advance(0.0, 1e-3, SOFT);
-            strut.openings()[Valve::Spring] > 0.5
-        })
-    };
-    let (believed, longer) = (opens_after(&bare()).unwrap(), opens_after(&with(late)).unwrap());
-    assert!((longer as i64 - believed as i64 - 30).abs() <= 1, "{believed} {longer}");
-}
-
-#[test]
-fn a_law_over_the_rate_of_flow_is_an_inertance() {
-    let mut named = bare();
-    named.effects.line_inertance = Some(LineInertance { inertance_2_kg_m4: 3e6 });
-    let mut nameless = bare();
-    nameless.effects.unlisted = vec![law(LawPlace::Path2, LawArgument::FlowRate, [-1.0, 1.0], [-3e6, 3e6])];
-    let mut struts = [named, nameless].map(|model| Strut::at_rest(&model, SOFT).unwrap());
-    for k in 0..200 {
-        let at = 0.01 * libm::sin(0.1 * f64::from(k));
-        let [a, b] = struts
-            .each_mut()
-            .map(|strut| strut.advance(at, 2e-3, SOFT).pressure_pa[2]);
-        close(b, a, 1e-6);
-    }
 }

@@ -1,0 +1,100 @@
+//! Laws of the accumulators: gas, and floating pistons.
+
+use oleo_plant_sim::strut::LawArgument::{RelativeVolume, Time, VolumeChange};
+use oleo_plant_sim::strut::LawPlace;
+
+use super::{Law, law};
+use crate::effect::unlisted::forms::{Factor, Level, Relaxing, SettlingFactor};
+use crate::effect::unlisted::knots::{RELATIVE_VOLUME, TIME_S, VOLUME_CHANGE};
+use crate::vocabulary::{Branch, Site};
+
+pub(super) const LAWS: &[Law] = &[
+    law(
+        "gas pressure over volume, accumulator 1",
+        Site::Accumulator(Branch::First),
+        (LawPlace::Accumulator1, RelativeVolume),
+        &Factor,
+        RELATIVE_VOLUME,
+        0.01,
+    ),
+    law(
+        "gas pressure over volume, accumulator 2",
+        Site::Accumulator(Branch::Second),
+        (LawPlace::Accumulator2, RelativeVolume),
+        &Factor,
+        RELATIVE_VOLUME,
+        0.01,
+    ),
+    law(
+        "gas pressure over time, accumulator 1",
+        Site::Accumulator(Branch::First),
+        (LawPlace::Accumulator1, Time),
+        &SettlingFactor,
+        TIME_S,
+        0.01,
+    ),
+    law(
+        "gas pressure over time, accumulator 2",
+        Site::Accumulator(Branch::Second),
+        (LawPlace::Accumulator2, Time),
+        &SettlingFactor,
+        TIME_S,
+        0.01,
+    ),
+    law(
+        "gas pressure over volume, both accumulators",
+        Site::Accumulators,
+        (LawPlace::Accumulators, RelativeVolume),
+        &Factor,
+        RELATIVE_VOLUME,
+        0.01,
+    ),
+    law(
+        "gas pressure over time, both accumulators",
+        Site::Accumulators,
+        (LawPlace::Accumulators, Time),
+        &SettlingFactor,
+        TIME_S,
+        0.01,
+    ),
+    law(
+        "gas pressure over the change of volume, accumulator 1",
+        Site::Accumulator(Branch::First),
+        (LawPlace::Accumulator1, VolumeChange),
+        &Relaxing,
+        VOLUME_CHANGE,
+        0.01,
+    ),
+    law(
+        "gas pressure over the change of volume, accumulator 2",
+        Site::Accumulator(Branch::Second),
+        (LawPlace::Accumulator2, VolumeChange),
+        &Relaxing,
+        VOLUME_CHANGE,
+        0.01,
+    ),
+    law(
+        "gas pressure over the change of volume, both accumulators",
+        Site::Accumulators,
+        (LawPlace::Accumulators, VolumeChange),
+        &Relaxing,
+        VOLUME_CHANGE,
+        0.01,
+    ),
+    law(
+        "pressure held back over volume, accumulator 1",
+        Site::Accumulator(Branch::First),
+        (LawPlace::Accumulator1Friction, RelativeVolume),
+        &Level,
+        RELATIVE_VOLUME,
+        5e3,
+    ),
+    law(
+        "pressure held back over volume, accumulator 2",
+        Site::Accumulator(Branch::Second),
+        (LawPlace::Accumulator2Friction, RelativeVolume),
+        &Level,
+        RELATIVE_VOLUME,
+        5e3,
+    ),
+];

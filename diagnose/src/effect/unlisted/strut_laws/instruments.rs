@@ -1,0 +1,55 @@
+//! Laws of the instruments: three for each column that is recorded.
+
+use oleo_plant_sim::strut::LawArgument::{Reading, ReadingRate, Time};
+use oleo_plant_sim::strut::LawPlace;
+
+use super::{Law, law};
+use crate::effect::unlisted::forms::{Added, Proportional, SettlingAdded};
+use crate::effect::unlisted::knots::{FORCE_N, P1_PA, RATE, TIME_S, TRAVEL_M};
+use crate::vocabulary::{Column, Site};
+
+/// A delay that would be visible, s.
+const VISIBLE_DELAY_S: f64 = 1e-3;
+
+/// The three laws of an instrument: its short name, its column, its place in the model, the readings at which a curve has points, and an
+/// error that would be visible, in the column's unit.
+macro_rules! laws_of {
+    ($name:literal, $column:literal, $place:ident, $readings:ident, $visible:literal) => {{
+        const SITE: Site = Site::Sensor(Column::known($column));
+        [
+            law(
+                concat!("reading over reading, ", $name),
+                SITE,
+                (LawPlace::$place, Reading),
+                &Added,
+                $readings,
+                $visible,
+            ),
+            law(
+                concat!("reading over time, ", $name),
+                SITE,
+                (LawPlace::$place, Time),
+                &SettlingAdded(concat!("end_", $column)),
+                TIME_S,
+                $visible,
+            ),
+            law(
+                concat!("reading over its rate, ", $name),
+                SITE,
+                (LawPlace::$place, ReadingRate),
+                &Proportional("late_s"),
+                RATE,
+                VISIBLE_DELAY_S,
+            ),
+        ]
+    }};
+}
+
+pub(super) const LAWS: &[[Law; 3]] = &[
+    laws_of!("displacement", "displacement_m", InstrumentDisplacement, TRAVEL_M, 1e-4),
+    laws_of!("force", "force_N", InstrumentForce, FORCE_N, 20.0),
+    laws_of!("p1", "p1_Pa", InstrumentP1, P1_PA, 1e4),
+    laws_of!("p2", "p2_Pa", InstrumentP2, P1_PA, 1e4),
+    laws_of!("p3", "p3_Pa", InstrumentP3, P1_PA, 1e4),
+    laws_of!("p4", "p4_Pa", InstrumentP4, P1_PA, 1e4),
+];

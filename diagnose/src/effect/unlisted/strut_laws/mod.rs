@@ -1,0 +1,130 @@
+//! The laws that are tried on a strut, as tables of place, dependence and form, one file for each part of the strut.
+//!
+//! A new row is a new law to search for; a new dependence or place is one of plant-sim's ([`LawArgument`], [`LawPlace`]).
+
+mod accumulators;
+mod instruments;
+mod paths;
+mod seal_and_chamber;
+mod valves;
+
+use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
+
+use super::forms::{Form, Grid};
+use super::knots::EDGE_PA;
+use crate::effect::candidate::Candidate;
+use crate::vocabulary::{EffectId, Site};
+
+/// One law that is searched for.
+struct Law {
+    /// What it relates, for people: "force over speed".
+    label: &'static str,
+    /// Place at which the law is reported.
+    site: Site,
+    /// Where it acts in the model.
+    place: LawPlace,
+    /// Quantity on which the law depends.
+    depends_on: LawArgument,
+    /// How its table comes from fitted numbers.
+    form: &'static dyn Form,
+    /// Values of the argument at which the table has points.
+    knots: &'static [f64],
+    /// Size of one fitted number that would be visible.
+    visible: f64,
+}
+
+const fn law(
+    label: &'static str,
+    site: Site,
+    (place, depends_on): (LawPlace, LawArgument),
+    form: &'static dyn Form,
+    knots: &'static [f64],
+    visible: f64,
+) -> Law {
+    Law {
+        label,
+        site,
+        place,
+        depends_on,
+        form,
+        knots,
+        visible,
+    }
+}
+
+/// All laws.
+fn laws() -> impl Iterator<Item = &'static Law> {
+    (seal_and_chamber::LAWS.iter())
+        .chain(paths::LAWS)
+        .chain(valves::LAWS)
+        .chain(accumulators::LAWS)
+        .chain(instruments::LAWS.iter().flatten())
+}
+
+impl Law {
+    /// At rest a law adds nothing and leaves everything as believed: displacement, speed, flow and drop zero, gas volume
+    /// the static one, smallest pressure.
+    fn grid(&self) -> Grid {
+        Grid {
+            knots: self.knots,
+            at_rest: match (self.place, self.depends_on) {
+                (_, LawArgument::RelativeVolume) => 1.0,
+                // A response may be longer at any pressure difference.
+                (LawPlace::ValveTiming, _) => EDGE_PA[0],
+                _ => 0.0,
+            },
+            visible: self.visible,
+        }
+    }
+}
+
+/// Candidates for every law.
+pub fn candidates() -> Vec<Candidate> {
+    let candidate = |law: &Law| {
+        Candidate::new(EffectId::Unlisted, law.site.clone(), law.form.parameters(&law.grid()))
+            .labelled(law.label)
+            .starting_at(law.form.starts(&law.grid()))
+            .in_place_of(EffectId::Unlisted)
+    };
+    laws().map(candidate).collect()
+}
+
+/// The law of a candidate with its fitted numbers, as a model file holds it; `None` for a label that no law has.
+#[must_use]
+pub fn table(label: &str, fitted: &[f64]) -> Option<UnlistedLaw> {
+    let law = laws().find(|law| law.label == label)?;
+    Some(UnlistedLaw {
+        place: law.place,
+        depends_on: law.depends_on,
+        argument: law.knots.to_vec(),
+        value: law.form.values(&law.grid(), fitted),
+        time_constant_s: law.form.time_constant_s(fitted),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plant_sim_reads_every_law_where_it_is_put() {
+        for law in laws() {
+            assert!(law.place.arguments().contains(&law.depends_on), "{}", law.label);
+            assert!(law.knots.windows(2).all(|w| w[0] < w[1]), "{}", law.label);
+            let others = laws().filter(|other| other.label == law.label);
+            assert_eq!(others.count(), 1, "{}", law.label);
+        }
+    }
+
+    #[test]
+    fn a_law_whose_numbers_say_absent_leaves_the_model_as_it_is() {
+        for law in laws() {
+            let fitted: Vec<f64> = law.form.parameters(&law.grid()).iter().map(|p| p.start).collect();
+            let table = table(law.label, &fitted).expect("a law");
+            // What is added is zero, a factor is one.
+            let first = table.value[0];
+            assert!(first == 0.0 || first == 1.0, "{}", law.label);
+            assert!(table.value.iter().all(|v| *v == first), "{}", law.label);
+        }
+    }
+}

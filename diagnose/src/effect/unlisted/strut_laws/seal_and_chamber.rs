@@ -1,0 +1,108 @@
+//! Laws of the main seal and the main chamber.
+
+use oleo_plant_sim::strut::LawArgument::{Acceleration, Displacement, P1, Speed, Time};
+use oleo_plant_sim::strut::LawPlace;
+
+use super::{Law, law};
+use crate::effect::unlisted::forms::{Added, Level, Proportional, Rising, SettlingAdded, SettlingLevel};
+use crate::effect::unlisted::knots::{ACCELERATION_M_S2, CHAMBER_PA, P1_PA, SPEED_M_S, TIME_S, TRAVEL_M};
+use crate::vocabulary::Site;
+
+pub(super) const LAWS: &[Law] = &[
+    law(
+        "force over displacement",
+        Site::MainSeal,
+        (LawPlace::MainSeal, Displacement),
+        &Added,
+        TRAVEL_M,
+        20.0,
+    ),
+    law(
+        "force over speed",
+        Site::MainSeal,
+        (LawPlace::MainSeal, Speed),
+        &Added,
+        SPEED_M_S,
+        20.0,
+    ),
+    law(
+        "force over pressure",
+        Site::MainSeal,
+        (LawPlace::MainSeal, P1),
+        &Added,
+        P1_PA,
+        20.0,
+    ),
+    law(
+        "friction over displacement",
+        Site::MainSeal,
+        (LawPlace::MainSealFriction, Displacement),
+        &Level,
+        TRAVEL_M,
+        20.0,
+    ),
+    law(
+        "friction over speed",
+        Site::MainSeal,
+        (LawPlace::MainSealFriction, Speed),
+        &Level,
+        SPEED_M_S,
+        20.0,
+    ),
+    law(
+        "friction over pressure",
+        Site::MainSeal,
+        (LawPlace::MainSealFriction, P1),
+        &Level,
+        P1_PA,
+        20.0,
+    ),
+    law(
+        "volume over pressure",
+        Site::MainChamber,
+        (LawPlace::MainChamber, P1),
+        &Rising,
+        CHAMBER_PA,
+        5e-8,
+    ),
+    law(
+        "oil lost over pressure",
+        Site::MainChamber,
+        (LawPlace::MainChamberLoss, P1),
+        &Level,
+        P1_PA,
+        1e-9,
+    ),
+    law(
+        "force over acceleration",
+        Site::MainSeal,
+        (LawPlace::MainSeal, Acceleration),
+        &Proportional("moving_mass_kg"),
+        ACCELERATION_M_S2,
+        2.0,
+    ),
+    law(
+        "force over time",
+        Site::MainSeal,
+        (LawPlace::MainSeal, Time),
+        &SettlingAdded("end_force_N"),
+        TIME_S,
+        20.0,
+    ),
+    law(
+        "friction over time",
+        Site::MainSeal,
+        (LawPlace::MainSealFriction, Time),
+        &SettlingLevel("end_friction_N"),
+        TIME_S,
+        20.0,
+    ),
+    law(
+        "oil lost over time",
+        Site::MainChamber,
+        (LawPlace::MainChamberLoss, Time),
+        &SettlingLevel("end_flow_m3_s"),
+        TIME_S,
+        1e-9,
+    ),
+];

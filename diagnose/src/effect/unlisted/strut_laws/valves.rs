@@ -1,0 +1,69 @@
+//! Laws of the valves: what they pass, and when they move.
+
+use oleo_interface::Valve;
+use oleo_plant_sim::strut::LawArgument::{PressureDrop, Time};
+use oleo_plant_sim::strut::LawPlace;
+
+use super::{Law, law};
+use crate::effect::unlisted::forms::{Added, Choke, Level, SettlingLevel};
+use crate::effect::unlisted::knots::{EDGE_PA, FEW_EDGES_PA, TIME_S, VALVE_PA};
+use crate::vocabulary::Site;
+
+pub(super) const LAWS: &[Law] = &[
+    law(
+        "flow of the open valves over pressure drop",
+        Site::Valves,
+        (LawPlace::Valves, PressureDrop),
+        &Choke,
+        VALVE_PA,
+        1e-8,
+    ),
+    law(
+        "flow of open valve 1 over pressure drop",
+        Site::Valve(Valve::Bypass1),
+        (LawPlace::Valve1, PressureDrop),
+        &Choke,
+        VALVE_PA,
+        1e-8,
+    ),
+    law(
+        "flow of open valve 2 over pressure drop",
+        Site::Valve(Valve::Bypass2),
+        (LawPlace::Valve2, PressureDrop),
+        &Choke,
+        VALVE_PA,
+        1e-8,
+    ),
+    law(
+        "flow of open valve 3 over pressure drop",
+        Site::Valve(Valve::Spring),
+        (LawPlace::Valve3, PressureDrop),
+        &Choke,
+        VALVE_PA,
+        1e-8,
+    ),
+    law(
+        "opening beside valve 3 over time",
+        Site::Valve(Valve::Spring),
+        (LawPlace::BesideValve3, Time),
+        &SettlingLevel("end_flow_coefficient"),
+        TIME_S,
+        1e-9,
+    ),
+    law(
+        "response time over pressure drop",
+        Site::Valves,
+        (LawPlace::ValveTiming, PressureDrop),
+        &Added,
+        EDGE_PA,
+        2e-3,
+    ),
+    law(
+        "duration of the movement over pressure drop",
+        Site::Valves,
+        (LawPlace::ValveMovement, PressureDrop),
+        &Level,
+        FEW_EDGES_PA,
+        2e-3,
+    ),
+];

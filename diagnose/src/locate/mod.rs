@@ -83,7 +83,7 @@ pub fn locate(
             });
         }
     }
-    if selection.incomplete || (out.is_empty() && total(improved) / count > 1.0 + LEAST_EXCESS) {
+    if selection.incomplete {
         let none: Vec<Series> = improved
             .iter()
             .map(|r| r.iter().map(|c| vec![0.0; c.len()]).collect())

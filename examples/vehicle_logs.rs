@@ -101,6 +101,7 @@ fn main() {
                 concealed: concealed.into_iter().collect(),
                 drives: drives(seed, DURATION_S),
                 first_edition: seed % 2 == 1,
+                command_acts_late: false,
             };
             let campaign = folder.join(format!("{name}-{seed}"));
             std::fs::create_dir_all(&campaign).expect("a folder for a campaign");

@@ -53,6 +53,7 @@ fn one_altered_strut_is_named_with_its_corner() {
         concealed: vec![concealed],
         drives: drives(3, DURATION_S),
         first_edition: true,
+        command_acts_late: false,
     };
     let (folder, report) = diagnosed(&case);
     assert_eq!(
@@ -97,6 +98,30 @@ fn one_altered_strut_is_named_with_its_corner() {
         String::from_utf8_lossy(&ran.stdout).contains("consistent"),
         "{}",
         String::from_utf8_lossy(&ran.stdout)
+    );
+}
+
+#[test]
+fn commands_that_act_a_tick_late_are_not_taken_for_missing_physics() {
+    let case = Case {
+        seed: 5,
+        concealed: vec![],
+        drives: drives(5, DURATION_S),
+        first_edition: false,
+        command_acts_late: true,
+    };
+    let (_folder, report) = diagnosed(&case);
+    assert_eq!(report["verdict"], "consistent", "{:#}", report["effects"]);
+    assert_eq!(
+        (&report["locations"], &report["next_experiment"]),
+        (&Value::Array(vec![]), &Value::Null)
+    );
+    assert!(
+        report["notes"]
+            .to_string()
+            .contains("The commands act one tick (5 ms) after"),
+        "{}",
+        report["notes"]
     );
 }
 

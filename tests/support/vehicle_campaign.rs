@@ -45,6 +45,8 @@ pub struct Case {
     pub drives: Vec<(String, Scenario)>,
     /// Whether `PlantTick` has sixteen bits, as in the first edition of the database.
     pub first_edition: bool,
+    /// Whether a command acts one tick after the sample whose tick it echoes.
+    pub command_acts_late: bool,
 }
 
 /// Three drives of `duration_s`: Belgian block straight ahead, a lane change on a rough road, a random road with another strategy.
@@ -156,7 +158,7 @@ pub fn write(case: &Case, folder: &Path) {
     std::fs::write(folder.join("model.toml"), index).expect("model.toml");
     let truth = Corners::from_array(truth);
     for (k, (name, scenario)) in case.drives.iter().enumerate() {
-        let lines = drive(scenario, &truth, &mut draw, k, case.first_edition);
+        let lines = drive(case, scenario, &truth, &mut draw, k);
         std::fs::write(folder.join(format!("{name}.log")), damaged(lines, &mut draw)).expect("a log");
     }
 }
@@ -165,13 +167,7 @@ pub fn write(case: &Case, folder: &Path) {
 type Line = (u64, Frame);
 
 /// Drives, and returns what is logged before anything happens to it.
-fn drive(
-    scenario: &Scenario,
-    truth: &Corners<StrutModel>,
-    draw: &mut Draw,
-    number: usize,
-    first_edition: bool,
-) -> Vec<Line> {
+fn drive(case: &Case, scenario: &Scenario, truth: &Corners<StrutModel>, draw: &mut Draw, number: usize) -> Vec<Line> {
     let mut physical = truth.clone();
     // What the bus's readings suffer is not the strut's.
     physical
@@ -211,7 +207,7 @@ fn drive(
         for (n, frame) in plant.encode(tick as u16, &inputs).into_iter().enumerate() {
             lines.push((start_us + 260 * (n as u64 + 1), frame.into()));
         }
-        let mut data = command(sample.command, tick);
+        let mut data = command(sample.command, tick - usize::from(case.command_acts_late));
         controller.protect(&mut data);
         lines.push((start_us + 2300, Frame::whole(standard(COMMAND.id), data)));
         if k % 4 == 0 {
@@ -219,7 +215,7 @@ fn drive(
             lines.push((start_us + 3100, stranger));
         }
     }
-    if first_edition {
+    if case.first_edition {
         let mut protectors = MESSAGES.map(|contract| Protector::new(&contract));
         for (time_us, frame) in &mut lines {
             let tick = first_tick + ((*time_us - begins_us) / u64::from(TICK_US)) as usize;

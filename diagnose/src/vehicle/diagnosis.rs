@@ -40,21 +40,24 @@ impl VehicleDiagnosis {
     /// # Errors
     /// A model that cannot be simulated; [`DiagnoseError::Interrupted`] once the caller asked to stop.
     pub fn of(campaign: &VehicleCampaign, stop: &AtomicBool, progress: Progress<'_>) -> Result<Self, DiagnoseError> {
-        let done = Mutex::new([0.0; 4]);
+        // What each corner is doing; the one that is furthest behind is told.
+        let done = Mutex::new(Corners::<(f64, String)>::default());
         let diagnosed: Vec<Result<Diagnosis, DiagnoseError>> = (Corner::ALL.into_par_iter())
             .map(|corner| {
                 let problem = LeastSquares::new(&*campaign.corners[corner].specimen, stop);
                 Diagnosis::of(&problem, &|doing, part| {
                     if let Ok(mut done) = done.lock() {
-                        done[corner.index()] = part;
-                        progress(doing, done.iter().sum::<f64>() / 4.0);
+                        done[corner] = (part, doing.to_owned());
+                        let begun = done.values().filter(|(_, doing)| !doing.is_empty());
+                        if let Some((_, doing)) = begun.min_by(|a, b| a.0.total_cmp(&b.0)) {
+                            progress(doing, done.values().map(|(part, _)| part).sum::<f64>() / 4.0);
+                        }
                     }
                 })
             })
             .collect();
         let mut diagnosed = diagnosed.into_iter();
-        let mut next = || diagnosed.next().unwrap_or(Err(DiagnoseError::Interrupted));
-        let corners = Corners::from_array([next()?, next()?, next()?, next()?]);
+        let corners = Corners::try_from_fn(|_| diagnosed.next().unwrap_or(Err(DiagnoseError::Interrupted)))?;
         Ok(Self {
             effects: effects(&corners),
             corners,

@@ -41,14 +41,16 @@ pub fn report(campaign: &VehicleCampaign, diagnosis: &VehicleDiagnosis, runtime_
             entry
         }));
     }
-    for key in ["relations", "relations_changed_alone", "calibration", "correlated"] {
-        out[key] = Value::Array(of_corners(
-            campaign,
-            diagnosis,
-            key,
-            |corner, entry| json!({ "corner": corner.name(), "entry": entry }),
-        ));
+    for key in ["relations", "relations_changed_alone", "calibration"] {
+        out[key] = Value::Array(of_corners(campaign, diagnosis, key, |corner, mut entry| {
+            entry["corner"] = json!(corner.name());
+            entry
+        }));
     }
+    out["correlated"] = Value::Array(of_corners(campaign, diagnosis, "correlated", |corner, pair| {
+        let key = |k: usize| format!("{}/{}", corner.name(), pair[k].as_str().unwrap_or_default());
+        json!([key(0), key(1), pair[2]])
+    }));
     let mut ambiguous = of_corners(campaign, diagnosis, "ambiguous", |_, pair| pair);
     ambiguous.dedup();
     out["ambiguous"] = Value::Array(ambiguous);

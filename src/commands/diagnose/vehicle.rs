@@ -96,7 +96,10 @@ pub fn run(logs: &Logs, results: &ResultsArgs) -> Result<ExitCode, Failure> {
     }
     let stop = AtomicBool::new(false);
     let progress = Progress::new(&campaign.model.name, STEPS);
-    let diagnosis = VehicleDiagnosis::of(&campaign, &stop, &|_, part| progress.set((part * STEPS as f64) as u64))?;
+    let diagnosis = VehicleDiagnosis::of(&campaign, &stop, &|doing, part| {
+        progress.phase(doing);
+        progress.set((part * STEPS as f64) as u64);
+    })?;
     drop(progress);
     let runtime_s = begun.elapsed().as_secs_f64();
     if let Some(out) = &mut out {

@@ -351,6 +351,18 @@ mod tests {
                 "x.toml:9: [fault 1] value is -1: a standard deviation is 0 or more",
             ),
             (
+                "[[fault]]\nkind = \"node-restarted\"\nat_s = 1\nnode = \"controller\"\n",
+                "x.toml:6: [fault 1] kind is \"node-restarted\", which needs for_s too",
+            ),
+            (
+                "[[fault]]\nkind = \"node-restarted\"\nat_s = 1\nfor_s = 0.2\n",
+                "x.toml:6: [fault 1] kind is \"node-restarted\", which needs node too",
+            ),
+            (
+                "[[fault]]\nkind = \"node-restarted\"\nat_s = 1\nfor_s = 0.2\nnode = \"plant\"\n",
+                "x.toml:9: [fault 1] node is \"plant\", which begins another run when it restarts: must be \"controller\"",
+            ),
+            (
                 "[[fault]]\nkind = \"masquerade\"\nat_s = 1\nprobability = 0.5\n",
                 "x.toml:8: [fault 1] probability does not belong",
             ),

@@ -18,7 +18,7 @@ except ImportError as error:
     sys.exit(2)
 
 DATABASE = pathlib.Path(__file__).resolve().parent.parent / "controller" / "oleo.dbc"
-PERIODS_MS = {0x0A0: 5, 0x110: 5, 0x111: 5, 0x112: 5, 0x113: 5, 0x114: 5, 0x115: 5, 0x300: 100}
+PERIODS_MS = {0x0A0: 5, 0x110: 5, 0x111: 5, 0x112: 5, 0x113: 5, 0x114: 5, 0x115: 5, 0x300: 100, 0x301: 1000}
 
 passed = failed = 0
 

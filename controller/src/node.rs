@@ -7,7 +7,7 @@
 //! also lost while it is not trusted: `receiver` judges how many and which frames came in each tick, `can::state_machine` the
 //! last sixteen ticks, and `freshness` how old the readings are. The readings of a lost message are invalid.
 //!
-//! A frame with one of the controller's own identifiers, the command's or the status', comes from somebody else. That is a fault
+//! A frame with one of the controller's own identifiers comes from somebody else. That is a fault
 //! of its own in the tick in which it is heard (after opendbc's check of relays).
 
 use heapless::Vec;
@@ -15,8 +15,8 @@ use oleo_interface::tick::TICK_MS;
 use oleo_interface::{Axles, Side, StrutPressures};
 
 use crate::can::{
-    COMMAND, CheckStatus, CommandMessage, DISPLACEMENT, DisplacementMessage, FRAME_BYTES, Frame, PRESSURE,
-    PressureMessage, Protector, STATUS, StatusMessage, sensor_message,
+    BOARD, BoardMessage, COMMAND, CheckStatus, CommandMessage, DISPLACEMENT, DisplacementMessage, FRAME_BYTES, Frame,
+    PRESSURE, PressureMessage, Protector, STATUS, StatusMessage, sensor_message,
 };
 use crate::configuration::Configuration;
 use crate::failsafe::FaultCode;
@@ -26,10 +26,11 @@ use crate::receiver::Receiver;
 use crate::sensor_message::{MessageSet, PerSensorMessage, SensorMessage};
 use crate::tick::{Outputs, State, tick};
 
-/// Most frames that a tick sends: the command, and every 100 ms the status.
-pub const MAX_SENT: usize = 2;
+/// Most frames that a tick sends: the command, every 100 ms the status, and every second the state of the board.
+pub const MAX_SENT: usize = 3;
 
 const STATUS_TICKS: u32 = STATUS.period_ms / TICK_MS;
+const BOARD_TICKS: u32 = BOARD.period_ms / TICK_MS;
 
 /// What has been seen on the bus, for statistics. The counters wrap.
 ///
@@ -89,6 +90,9 @@ pub struct Node {
     command: Protector,
     status: Protector,
     status_countdown: u32,
+    board: Protector,
+    board_state: Option<BoardMessage>,
+    board_countdown: u32,
     counters: BusCounters,
 }
 
@@ -108,6 +112,9 @@ impl Node {
             command: Protector::new(&COMMAND),
             status: Protector::new(&STATUS),
             status_countdown: 0,
+            board: Protector::new(&BOARD),
+            board_state: None,
+            board_countdown: 0,
             counters: BusCounters::default(),
         }
     }
@@ -128,7 +135,7 @@ impl Node {
     /// ticks; frames with other identifiers are counted and ignored.
     pub fn receive(&mut self, id: u16, data: &[u8]) {
         let Some(message) = sensor_message(id) else {
-            if id == COMMAND.id || id == STATUS.id {
+            if [COMMAND.id, STATUS.id, BOARD.id].contains(&id) {
                 self.counters.own = self.counters.own.wrapping_add(1);
                 self.inputs.foreign_sender = true;
             } else {
@@ -162,6 +169,11 @@ impl Node {
         self.inputs.solenoid_failed = true;
     }
 
+    /// Says what the board knows of itself. Once this was called, the node sends the latest of it every second.
+    pub fn report_board(&mut self, state: BoardMessage) {
+        self.board_state = Some(state);
+    }
+
     /// One period: decides, and returns the frames to send. Call it every [`TICK_MS`].
     pub fn tick(&mut self) -> (Outputs, Vec<Frame, MAX_SENT>) {
         self.end_of_reception();
@@ -188,6 +200,13 @@ impl Node {
             send(STATUS.id, status.encode(), &mut self.status);
         }
         self.status_countdown = self.status_countdown.saturating_sub(1);
+        if let Some(state) = self.board_state {
+            if self.board_countdown == 0 {
+                self.board_countdown = BOARD_TICKS;
+                send(BOARD.id, state.encode(), &mut self.board);
+            }
+            self.board_countdown = self.board_countdown.saturating_sub(1);
+        }
         (outputs, frames)
     }
 

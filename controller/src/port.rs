@@ -5,7 +5,7 @@
 //! peripheral as the bus can deliver in a tick, so that another node that sends all the time cannot keep the controller from
 //! deciding.
 
-use crate::can::{FRAME_BYTES, Frame};
+use crate::can::{BoardMessage, FRAME_BYTES, Frame};
 use crate::failsafe::FaultCode;
 use crate::node::Node;
 use crate::tick::Outputs;
@@ -148,6 +148,11 @@ impl<C: Can> Port<C> {
     /// Reports that the output stage could not switch a solenoid. The next tick latches.
     pub fn report_solenoid_failure(&mut self) {
         self.node.report_solenoid_failure();
+    }
+
+    /// Says what the board knows of itself, see [`Node::report_board`].
+    pub fn report_board(&mut self, state: BoardMessage) {
+        self.node.report_board(state);
     }
 
     /// Error counts since the start.

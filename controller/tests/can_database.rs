@@ -4,8 +4,8 @@
 
 use can_dbc::{AttributeValue, ByteOrder, Dbc, Message, MessageId, NumericValue, Signal, ValueType};
 use oleo_controller::can::{
-    self, COMMAND, CommandMessage, DISPLACEMENT, DisplacementMessage, MESSAGES, PRESSURE, PressureMessage, Protector,
-    STATUS, StatusMessage, bus_load,
+    self, BOARD, BoardMessage, BusState, COMMAND, ClockSource, CommandMessage, DISPLACEMENT, DisplacementMessage,
+    ImageState, MESSAGES, PRESSURE, PressureMessage, Protector, STATUS, StatusMessage, bus_load,
 };
 use oleo_controller::{
     Axle, Corner, FaultCode, MessageSet, Mode, PressurePoint, Reading, StrutPressures, Valve, ValveCommand,
@@ -279,6 +279,39 @@ proptest! {
             prop_assert_eq!(extract(&frame, signal(message, name)), expected, "{}", name);
         }
         prop_assert_eq!(StatusMessage::decode(&frame), Some(sent));
+    }
+
+    #[test]
+    fn board(reset_causes in 0u8..128, clock in 0u8..3, brown_out_level in 0u8..4, latch_kept: bool, image in 0u8..2, bus in 0u8..4,
+             overruns: u8, bus_off: u8, port_errors: u8, port_dropped: u8) {
+        let dbc = database();
+        let message = message(&dbc, BOARD.id);
+        let sent = BoardMessage {
+            reset_causes,
+            clock: ClockSource::from_repr(clock).unwrap(),
+            brown_out_level,
+            latch_kept,
+            image: ImageState::from_repr(image).unwrap(),
+            bus: BusState::from_repr(bus).unwrap(),
+            overruns,
+            bus_off,
+            port_errors,
+            port_dropped,
+        };
+        let frame = sent.encode();
+        let causes = ["BrownOut", "Pin", "Supply", "Software", "Watchdog", "WindowWatchdog", "LowPower"];
+        for (bit, cause) in causes.into_iter().enumerate() {
+            let expected = i64::from(reset_causes >> bit & 1);
+            prop_assert_eq!(extract(&frame, signal(message, &format!("ResetBy{cause}"))), expected, "{}", cause);
+        }
+        for (name, expected) in [
+            ("Clock", clock), ("BrownOutLevel", brown_out_level), ("LatchKept", latch_kept.into()), ("Image", image),
+            ("BusState", bus), ("Overruns", overruns), ("BusOff", bus_off), ("PortErrors", port_errors),
+            ("PortDropped", port_dropped),
+        ] {
+            prop_assert_eq!(extract(&frame, signal(message, name)), i64::from(expected), "{}", name);
+        }
+        prop_assert_eq!(BoardMessage::decode(&frame), Some(sent));
     }
 
     /// What is out of a signal's range is sent as an error, never clipped.

@@ -282,7 +282,7 @@ mod tests {
             response_bound_bits(&oleo_controller::can::COMMAND, 500_000),
             Some(270.0)
         );
-        // Status: lowest; all seven others once, its own length as blocking (push-through), and itself.
+        // Status: all seven of higher priority once, a frame of its own length as blocking, and itself.
         assert_eq!(
             response_bound_bits(&oleo_controller::can::STATUS, 500_000),
             Some(135.0 * 9.0)

@@ -235,7 +235,7 @@ fn command(command: ValveCommand, tick: usize) -> [u8; FRAME_BYTES] {
 }
 
 /// The frame in the first edition of the database, which had the upper byte of the tick behind the lower one.
-fn in_first_edition(frame: &Frame, tick: usize, protectors: &mut [Protector; 8]) -> Frame {
+fn in_first_edition(frame: &Frame, tick: usize, protectors: &mut [Protector; MESSAGES.len()]) -> Frame {
     let known = MESSAGES.iter().position(|m| Some(m.id) == frame.standard_id());
     let (Some(message), Ok(data)) = (known, <[u8; FRAME_BYTES]>::try_from(frame.data())) else {
         return *frame;

@@ -29,7 +29,7 @@ pub const fn worst_case_bits(bytes: usize) -> u32 {
 /// ```
 /// use oleo_controller::can::{MESSAGES, bus_load};
 /// let bits_a_second = bus_load::bits_a_second(&MESSAGES);
-/// assert_eq!(bits_a_second, 7 * 200 * 135 + 10 * 135); // seven messages every 5 ms, one every 100 ms
+/// assert_eq!(bits_a_second, (7 * 200 + 10 + 1) * 135); // seven messages every 5 ms, one every 100 ms, one every second
 /// ```
 pub const fn bits_a_second(messages: &[Contract]) -> u32 {
     let mut sum = 0;
@@ -72,8 +72,8 @@ mod tests {
 
     #[test]
     fn load_by_hand() {
-        // seven frames every 5 ms and one every 100 ms
-        assert_eq!(bits_a_second(&MESSAGES), 135 * 7 * 200 + 135 * 10);
+        // seven frames every 5 ms, one every 100 ms and one every second
+        assert_eq!(bits_a_second(&MESSAGES), 135 * 7 * 200 + 135 * 10 + 135);
         assert_eq!(LOAD_500K_PERMILLE, 380);
         assert_eq!(LOAD_1M_PERMILLE, 190);
     }

@@ -3,7 +3,7 @@
 //!
 //! Sender and receiver must agree on all of this. Node, plant end, bus load and the test of the database read this one table.
 //! Identifiers are priorities on CAN. The command has the highest, because it is what closes valves in time; then come the sensors
-//! in the order in which the controller needs them, and the status last.
+//! in the order in which the controller needs them, and the two states last.
 
 use oleo_interface::tick::TICK_MS;
 use oleo_interface::{Axle, Axles, Corner, Corners};
@@ -77,8 +77,11 @@ pub const COMMAND: Contract = contract(6, "COMMAND", 0x0A0, TICK_MS);
 /// The controller's state, for people and loggers.
 pub const STATUS: Contract = contract(7, "STATUS", 0x300, 100);
 
-/// Everything on the bus: what sensors send, in sending order, then the controller's two messages.
-pub const MESSAGES: [Contract; 8] = {
+/// The state of the controller's board, for people and loggers. A simulated controller has none and does not send it.
+pub const BOARD: Contract = contract(8, "BOARD", 0x301, 1000);
+
+/// Everything on the bus: what sensors send, in sending order, then the controller's three messages.
+pub const MESSAGES: [Contract; 9] = {
     let [front_left, front_right, rear_left, rear_right] = *PRESSURE.as_array();
     [
         front_left,
@@ -89,6 +92,7 @@ pub const MESSAGES: [Contract; 8] = {
         DISPLACEMENT.rear,
         COMMAND,
         STATUS,
+        BOARD,
     ]
 };
 

@@ -6,11 +6,13 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `contract` | identifiers, periods, data identifiers and time-outs of all messages, in one table |
+//! | `board` | the message about the board itself |
 //! | `signals` | a struct for each kind of message, to and from the 52 bits of its payload |
 //! | `e2e` | end-to-end protection: an 8-bit CRC and a 4-bit counter in bytes 0 and 1 (AUTOSAR profile 2) |
 //! | `state_machine` | whether a message may be trusted, from its last sixteen periods (AUTOSAR's E2E state machine) |
 //! | [`bus_load`] | worst-case load of the bus, computed from the table at compile time |
 
+mod board;
 pub mod bus_load;
 mod contract;
 mod e2e;
@@ -18,7 +20,8 @@ mod frame;
 mod signals;
 mod state_machine;
 
-pub use contract::{COMMAND, Contract, DISPLACEMENT, MESSAGES, PRESSURE, STATUS, sensor_message};
+pub use board::{BoardMessage, BusState, ClockSource, ImageState};
+pub use contract::{BOARD, COMMAND, Contract, DISPLACEMENT, MESSAGES, PRESSURE, STATUS, sensor_message};
 pub use e2e::{CheckStatus, Checker, Protector};
 pub use frame::{FRAME_BYTES, Frame};
 pub use signals::{

@@ -31,7 +31,7 @@ pub const ACCELERATION_STEP_M_S2: f32 = 0.02;
 const STATUS_VALID: u64 = 0;
 const STATUS_ERROR: u64 = 1;
 
-const fn field(bits: u64, start: u32, length: u32) -> u64 {
+pub(super) const fn field(bits: u64, start: u32, length: u32) -> u64 {
     (bits >> start) & ((1 << length) - 1)
 }
 

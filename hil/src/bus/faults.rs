@@ -7,7 +7,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use oleo_controller::can::MESSAGES;
+use oleo_controller::can::{BOARD, COMMAND, MESSAGES, STATUS};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -49,7 +49,7 @@ pub enum Target {
     All,
     /// The six sensor messages.
     Sensors,
-    /// Command and status, which the controller sends.
+    /// What the controller sends: command, status and the state of its board.
     Controller,
     /// The message with this identifier.
     Id(u16),
@@ -57,7 +57,7 @@ pub enum Target {
 
 impl Target {
     fn includes(self, id: u16) -> bool {
-        let from_controller = [oleo_controller::can::COMMAND.id, oleo_controller::can::STATUS.id].contains(&id);
+        let from_controller = [COMMAND.id, STATUS.id, BOARD.id].contains(&id);
         match self {
             Self::All => true,
             Self::Sensors => !from_controller,

@@ -41,7 +41,7 @@ pub struct LogAccount {
     pub unreadable_lines: u64,
     /// Number of frames whose identifier is not in the database.
     pub foreign_frames: u64,
-    /// One entry for each message of the database except `STATUS`, in the order of [`oleo_controller::can::MESSAGES`].
+    /// One entry for each message of the database except `STATUS` and `BOARD`, in the order of [`oleo_controller::can::MESSAGES`].
     pub messages: Vec<MessageAccount>,
 }
 

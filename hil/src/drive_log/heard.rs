@@ -2,7 +2,7 @@
 
 use std::io::BufRead;
 
-use oleo_controller::can::{COMMAND, CheckStatus, Checker, FRAME_BYTES, MESSAGES, STATUS};
+use oleo_controller::can::{BOARD, COMMAND, CheckStatus, Checker, FRAME_BYTES, MESSAGES, STATUS};
 
 use super::content::{LogAccount, MessageAccount};
 use crate::candump::parse_line;
@@ -66,7 +66,7 @@ pub fn hear(mut log: impl BufRead) -> std::io::Result<(Heard, LogAccount)> {
             continue;
         };
         let id = entry.frame.standard_id();
-        if id == Some(STATUS.id) {
+        if id == Some(STATUS.id) || id == Some(BOARD.id) {
             continue;
         }
         let of_sample = &MESSAGES[..MESSAGES_OF_A_SAMPLE];

@@ -286,6 +286,31 @@ fn an_image_that_cannot_run_is_one_line() {
     assert!(text.contains("sets strategy, which an image has of its own"), "{text}");
     let conflict = run(&["hil", "--no-out", "--firmware", image, "--strategy", "always-stiff"]);
     assert_eq!(conflict.status.code(), Some(2));
+    let restarted = run(&[
+        "hil",
+        "--no-out",
+        "--firmware",
+        image,
+        "--scenario",
+        "restarted-controller",
+    ]);
+    assert!(complaint(&restarted).contains("restarts the controller"));
+}
+
+#[test]
+fn what_is_no_image_is_not_sealed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    fs::write(path("image"), "#!/bin/sh").unwrap();
+    for (arguments, expected) in [
+        (vec!["seal", &path("image")], "image: is no 32-bit ELF file"),
+        (vec!["seal", &path("absent")], "absent: No such file"),
+    ] {
+        let text = complaint(&run(&arguments));
+        assert!(text.contains(expected), "{text}");
+    }
+    let left: Vec<_> = fs::read_dir(folder.path()).unwrap().collect();
+    assert_eq!(left.len(), 1);
 }
 
 #[test]

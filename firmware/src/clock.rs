@@ -7,6 +7,7 @@
 //! either, the core stays at 16 MHz, where the bit rate of the bus cannot be made.
 
 use crate::watchdog::Watchdog;
+use oleo_controller::can::ClockSource;
 use stm32f4::stm32f405::{FLASH, PWR, RCC};
 
 /// Frequency of the core clock, Hz.
@@ -26,24 +27,13 @@ const PATIENCE: u32 = 8_000;
 
 const _: () = assert!(COMPARISON_HZ * PLL_N / 2 == CORE_HZ);
 
-/// What the clock tree runs from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
-    /// The crystal, through the PLL: 168 MHz.
-    Crystal,
-    /// The internal oscillator, through the PLL: 168 MHz, but 1 % off. The crystal has not started.
-    Internal,
-    /// The internal oscillator alone: 16 MHz. The PLL has not locked.
-    InternalWithoutPll,
-}
-
 /// Waits until something is so, with an end; returns whether it is.
 pub fn is_soon(ready: impl Fn() -> bool) -> bool {
     (0..PATIENCE).any(|_| ready())
 }
 
 /// Switches the core to the PLL of the crystal, or to the best that there is.
-pub fn start(rcc: &RCC, flash: &FLASH, pwr: &PWR, watchdog: &mut Watchdog) -> Source {
+pub fn start(rcc: &RCC, flash: &FLASH, pwr: &PWR, watchdog: &mut Watchdog) -> ClockSource {
     rcc.apb1enr().modify(|_, w| w.pwren().enabled());
     pwr.cr().modify(|_, w| w.vos().set_bit());
 
@@ -65,7 +55,7 @@ pub fn start(rcc: &RCC, flash: &FLASH, pwr: &PWR, watchdog: &mut Watchdog) -> So
     });
     rcc.cr().modify(|_, w| w.pllon().on());
     if !is_soon(|| rcc.cr().read().pllrdy().is_ready()) {
-        return Source::InternalWithoutPll;
+        return ClockSource::InternalWithoutPll;
     }
     watchdog.feed();
     flash.acr().write(|w| {
@@ -81,7 +71,11 @@ pub fn start(rcc: &RCC, flash: &FLASH, pwr: &PWR, watchdog: &mut Watchdog) -> So
         w.sw().pll()
     });
     if !is_soon(|| rcc.cfgr().read().sws().is_pll()) {
-        return Source::InternalWithoutPll;
+        return ClockSource::InternalWithoutPll;
     }
-    if crystal { Source::Crystal } else { Source::Internal }
+    if crystal {
+        ClockSource::Crystal
+    } else {
+        ClockSource::Internal
+    }
 }

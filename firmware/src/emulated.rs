@@ -3,11 +3,12 @@
 //! QEMU's STM32F405 has no ready flags of the clock tree, so that the core seems to stay at 16 MHz; the line does not mind. Its ports
 //! cannot be read back (`solenoid`).
 
-use crate::clock::{CORE_HZ, Source};
+use crate::clock::CORE_HZ;
 use crate::slcan::Slcan;
 use cortex_m::peripheral::SYST;
 use oleo_controller::BusCounters;
-use stm32f4::stm32f405::{CAN1, GPIOA, GPIOB, RCC, USART1};
+use oleo_controller::can::ClockSource;
+use stm32f4::stm32f405::{CAN1, GPIOA, GPIOB, RCC, USART1, WWDG};
 
 /// The driver of the bus.
 pub type Bus = Slcan;
@@ -19,13 +20,13 @@ pub struct Pace;
 pub fn start(
     (_can, usart): (CAN1, USART1),
     (port_a, _port_b): (GPIOA, GPIOB),
-    _systick: SYST,
+    _timers: (SYST, WWDG),
     rcc: &RCC,
-    source: Source,
+    source: ClockSource,
 ) -> Option<(Bus, Pace)> {
     let apb2_hz = match source {
-        Source::Crystal | Source::Internal => CORE_HZ / 2,
-        Source::InternalWithoutPll => 16_000_000,
+        ClockSource::Crystal | ClockSource::Internal => CORE_HZ / 2,
+        ClockSource::InternalWithoutPll => 16_000_000,
     };
     Some((Slcan::start(usart, port_a, rcc, apb2_hz), Pace))
 }

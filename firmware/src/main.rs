@@ -8,7 +8,7 @@
 //!
 //! Nothing waits, and there are no interrupts: the tick takes well under 100 us, and the three-deep receive FIFO of the
 //! peripheral lasts for 0.6 ms at 500 kbit/s. A loop that stops for any reason no longer feeds the watchdog, which then
-//! resets the board. At reset, and on any fault, the solenoids are off, which is a stiff spring and high damping.
+//! resets the board, as it does if the flash is not what was built (`image`). At reset, and on any fault, the solenoids are off, which is a stiff spring and high damping.
 //!
 //! With the feature `slcan` the same image speaks CAN as text over USART1, and the frames at the other end of the line say when 5 ms
 //! are over (`slcan`): that image runs on an emulated board.
@@ -20,6 +20,7 @@ mod can;
 mod clock;
 mod fault;
 mod frame;
+mod image;
 mod report;
 mod reset;
 #[cfg(feature = "slcan")]
@@ -32,6 +33,7 @@ mod watchdog;
 
 use cortex_m::{peripheral::SCB, singleton};
 use cortex_m_rt::entry;
+use oleo_controller::can::{ClockSource, ImageState};
 use oleo_controller::{Configuration, FaultCode, Mode, Node, Port, Solenoids};
 use report::BOARD;
 use stm32f4::stm32f405::Peripherals;
@@ -50,21 +52,29 @@ fn main() -> ! {
     let causes = reset::causes(&board.RCC);
     let (memory, latch) = reset::Memory::open(board.RTC, &board.RCC, &board.PWR, reset::is_power_on(causes));
     let source = clock::start(&board.RCC, &board.FLASH, &board.PWR, &mut watchdog);
+    // A wrong image must not drive: the watchdog resets the board, and it is checked again.
+    let Some(image) = image::check(|| watchdog.feed()) else {
+        loop {
+            cortex_m::asm::wfi();
+        }
+    };
     let (buses, ports) = ((board.CAN1, board.USART1), (board.GPIOA, board.GPIOB));
-    let Some((bus, pace)) = surroundings::start(buses, ports, core.SYST, &board.RCC, source) else {
+    let timers = (core.SYST, board.WWDG);
+    let Some((bus, pace)) = surroundings::start(buses, ports, timers, &board.RCC, source) else {
         SCB::sys_reset()
     };
     report::set(&BOARD.reset_causes, causes);
-    report::set(&BOARD.clock_source, report::number(source));
+    report::set(&BOARD.clock_source, source as u32);
     report::set(&BOARD.latch_before_reset, latch.map_or(0, |cause| cause.raw().into()));
     report::set(
         &BOARD.brown_out_level,
         board.FLASH.optcr().read().bor_lev().bits().into(),
     );
+    report::set(&BOARD.image, image as u32);
     let Some(port) = controller(bus, latch) else {
         SCB::sys_reset()
     };
-    run(port, pace, solenoids, watchdog, memory)
+    run(port, pace, solenoids, watchdog, memory, (source, image))
 }
 
 /// The controller, in a static: it is large, and the stack of the loop is to be small.
@@ -85,10 +95,12 @@ fn run(
     mut solenoids: Solenoids<solenoid::Solenoid>,
     mut watchdog: watchdog::Watchdog,
     mut memory: reset::Memory,
+    start: (ClockSource, ImageState),
 ) -> ! {
     loop {
         port.poll();
         if pace.is_over(port.can_mut()) {
+            port.report_board(report::message(start));
             let outputs = port.tick();
             if solenoids.drive(outputs.command).is_err() {
                 port.report_solenoid_failure();

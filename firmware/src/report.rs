@@ -1,8 +1,8 @@
 //! What the board knows of itself, for a debugger: words in RAM at the symbol `BOARD`, in the order of the fields
-//! (`docs/flashing.md`). They are written only, so that reading them disturbs nothing.
+//! (`docs/flashing.md`). Reading them disturbs nothing. A summary goes onto the bus once a second, as the message `BOARD`.
 
-use crate::clock::Source;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use oleo_controller::can::{BoardMessage, BusState, ClockSource, ImageState};
 
 /// The words.
 #[cfg_attr(
@@ -28,6 +28,8 @@ pub struct Board {
     /// Number of receive and transmit errors, and of frames that were not sent in time. Both wrap.
     pub port_errors: AtomicU32,
     pub port_dropped: AtomicU32,
+    /// Whether the flash was checked: 0 the image has no check value, 1 it is right (see [`crate::image`]).
+    pub image: AtomicU32,
 }
 
 /// The board's report.
@@ -42,14 +44,30 @@ pub static BOARD: Board = Board {
     bus_off: AtomicU32::new(0),
     port_errors: AtomicU32::new(0),
     port_dropped: AtomicU32::new(0),
+    image: AtomicU32::new(0),
 };
 
-/// Number of a clock source in the report.
-pub fn number(source: Source) -> u32 {
-    match source {
-        Source::Crystal => 0,
-        Source::Internal => 1,
-        Source::InternalWithoutPll => 2,
+/// The report as it goes onto the bus.
+pub fn message((clock, image): (ClockSource, ImageState)) -> BoardMessage {
+    let read = |word: &AtomicU32| word.load(Relaxed);
+    let count = |word: &AtomicU32| u8::try_from(read(word)).unwrap_or(u8::MAX);
+    let errors = read(&BOARD.bus_errors);
+    BoardMessage {
+        reset_causes: read(&BOARD.reset_causes) as u8,
+        clock,
+        brown_out_level: read(&BOARD.brown_out_level) as u8,
+        latch_kept: read(&BOARD.latch_before_reset) != 0,
+        image,
+        bus: match errors & 7 {
+            0 => BusState::Active,
+            1 => BusState::Warning,
+            2 | 3 => BusState::Passive,
+            _ => BusState::Off,
+        },
+        overruns: count(&BOARD.overruns),
+        bus_off: count(&BOARD.bus_off),
+        port_errors: count(&BOARD.port_errors),
+        port_dropped: count(&BOARD.port_dropped),
     }
 }
 

@@ -1,12 +1,14 @@
 //! The surroundings of the image for the vehicle: bxCAN, and a tick every 5 ms.
 
 use crate::can::{Can, QUANTA};
-use crate::clock::{CORE_HZ, Source};
+use crate::clock::CORE_HZ;
 use crate::report::{self, BOARD};
+use crate::watchdog::WindowWatchdog;
 use cortex_m::peripheral::{SYST, syst::SystClkSource};
 use oleo_controller::BusCounters;
+use oleo_controller::can::ClockSource;
 use oleo_interface::tick::TICK_MS;
-use stm32f4::stm32f405::{CAN1, GPIOA, GPIOB, RCC, USART1};
+use stm32f4::stm32f405::{CAN1, GPIOA, GPIOB, RCC, USART1, WWDG};
 
 /// Clock of the CAN peripheral (APB1), Hz.
 const APB1_HZ: u32 = CORE_HZ / 4;
@@ -27,8 +29,11 @@ pub type Bus = Can;
 /// Says when a tick is over: SysTick does.
 pub struct Pace {
     systick: SYST,
+    window: WindowWatchdog,
     /// Whether the next tick was due before the last one had been worked off.
     late: bool,
+    /// Whether this tick is that one: it ends too early for the window.
+    catching_up: bool,
     was_off: bool,
 }
 
@@ -36,11 +41,11 @@ pub struct Pace {
 pub fn start(
     (can, _usart): (CAN1, USART1),
     (_port_a, port_b): (GPIOA, GPIOB),
-    mut systick: SYST,
+    (mut systick, window): (SYST, WWDG),
     rcc: &RCC,
-    source: Source,
+    source: ClockSource,
 ) -> Option<(Bus, Pace)> {
-    if source == Source::InternalWithoutPll {
+    if source == ClockSource::InternalWithoutPll {
         return None;
     }
     let can = Can::start(can, port_b, rcc, APB1_HZ, BIT_RATE)?;
@@ -48,9 +53,12 @@ pub fn start(
     systick.set_reload(TICK_RELOAD);
     systick.clear_current();
     systick.enable_counter();
+    let window = WindowWatchdog::start(window, rcc);
     let pace = Pace {
         systick,
+        window,
         late: false,
+        catching_up: false,
         was_off: false,
     };
     Some((can, pace))
@@ -59,11 +67,15 @@ pub fn start(
 impl Pace {
     /// Whether 5 ms are over since it last was so.
     pub fn is_over(&mut self, _bus: &mut Bus) -> bool {
-        core::mem::take(&mut self.late) || self.systick.has_wrapped()
+        self.catching_up = core::mem::take(&mut self.late);
+        self.catching_up || self.systick.has_wrapped()
     }
 
     /// Is called when the tick has been worked off: reports overruns and the errors of the bus.
     pub fn end_tick(&mut self, bus: &mut Bus, _counters: &BusCounters) {
+        if !self.catching_up {
+            self.window.feed();
+        }
         if self.systick.has_wrapped() {
             self.late = true;
             report::count(&BOARD.overruns);

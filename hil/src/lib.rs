@@ -14,7 +14,7 @@
 //!
 //! * [`bus`] contains the buses and the decorators around them; [`sync`] and [`handshake`] synchronise two nodes; [`clock`] paces a
 //!   run in real time.
-//! * [`emulator`] runs a firmware image on an emulated board, whose frames are compared with those of the controller in this process.
+//! * [`image`] seals a firmware image; [`emulator`] runs one on an emulated board, whose frames are compared with those of the controller in this process.
 //! * [`scenario`] describes what is driven, which faults occur and which checks must be met; [`run`] turns a scenario into a recording.
 //! * [`metrics`] and [`output`] turn a recording into figures and files; [`bit_timing`] computes when a wire would have carried each
 //!   frame.
@@ -33,6 +33,7 @@ pub mod drive_log;
 pub mod emulator;
 pub mod frame;
 pub mod handshake;
+pub mod image;
 pub mod instruments;
 pub mod metrics;
 mod newcomer;

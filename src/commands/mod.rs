@@ -8,6 +8,7 @@ pub mod hil;
 mod parameter_files;
 pub mod predict;
 pub mod rig;
+pub mod seal;
 pub mod show;
 pub mod study;
 mod word;

@@ -1,7 +1,7 @@
 //! One file of results, whole or absent, in a folder that may hold anything.
 
 use std::fs::{self, File};
-use std::io::BufWriter;
+use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
@@ -58,16 +58,30 @@ impl OutputFile {
     }
 
     /// Writes columns of numbers and moves the file into place.
+    ///
+    /// # Errors
+    /// Columns of different lengths; the file cannot be written.
     pub fn csv(self, columns: &[Numbers]) -> Result<PathBuf, OutputError> {
+        let rows = csv_text::check(&self.target.display().to_string(), columns, &[])?;
+        self.put(|staged| csv_text::write(&mut BufWriter::new(File::create(staged)?), rows, columns, &[]))
+    }
+
+    /// Writes bytes and moves the file into place.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn bytes(self, bytes: &[u8]) -> Result<PathBuf, OutputError> {
+        self.put(|staged| fs::write(staged, bytes))
+    }
+
+    fn put(self, write: impl FnOnce(&Path) -> io::Result<()>) -> Result<PathBuf, OutputError> {
         let refused = |source| OutputError::Io {
             action: "write",
             path: self.target.clone(),
             source,
         };
-        let rows = csv_text::check(&self.target.display().to_string(), columns, &[])?;
         let staged = self.staging.path().join("file");
-        let mut file = BufWriter::new(File::create(&staged).map_err(refused)?);
-        csv_text::write(&mut file, rows, columns, &[]).map_err(refused)?;
+        write(&staged).map_err(refused)?;
         open_to_others(&staged).map_err(refused)?;
         // Held to the end: a signal waits for the file.
         let mut folders = interrupt::staged();

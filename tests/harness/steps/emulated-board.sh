@@ -11,4 +11,5 @@ in_the_loop bus-silence-in-lane-change
 in_the_loop masquerade
 in_the_loop nan
 in_the_loop killed-plant
+flash_is_checked
 exit 0

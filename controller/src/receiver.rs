@@ -2,8 +2,9 @@
 //!
 //! A sender sends one frame a tick. More than one means that somebody else sends under its identifier, and no check value says
 //! which of them is right. So the frames of a tick are judged together: only a tick that brought what one sender sends brings
-//! new data, and any other counts as wrong. A frame that was held up by the bus arrives together with the next one; so after a
-//! tick without a frame one more is accepted.
+//! new data, and any other counts as wrong. A frame that was held up by the bus arrives together with the next one; so just after
+//! a tick without a frame one more is accepted. Each tick that brings one frame as it should takes such an allowance back: a frame
+//! that was lost long ago does not come any more, and somebody else's must not pass for it.
 
 use crate::can::{CheckStatus, Checker, Contract, FRAME_BYTES, Period, StateMachine};
 
@@ -100,6 +101,7 @@ impl Receiver {
         };
         self.owed = match frames {
             0 => self.owed.saturating_add(1).min(self.timeout_ticks),
+            1 => self.owed.saturating_sub(1),
             more => self.owed.saturating_sub(more - 1),
         };
         if frames == 0 {
@@ -199,6 +201,24 @@ mod tests {
         receiver.receive(&frames[2]);
         receiver.receive(&frames[3]);
         assert_eq!(receiver.end_of_tick(), None, "nothing was late");
+    }
+
+    #[test]
+    fn a_frame_that_was_lost_is_no_allowance_for_somebody_else_s() {
+        for lost in 1..=2 {
+            let (mut receiver, frames) = settled();
+            let mut frames = frames[lost..].iter();
+            for _ in 0..lost {
+                assert_eq!(receiver.end_of_tick(), None);
+            }
+            for _ in 0..lost {
+                receiver.receive(frames.next().unwrap());
+                assert!(receiver.end_of_tick().is_some());
+            }
+            receiver.receive(frames.next().unwrap());
+            receiver.receive(frames.next().unwrap());
+            assert_eq!(receiver.end_of_tick(), None, "{lost} lost");
+        }
     }
 
     #[test]

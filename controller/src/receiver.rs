@@ -221,6 +221,61 @@ mod tests {
         }
     }
 
+    /// After a tick without a frame two may come. What the graver one says counts for both.
+    #[test]
+    fn the_worst_frame_of_a_tick_decides() {
+        for wrong_first in [false, true] {
+            let (mut receiver, frames) = settled();
+            receiver.end_of_tick();
+            let mut wrong = frames[1];
+            wrong[5] ^= 1;
+            for wrong_now in [wrong_first, !wrong_first] {
+                receiver.receive(if wrong_now { &wrong } else { &frames[1] });
+            }
+            assert_eq!(receiver.candidate(), None);
+            assert_eq!(receiver.end_of_tick(), None);
+            // A repeated frame is no reason against the one that it repeats.
+            receiver.receive(&frames[2]);
+            assert_eq!(receiver.candidate(), Some(&frames[2]));
+            assert_eq!(receiver.end_of_tick(), Some(frames[2]));
+            receiver.end_of_tick();
+            receiver.receive(&frames[4]);
+            receiver.receive(&frames[4]);
+            assert_eq!(receiver.end_of_tick(), Some(frames[4]));
+        }
+    }
+
+    #[test]
+    fn distrust_without_a_frame_is_a_wrong_tick_and_not_an_empty_one() {
+        let (mut receiver, _) = settled();
+        for n in 1..=3 {
+            receiver.distrust();
+            assert_eq!(receiver.end_of_tick(), None);
+            assert_eq!((receiver.is_lost(), receiver.age()), (n == 3, n));
+        }
+    }
+
+    #[test]
+    fn a_frame_after_silence_continues_the_sequence() {
+        // Up to three silent ticks: the counter is so many further, and the frame is used at once.
+        for silent in 0..=3 {
+            let (mut receiver, frames) = settled();
+            for n in 1..=silent {
+                receiver.end_of_tick();
+                assert_eq!(usize::from(receiver.age()), n);
+            }
+            receiver.receive(&frames[silent]);
+            assert_eq!(receiver.end_of_tick(), Some(frames[silent]), "{silent} silent");
+            assert_eq!((receiver.age(), receiver.is_lost()), (0, false));
+        }
+        // Without silence as many lost ones are a wrong sequence from the third on.
+        for lost in 0..5 {
+            let (mut receiver, frames) = settled();
+            receiver.receive(&frames[lost]);
+            assert_eq!(receiver.end_of_tick().is_some(), lost < 3, "{lost} lost");
+        }
+    }
+
     #[test]
     fn silence_is_bridged_for_three_ticks() {
         let (mut receiver, frames) = settled();

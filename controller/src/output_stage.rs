@@ -243,6 +243,15 @@ mod tests {
             pair.step(ValveCommand::SAFE, Mode::Normal, 0);
             assert_eq!(pair.step(ValveCommand::SOFT, Mode::Normal, late), ValveCommand::SOFT);
         }
+        let mut pair = Pair::new();
+        pair.step(ValveCommand::SAFE, Mode::Normal, 0);
+        assert_eq!(pair.step(ValveCommand::SOFT, Mode::Normal, 3), ValveCommand::SAFE);
+        assert_eq!(pair.step(ValveCommand::SOFT, Mode::Normal, 8), ValveCommand::SAFE);
+        assert_eq!(
+            pair.step(ValveCommand::SOFT, Mode::Normal, 0),
+            ValveCommand::SOFT,
+            "that was not too old"
+        );
         // After an answer that was far too old, a fresh one must close everything first.
         let mut pair = Pair::new();
         pair.step(one, Mode::Normal, 9);
@@ -326,6 +335,7 @@ mod tests {
                 ValveCommand::SAFE
             };
             assert_eq!(pair.end(), expected, "tick {n}");
+            assert_eq!(pair.stage.ticks_without_command(), n);
         }
         let mut pair = Pair::new();
         let before = pair.controller;

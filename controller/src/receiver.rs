@@ -307,4 +307,21 @@ mod tests {
             );
         }
     }
+
+    /// Three late frames may come in three ticks.
+    #[test]
+    fn late_frames_may_come_one_after_the_other() {
+        let (mut receiver, frames) = settled();
+        for _ in 0..3 {
+            receiver.end_of_tick();
+        }
+        for late in frames[..6].chunks(2) {
+            receiver.receive(&late[0]);
+            receiver.receive(&late[1]);
+            assert_eq!(receiver.end_of_tick(), Some(late[1]));
+        }
+        receiver.receive(&frames[6]);
+        receiver.receive(&frames[7]);
+        assert_eq!(receiver.end_of_tick(), None);
+    }
 }

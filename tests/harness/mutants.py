@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Mutation test of the controller: which changes of its code does no test notice?
 
-    mutants.py [--files REGEX] [--tree DIR] [--report FILE]
+    mutants.py [--files REGEX] [--tree DIR] [--report FILE] [--again FILE]
 
 `cargo mutants --list` says which changes there are. Building the tests anew for each of nearly two thousand takes hours, so
 all are built at once: each changed place in a copy of the checkout becomes `if on(NUMBER) { changed } else { as it was }`, and the
@@ -34,7 +34,7 @@ SOURCES = "controller/src"
 EXPLAINED = ROOT / "tests/harness/mutants.txt"
 # Test programs in the order in which they are tried: quick ones first. The golden commands and the pages of the API are left out:
 # they notice any change and say nothing about whether it is right.
-PROGRAMS = ["oleo_controller", "end_to_end_protection", "estimate", "spring_switching", "faults", "attacks", "fault_plans", "recovery"]
+PROGRAMS = ["oleo_controller", "end_to_end_protection", "can_database", "estimate", "spring_switching", "faults", "attacks", "fault_plans", "recovery"]
 
 SWITCH = """//! Which mutant is active. Made by tests/harness/mutants.py.
 extern crate std;
@@ -279,6 +279,7 @@ def main():
     parser.add_argument("--files", default="", help="only the sources whose path contains this regular expression")
     parser.add_argument("--tree", type=Path, default=ROOT / "target/mutants", help="where the changed copy is built")
     parser.add_argument("--report", type=Path, help="a file for the outcome of each mutant, tab separated")
+    parser.add_argument("--again", type=Path, help="a report: only what survived in it or is not in it is run")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--programs", default="", help="only these test programs, comma separated")
     arguments = parser.parse_args()
@@ -304,6 +305,9 @@ def main():
         programs = {name: programs[name] for name in arguments.programs.split(",")}
 
     outcome = {}
+    if arguments.again:
+        before = {key: said for said, key, _ in (line.split("\t") for line in arguments.again.read_text().splitlines())}
+        outcome.update({m["number"]: before[m["key"]] for m in mutants if before.get(m["key"], "survived") != "survived"})
     for source in sources.values():
         outcome.update({mutant["number"]: "not switched" for mutant in source.unswitched})
     outcome.update({number: "does not compile" for number in uncompiled})

@@ -529,17 +529,21 @@ mod tests {
     /// A minute without a restriction takes one of the recorded faults away.
     #[test]
     fn faults_are_forgotten_one_a_minute() {
-        for (minutes, recovery_s) in [(0, 16), (1, 4), (2, 1), (3, 1), (9, 1)] {
+        let cases = [(0, 16), (1, 4), (2, 1), (3, 1), (9, 1)];
+        for ((minutes, recovery_s), corner) in cases
+            .into_iter()
+            .flat_map(|case| [(case, Corner::FrontLeft), (case, Corner::RearLeft)])
+        {
             let mut state = normal();
             for _ in 0..2 {
-                state.step(&at(&[Corner::FrontLeft]));
+                state.step(&at(&[corner]));
                 until(&mut state, &healthy(), Mode::Normal);
             }
             // A tick of the first minute has passed with the recovery.
             for _ in 0..minutes * 60 * SECOND {
                 assert_eq!(state.step(&healthy()), Mode::Normal);
             }
-            state.step(&at(&[Corner::FrontLeft]));
+            state.step(&at(&[corner]));
             assert_eq!(
                 until(&mut state, &healthy(), Mode::Normal),
                 recovery_s * SECOND,
@@ -585,6 +589,50 @@ mod tests {
             for _ in 0..61 * SECOND {
                 state.step(&healthy());
             }
+        }
+    }
+
+    /// Entries are forgotten one a minute too, also when no fault of an axle is remembered any more.
+    #[test]
+    fn entries_into_safe_are_forgotten_after_the_faults() {
+        let mut state = normal();
+        let (front, rear) = (at(&[Corner::FrontLeft]), at(&[Corner::RearLeft]));
+        let both = at(&[Corner::FrontLeft, Corner::RearLeft]);
+        // Two faults of each axle make three entries: rear under front twice, then front under rear.
+        for health in [&both, &front, &both] {
+            for _ in 0..5 * SECOND {
+                state.step(health);
+            }
+        }
+        for _ in 0..3 * SECOND {
+            state.step(&rear);
+        }
+        assert_eq!(state.step(&both), Mode::Safe);
+        until(&mut state, &healthy(), Mode::Normal);
+        for _ in 0..5 * 60 * SECOND {
+            assert_eq!(state.step(&healthy()), Mode::Normal);
+        }
+        for seconds in [1, 4, 16, 64] {
+            assert_eq!(state.step(&both), Mode::Safe);
+            assert_eq!(until(&mut state, &healthy(), Mode::Normal), seconds * SECOND);
+        }
+    }
+
+    /// While one axle recovers, a fault of the other alone does not count as severe.
+    #[test]
+    fn a_fault_on_one_axle_does_not_latch_while_the_other_recovers() {
+        let mut state = normal();
+        let (front, rear) = (at(&[Corner::FrontLeft]), at(&[Corner::RearLeft]));
+        for _ in 0..2 {
+            state.step(&rear);
+            until(&mut state, &healthy(), Mode::Normal);
+        }
+        // The third recovery of the rear axle takes 16 s.
+        for _ in 0..5 * SECOND {
+            state.step(&at(&Corner::ALL));
+        }
+        for _ in 0..15 * SECOND {
+            assert_eq!(state.step(&front), Mode::Safe);
         }
     }
 

@@ -329,4 +329,97 @@ mod tests {
             assert!(!verdict.is_good(Place::P2));
         }
     }
+
+    /// p1, p2, p3 in MPa above p4.
+    fn spread(mpa: [f32; 3]) -> StrutPressures<Gauge<f32>> {
+        let [p1, p2, p3] = mpa.map(|mpa| 4.0e6 + 1.0e6 * mpa);
+        StrutPressures { p1, p2, p3, p4: 4.0e6 }.map(Gauge)
+    }
+
+    const POINTS: [PressurePoint; 3] = [PressurePoint::P1, PressurePoint::P2, PressurePoint::P3];
+
+    /// A pair that disagrees does not say which of the two is wrong.
+    #[test]
+    fn one_pair_apart_outvotes_nobody() {
+        for middle in 0..3 {
+            for sign in [1.0, -1.0] {
+                let mut mpa = [0.65 * sign, -0.65 * sign, 0.0];
+                mpa.rotate_right(middle);
+                let mut vote = agreeing();
+                assert!(
+                    (0..1000).all(|_| turn(&mut vote, &spread(mpa), false) == Verdicts::GOOD),
+                    "{mpa:?}"
+                );
+            }
+        }
+    }
+
+    /// One neighbour that is near is enough to be believed again.
+    #[test]
+    fn an_outvoted_pressure_needs_one_that_agrees() {
+        for (n, point) in POINTS.into_iter().enumerate() {
+            for near in (0..3).filter(|near| *near != n) {
+                let far = 3 - n - near;
+                let mut vote = agreeing();
+                let mut mpa = [0.0; 3];
+                mpa[n] = 1.5;
+                for _ in 0..400 {
+                    turn(&mut vote, &spread(mpa), false);
+                }
+                (mpa[n], mpa[far]) = (0.45, -0.45);
+                assert_eq!(turn(&mut vote, &spread(mpa), false), only(point));
+                assert!(
+                    (0..400).any(|_| turn(&mut vote, &spread(mpa), false) == Verdicts::GOOD),
+                    "{point:?} near {near}"
+                );
+            }
+        }
+    }
+
+    /// p3 stands against p1, but p2 agrees with it: p4 is compared with p3 all the same.
+    #[test]
+    fn p4_is_outvoted_beside_another_one() {
+        let mut vote = agreeing();
+        let mut pressure = resting(PressurePoint::P4, 2.0e6);
+        pressure.p1 = Gauge(1.0e6);
+        let said = (0..200)
+            .map(|_| turn(&mut vote, &pressure, true))
+            .last()
+            .unwrap_or_default();
+        assert_eq!(
+            (said.count(), said.is_good(Place::P1), said.is_good(Place::P4)),
+            (2, false, false)
+        );
+        // Where p3 is the one that stands alone, p4 is not.
+        let mut vote = agreeing();
+        for _ in 0..500 {
+            let said = turn(&mut vote, &resting(PressurePoint::P3, 2.0e6), true);
+            assert!(said == Verdicts::GOOD || said == only(PressurePoint::P3));
+        }
+    }
+
+    /// What was lagged before a gap says nothing: the comparison begins again from agreement.
+    #[test]
+    fn a_gap_forgets_the_disagreement_before_it() {
+        let mut vote = agreeing();
+        for _ in 0..500 {
+            assert_eq!(
+                turn(&mut vote, &resting(PressurePoint::P2, 0.95e6), false),
+                Verdicts::GOOD
+            );
+        }
+        let mut verdict = Verdicts::GOOD;
+        verdict.blame(Place::P1, FaultCode::SensorRange);
+        vote.step(
+            &Parameters::default(),
+            &resting(PressurePoint::P2, 0.95e6),
+            false,
+            &mut verdict,
+        );
+        let found = turns_until(only(PressurePoint::P2), Verdicts::GOOD, || {
+            turn(&mut vote, &resting(PressurePoint::P2, 1.05e6), false)
+        });
+        let (found_s, expected_s) = (f32::from(found.unwrap()) * TURN_S, libm::logf(21.0) + 0.2);
+        assert!((found_s - expected_s).abs() < 0.06, "{found_s} of {expected_s} s");
+    }
 }

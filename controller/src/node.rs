@@ -274,7 +274,7 @@ mod tests {
         fn settled() -> Self {
             let mut pair = Self {
                 node: Node::new(Configuration::defender110()),
-                plant: PlantEnd::new(),
+                plant: PlantEnd::default(),
                 tick: 0,
             };
             for _ in 0..60 {
@@ -306,7 +306,7 @@ mod tests {
                     status = StatusMessage::decode(&frame.data);
                 }
             }
-            self.plant.end_of_tick();
+            assert_eq!(self.plant.end_of_tick(), self.plant.output().command());
             (outputs, status)
         }
     }

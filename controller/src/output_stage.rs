@@ -188,7 +188,7 @@ mod tests {
         fn new() -> Self {
             let mut pair = Self {
                 controller: Protector::new(&COMMAND),
-                stage: OutputStage::new(),
+                stage: OutputStage::default(),
                 tick: 0,
             };
             for _ in 0..20 {

@@ -88,6 +88,20 @@ fn can_frames() {
     drive(targets::can_frames, &[&proper]);
 }
 
+/// A tenth of the rounds: a plan is thousands of ticks.
+#[test]
+fn fault_plan() {
+    let mut random = Random(ChaCha8Rng::seed_from_u64(1));
+    // Ride/handling on a rough road with bends for 3,000 ticks: a drift, a silence that comes back, a forged command.
+    let plan = [
+        1, 0x4A, 0xB7, 7, 0, 0x60, 0x90, 0, 0, 9, 26, 0, 0x50, 0x18, 0x70, 5, 0, 33, 0, 0x20, 0x40, 0x40, 3, 5,
+    ];
+    targets::fault_plan(&plan);
+    for _ in 0..ROUNDS / 10 {
+        targets::fault_plan(&damage(&plan, &mut random));
+    }
+}
+
 #[test]
 fn slcan() {
     drive(

@@ -212,4 +212,22 @@ mod tests {
         freshness.challenge();
         assert!(freshness.is_in_step(15) && !freshness.is_in_step(11));
     }
+
+    /// The first outputs of the generator from the seed of its paper (Marsaglia, Xorshift RNGs, 2003).
+    #[test]
+    fn challenges_are_the_highest_bytes_of_xorshift() {
+        let mut freshness = Freshness {
+            random: 2_463_534_242,
+            ..Freshness::default()
+        };
+        for published in [
+            723_471_715_u32,
+            2_497_366_906,
+            2_064_144_800,
+            2_008_045_182,
+            3_532_304_609,
+        ] {
+            assert_eq!(u32::from(freshness.challenge()), published >> 24);
+        }
+    }
 }

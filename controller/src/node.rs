@@ -274,3 +274,144 @@ fn status(outputs: &Outputs, lost_messages: MessageSet) -> StatusMessage {
         lost_messages,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::failsafe::Mode;
+    use crate::plant_end::PlantEnd;
+    use oleo_interface::{Corner, Corners, Gauge};
+
+    /// A node with the other end of its bus, at rest.
+    struct Pair {
+        node: Node,
+        plant: PlantEnd,
+        tick: u16,
+    }
+
+    impl Pair {
+        fn settled() -> Self {
+            let mut pair = Self {
+                node: Node::new(Configuration::defender110()),
+                plant: PlantEnd::default(),
+                tick: 0,
+            };
+            for _ in 0..60 {
+                pair.step(|_| {}, |_| true);
+            }
+            pair
+        }
+
+        /// One tick with changed readings, in which only some frames arrive. Returns the status if one was sent.
+        fn step(
+            &mut self,
+            change: impl FnOnce(&mut Inputs),
+            arrives: impl Fn(SensorMessage) -> bool,
+        ) -> (Outputs, Option<StatusMessage>) {
+            let pressure = Corners::splat(StrutPressures::splat(Gauge(2.0e6)));
+            let mut inputs = Inputs::from_values(Corners::splat(0.01), pressure);
+            change(&mut inputs);
+            for frame in self.plant.encode(self.tick, &inputs) {
+                if sensor_message(frame.id).is_some_and(&arrives) {
+                    self.node.receive(frame.id, &frame.data);
+                }
+            }
+            self.tick += 1;
+            let (outputs, frames) = self.node.tick();
+            let mut status = None;
+            for frame in &frames {
+                self.plant.receive(frame.id, &frame.data);
+                if frame.id == STATUS.id {
+                    status = StatusMessage::decode(&frame.data);
+                }
+            }
+            assert_eq!(self.plant.end_of_tick(), self.plant.output().command());
+            (outputs, status)
+        }
+    }
+
+    /// Each 100 ms; what it says is what the tick decided.
+    #[test]
+    fn the_status_says_what_was_decided() {
+        let mut pair = Pair::settled();
+        let mut sent = 0;
+        for _ in 0..400 {
+            let missing = |inputs: &mut Inputs| inputs.displacement[Corner::RearLeft] = Reading::INVALID;
+            let (outputs, status) = pair.step(missing, |message| message != SensorMessage::Pressure(Corner::RearRight));
+            let Some(status) = status else { continue };
+            sent += 1;
+            assert_eq!(
+                (
+                    status.mode,
+                    status.fault,
+                    status.invalid_readings,
+                    status.handling,
+                    status.rollover_guard
+                ),
+                (
+                    outputs.mode,
+                    outputs.fault,
+                    outputs.invalid_readings,
+                    outputs.handling,
+                    outputs.rollover_guard
+                )
+            );
+            if sent > 2 {
+                let mut lost = MessageSet::EMPTY;
+                lost.insert(SensorMessage::Pressure(Corner::RearRight));
+                assert_eq!((status.mode, status.lost_messages), (Mode::Degraded, lost));
+                assert_eq!(status.invalid_readings, 5, "a displacement and four pressures");
+            }
+            let vertical = libm::sqrtf(outputs.estimate.vertical_mean_square);
+            let lateral = libm::sqrtf(outputs.estimate.lateral_mean_square);
+            assert!((status.vertical_rms_m_s2 - vertical).abs() <= 0.011);
+            assert!((status.lateral_rms_m_s2 - lateral).abs() <= 0.011);
+        }
+        assert_eq!(sent, 20);
+    }
+
+    #[test]
+    fn a_lost_message_is_the_one_that_does_not_come_and_only_from_the_fourth_tick_on() {
+        for lost in SensorMessage::ALL {
+            let mut pair = Pair::settled();
+            for n in 1..=6 {
+                let (outputs, _) = pair.step(|_| {}, |message| message != lost);
+                let expected = if n < 4 { Mode::Normal } else { Mode::Degraded };
+                assert_eq!(outputs.mode, expected, "{lost:?} tick {n}");
+                assert_eq!(pair.node.inputs.lost_messages.contains(lost), n >= 4);
+                let readings = match lost {
+                    SensorMessage::Pressure(_) => 4,
+                    SensorMessage::Displacement(_) => 2,
+                };
+                assert_eq!(outputs.invalid_readings, if n < 4 { 0 } else { readings });
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_reported_from_outside_latches() {
+        let mut pair = Pair::settled();
+        pair.node.report_solenoid_failure();
+        let (outputs, _) = pair.step(|_| {}, |_| true);
+        assert_eq!((outputs.mode, outputs.fault), (Mode::Latched, FaultCode::Solenoid));
+        let mut pair = Pair::settled();
+        pair.node.latch(FaultCode::Internal);
+        let (outputs, _) = pair.step(|_| {}, |_| true);
+        assert_eq!((outputs.mode, outputs.fault), (Mode::Latched, FaultCode::Internal));
+    }
+
+    #[test]
+    fn frames_are_counted_by_what_they_are() {
+        let mut pair = Pair::settled();
+        let before = pair.node.counters();
+        assert_eq!((before.received, before.own, before.foreign), (6 * 60, 0, 0));
+        for id in [COMMAND.id, STATUS.id] {
+            pair.node.receive(id, &[0; FRAME_BYTES]);
+            let (outputs, _) = pair.step(|_| {}, |_| true);
+            assert_eq!(outputs.fault, FaultCode::ForeignSender);
+        }
+        pair.node.receive(0x7FF, &[]);
+        let after = pair.node.counters();
+        assert_eq!((after.own, after.foreign, after.received), (2, 1, 6 * 62));
+    }
+}

@@ -3,7 +3,8 @@
 //! It trusts the command no more than the controller trusts its sensors. A command opens valves only if it is the only one in its
 //! tick, right and in sequence, from a message that is trusted, an answer to readings that are at most 2 ticks old, and if the
 //! mode that it names permits those valves. A right command of which anything else is doubtful may still close valves, because a
-//! closing is never delayed; how often a valve opens again is limited as in the controller. Without a command to obey for the contract's `timeout_ticks` all valves close.
+//! closing is never delayed; of several in a tick each closes what it wants closed. How often a valve opens again is limited as in the controller. Without a command to obey for the
+//! contract's `timeout_ticks` all valves close.
 //!
 //! The plant's tick has 8 bits, so that a recording of commands that is played again and again answers a fresh tick now and then.
 //! After an answer that was older than readings can be in any mode but a closed one, the stage therefore opens nothing until a
@@ -45,13 +46,40 @@ const SURELY_CLOSED_TICKS: u8 = 2 * COMMAND.timeout_ticks;
 #[derive(Clone, Copy, Debug)]
 pub struct OutputStage {
     receiver: Receiver,
-    /// The youngest content of this tick that passed its check.
-    content: Option<CommandMessage>,
+    /// What the right commands of this tick say.
+    heard: Option<Heard>,
     command: ValveCommand,
     switching: SwitchingLimit,
     /// An answer was far too old, and no fresh command has closed everything since.
     answered_late: bool,
     errors: u32,
+}
+
+/// The commands of a tick that passed their check.
+#[derive(Clone, Copy, Debug)]
+struct Heard {
+    youngest: CommandMessage,
+    /// The valves that all of them, and their modes, want or permit open.
+    permitted: ValveCommand,
+    /// Whether there was more than one.
+    several: bool,
+}
+
+impl Heard {
+    fn new(content: CommandMessage, before: Option<Self>) -> Self {
+        // What the mode does not permit is never obeyed, whatever else is right.
+        let permitted = failsafe::permitted_in(content.mode, content.command);
+        Self {
+            youngest: content,
+            permitted: before.map_or(permitted, |before| both(before.permitted, permitted)),
+            several: before.is_some(),
+        }
+    }
+}
+
+/// The valves that two commands have open.
+fn both(one: ValveCommand, other: ValveCommand) -> ValveCommand {
+    ValveCommand::from_word(one.word() & other.word())
 }
 
 impl Default for OutputStage {
@@ -65,7 +93,7 @@ impl OutputStage {
     pub fn new() -> Self {
         Self {
             receiver: Receiver::new(&COMMAND),
-            content: None,
+            heard: None,
             command: ValveCommand::SAFE,
             switching: SwitchingLimit::default(),
             answered_late: false,
@@ -83,7 +111,7 @@ impl OutputStage {
         }
         if status.is_usable() {
             match CommandMessage::decode(data) {
-                Some(content) => self.content = Some(content),
+                Some(content) => self.heard = Some(Heard::new(content, self.heard)),
                 None => self.distrust(),
             }
         }
@@ -98,24 +126,28 @@ impl OutputStage {
 
     /// Ends a tick, with its number modulo 256 as the displacement messages carry it; returns the command to obey.
     pub fn end_of_tick(&mut self, plant_tick: u8) -> ValveCommand {
-        let content = self.content.take();
-        // What the mode does not permit is never obeyed, whatever else is right.
-        let permitted = content.map(|content| failsafe::permitted_in(content.mode, content.command));
-        if let Some(content) = content {
-            let age = plant_tick.wrapping_sub(content.echo_tick);
+        let heard = self.heard.take();
+        if let Some(Heard { youngest, .. }) = heard {
+            let age = plant_tick.wrapping_sub(youngest.echo_tick);
             self.answered_late |= age > SURELY_CLOSED_TICKS;
-            if age > OLDEST_ECHO_TICKS || permitted != Some(content.command) {
+            if age > OLDEST_ECHO_TICKS || failsafe::permitted_in(youngest.mode, youngest.command) != youngest.command {
                 self.distrust();
             }
         }
         let new = self.receiver.end_of_tick().is_some();
-        if new && permitted == Some(ValveCommand::SAFE) {
-            self.answered_late = false;
-        }
-        let wanted = match permitted {
+        let wanted = match heard {
             _ if self.receiver.is_lost() => ValveCommand::SAFE,
-            Some(permitted) if new && !self.answered_late => permitted,
-            Some(permitted) => ValveCommand::from_word(self.command.word() & permitted.word()),
+            Some(heard) => {
+                let obeyed = new && !heard.several;
+                if obeyed && heard.permitted == ValveCommand::SAFE {
+                    self.answered_late = false;
+                }
+                if obeyed && !self.answered_late {
+                    heard.permitted
+                } else {
+                    both(self.command, heard.permitted)
+                }
+            }
             None => self.command,
         };
         self.command = self.switching.step(wanted);
@@ -156,7 +188,7 @@ mod tests {
         fn new() -> Self {
             let mut pair = Self {
                 controller: Protector::new(&COMMAND),
-                stage: OutputStage::new(),
+                stage: OutputStage::default(),
                 tick: 0,
             };
             for _ in 0..20 {
@@ -211,6 +243,15 @@ mod tests {
             pair.step(ValveCommand::SAFE, Mode::Normal, 0);
             assert_eq!(pair.step(ValveCommand::SOFT, Mode::Normal, late), ValveCommand::SOFT);
         }
+        let mut pair = Pair::new();
+        pair.step(ValveCommand::SAFE, Mode::Normal, 0);
+        assert_eq!(pair.step(ValveCommand::SOFT, Mode::Normal, 3), ValveCommand::SAFE);
+        assert_eq!(pair.step(ValveCommand::SOFT, Mode::Normal, 8), ValveCommand::SAFE);
+        assert_eq!(
+            pair.step(ValveCommand::SOFT, Mode::Normal, 0),
+            ValveCommand::SOFT,
+            "that was not too old"
+        );
         // After an answer that was far too old, a fresh one must close everything first.
         let mut pair = Pair::new();
         pair.step(one, Mode::Normal, 9);
@@ -243,6 +284,31 @@ mod tests {
         );
     }
 
+    /// Just after a lost command the frame count alone does not tell a forged one from one that was held up.
+    #[test]
+    fn two_commands_after_a_lost_one_open_nothing_and_close() {
+        for forged_first in [false, true] {
+            let mut pair = Pair::new();
+            pair.step(ValveCommand::SAFE, Mode::Latched, 0);
+            pair.controller.protect(&mut [0; FRAME_BYTES]);
+            pair.end();
+            for forged in [forged_first, !forged_first] {
+                let mode = if forged { Mode::Normal } else { Mode::Latched };
+                pair.send(if forged { ValveCommand::SOFT } else { ValveCommand::SAFE }, mode, 0);
+            }
+            assert_eq!(pair.end(), ValveCommand::SAFE, "{forged_first}");
+
+            let mut pair = Pair::new();
+            pair.controller.protect(&mut [0; FRAME_BYTES]);
+            pair.end();
+            for forged in [forged_first, !forged_first] {
+                let word = if forged { 0xFFF } else { 0x010 };
+                pair.send(ValveCommand::from_word(word), Mode::Normal, 0);
+            }
+            assert_eq!(pair.end().word(), 0x010, "the closing is not delayed");
+        }
+    }
+
     #[test]
     fn forged_closings_make_no_valve_chatter() {
         let mut pair = Pair::new();
@@ -269,6 +335,7 @@ mod tests {
                 ValveCommand::SAFE
             };
             assert_eq!(pair.end(), expected, "tick {n}");
+            assert_eq!(pair.stage.ticks_without_command(), n);
         }
         let mut pair = Pair::new();
         let before = pair.controller;

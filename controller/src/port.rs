@@ -246,18 +246,25 @@ mod tests {
         incoming: VecDeque<Result<TestFrame, ()>>,
         sent: Vec<TestFrame>,
         room: usize,
+        /// Whether the next transmission fails.
+        broken: bool,
+        /// Whether each frame displaces another one from its mailbox.
+        displaces: bool,
     }
 
     impl Can for TestCan {
         type Frame = TestFrame;
         type Error = embedded_can::ErrorKind;
         fn transmit(&mut self, frame: &TestFrame) -> nb::Result<Option<TestFrame>, Self::Error> {
+            if core::mem::take(&mut self.broken) {
+                return Err(nb::Error::Other(embedded_can::ErrorKind::Other));
+            }
             if self.room == 0 {
                 return Err(nb::Error::WouldBlock);
             }
             self.room -= 1;
             self.sent.push(frame.clone());
-            Ok(None)
+            Ok(self.displaces.then(|| frame.clone()))
         }
         fn receive(&mut self) -> nb::Result<TestFrame, Self::Error> {
             match self.incoming.pop_front() {
@@ -318,5 +325,40 @@ mod tests {
         port.can_mut().incoming.extend([Err(()), Err(()), Err(())]);
         port.poll();
         assert_eq!((port.counters().errors, port.can.incoming.len()), (1, 2));
+    }
+
+    /// A frame that could not be sent is sent again with the next chance; the error and each displaced frame are counted.
+    #[test]
+    fn a_transmit_error_loses_no_frame_and_does_not_spin() {
+        let mut port = port();
+        port.can_mut().broken = true;
+        port.tick();
+        assert_eq!((port.counters().errors, port.can.sent.len()), (1, 0));
+        port.can_mut().displaces = true;
+        port.poll();
+        assert_eq!(
+            (port.counters().errors, port.can.sent.len()),
+            (1, 2),
+            "command and status"
+        );
+        assert_eq!(port.counters().dropped, 2);
+    }
+
+    #[test]
+    fn what_is_reported_from_outside_reaches_the_node() {
+        let mut first = port();
+        first.latch(FaultCode::BusSilent);
+        let outputs = first.tick();
+        assert_eq!((outputs.mode, outputs.fault), (Mode::Latched, FaultCode::BusSilent));
+        let mut second = port();
+        second.report_solenoid_failure();
+        let outputs = second.tick();
+        assert_eq!((outputs.mode, outputs.fault), (Mode::Latched, FaultCode::Solenoid));
+        second.can_mut().incoming.push_back(Ok(TestFrame {
+            id: Id::Standard(StandardId::MAX),
+            data: Vec::new(),
+        }));
+        second.poll();
+        assert_eq!(second.node().counters().foreign, 1);
     }
 }

@@ -95,4 +95,10 @@ mod tests {
         assert_eq!(check(1.0, 1.1).unwrap_err().range, (0.1, 1.0));
         assert_eq!(check(3.0, 1.0).unwrap_err().range, (0.1, 2.0));
     }
+
+    #[test]
+    fn thresholds_are_squared() {
+        let squared = Hysteresis { begin: 3.0, end: 0.5 }.squared();
+        assert_eq!((squared.begin, squared.end), (9.0, 0.25));
+    }
 }

@@ -105,4 +105,12 @@ mod tests {
         }
         assert_eq!(Reading::new(-0.1).value(), Some(-0.1));
     }
+
+    #[test]
+    fn readings_are_equal_with_equal_values_or_with_none() {
+        assert_eq!(Reading::new(f32::INFINITY), Reading::default());
+        assert_eq!(Reading::new(0.5), Reading::new(0.5));
+        assert_ne!(Reading::new(0.5), Reading::new(0.25));
+        assert_ne!(Reading::new(0.5), Reading::INVALID);
+    }
 }

@@ -2,8 +2,9 @@
 //!
 //! A sender sends one frame a tick. More than one means that somebody else sends under its identifier, and no check value says
 //! which of them is right. So the frames of a tick are judged together: only a tick that brought what one sender sends brings
-//! new data, and any other counts as wrong. A frame that was held up by the bus arrives together with the next one; so after a
-//! tick without a frame one more is accepted.
+//! new data, and any other counts as wrong. A frame that was held up by the bus arrives together with the next one; so just after
+//! a tick without a frame one more is accepted. Each tick that brings one frame as it should takes such an allowance back: a frame
+//! that was lost long ago does not come any more, and somebody else's must not pass for it.
 
 use crate::can::{CheckStatus, Checker, Contract, FRAME_BYTES, Period, StateMachine};
 
@@ -100,6 +101,7 @@ impl Receiver {
         };
         self.owed = match frames {
             0 => self.owed.saturating_add(1).min(self.timeout_ticks),
+            1 => self.owed.saturating_sub(1),
             more => self.owed.saturating_sub(more - 1),
         };
         if frames == 0 {
@@ -202,6 +204,79 @@ mod tests {
     }
 
     #[test]
+    fn a_frame_that_was_lost_is_no_allowance_for_somebody_else_s() {
+        for lost in 1..=2 {
+            let (mut receiver, frames) = settled();
+            let mut frames = frames[lost..].iter();
+            for _ in 0..lost {
+                assert_eq!(receiver.end_of_tick(), None);
+            }
+            for _ in 0..lost {
+                receiver.receive(frames.next().unwrap());
+                assert!(receiver.end_of_tick().is_some());
+            }
+            receiver.receive(frames.next().unwrap());
+            receiver.receive(frames.next().unwrap());
+            assert_eq!(receiver.end_of_tick(), None, "{lost} lost");
+        }
+    }
+
+    /// After a tick without a frame two may come. What the graver one says counts for both.
+    #[test]
+    fn the_worst_frame_of_a_tick_decides() {
+        for wrong_first in [false, true] {
+            let (mut receiver, frames) = settled();
+            receiver.end_of_tick();
+            let mut wrong = frames[1];
+            wrong[5] ^= 1;
+            for wrong_now in [wrong_first, !wrong_first] {
+                receiver.receive(if wrong_now { &wrong } else { &frames[1] });
+            }
+            assert_eq!(receiver.candidate(), None);
+            assert_eq!(receiver.end_of_tick(), None);
+            // A repeated frame is no reason against the one that it repeats.
+            receiver.receive(&frames[2]);
+            assert_eq!(receiver.candidate(), Some(&frames[2]));
+            assert_eq!(receiver.end_of_tick(), Some(frames[2]));
+            receiver.end_of_tick();
+            receiver.receive(&frames[4]);
+            receiver.receive(&frames[4]);
+            assert_eq!(receiver.end_of_tick(), Some(frames[4]));
+        }
+    }
+
+    #[test]
+    fn distrust_without_a_frame_is_a_wrong_tick_and_not_an_empty_one() {
+        let (mut receiver, _) = settled();
+        for n in 1..=3 {
+            receiver.distrust();
+            assert_eq!(receiver.end_of_tick(), None);
+            assert_eq!((receiver.is_lost(), receiver.age()), (n == 3, n));
+        }
+    }
+
+    #[test]
+    fn a_frame_after_silence_continues_the_sequence() {
+        // Up to three silent ticks: the counter is so many further, and the frame is used at once.
+        for silent in 0..=3 {
+            let (mut receiver, frames) = settled();
+            for n in 1..=silent {
+                receiver.end_of_tick();
+                assert_eq!(usize::from(receiver.age()), n);
+            }
+            receiver.receive(&frames[silent]);
+            assert_eq!(receiver.end_of_tick(), Some(frames[silent]), "{silent} silent");
+            assert_eq!((receiver.age(), receiver.is_lost()), (0, false));
+        }
+        // Without silence as many lost ones are a wrong sequence from the third on.
+        for lost in 0..5 {
+            let (mut receiver, frames) = settled();
+            receiver.receive(&frames[lost]);
+            assert_eq!(receiver.end_of_tick().is_some(), lost < 3, "{lost} lost");
+        }
+    }
+
+    #[test]
     fn silence_is_bridged_for_three_ticks() {
         let (mut receiver, frames) = settled();
         let lost: Vec<bool> = (0..5)
@@ -231,5 +306,22 @@ mod tests {
                 "trusted again after sixteen clean ticks"
             );
         }
+    }
+
+    /// Three late frames may come in three ticks.
+    #[test]
+    fn late_frames_may_come_one_after_the_other() {
+        let (mut receiver, frames) = settled();
+        for _ in 0..3 {
+            receiver.end_of_tick();
+        }
+        for late in frames[..6].chunks(2) {
+            receiver.receive(&late[0]);
+            receiver.receive(&late[1]);
+            assert_eq!(receiver.end_of_tick(), Some(late[1]));
+        }
+        receiver.receive(&frames[6]);
+        receiver.receive(&frames[7]);
+        assert_eq!(receiver.end_of_tick(), None);
     }
 }

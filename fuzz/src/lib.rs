@@ -4,6 +4,8 @@
 //! Driven by libFuzzer (`fuzz_targets/`, coverage-guided, as long as one likes) and by `tests/hostile_bytes.rs` of the
 //! root package (mutated valid files, seconds, every test run).
 
+mod fault_plan;
+
 use oleo_controller::{Configuration, Node, PlantEnd, SensorMessage};
 use oleo_diagnose::recording::{ColumnKind, ColumnSpec, GapPolicy, parse};
 use oleo_hil::bus::{SlcanDecoder, slcan_encode};
@@ -39,6 +41,16 @@ pub fn can_frames(bytes: &[u8]) {
             }
             assert!(plant.end_of_tick().word() < 1 << 12);
         }
+    }
+}
+
+/// A vehicle whose frames are right, and events that spoil them. Whatever goes wrong, the rules of the safe state hold.
+pub fn fault_plan(bytes: &[u8]) {
+    let Some(plan) = fault_plan::Plan::from_bytes(bytes) else {
+        return;
+    };
+    if let Err(broken) = fault_plan::drive(&plan, |_| {}) {
+        panic!("{broken:?} in {plan:?}");
     }
 }
 

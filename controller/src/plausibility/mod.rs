@@ -227,3 +227,154 @@ impl State {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::configuration::Configuration;
+    use crate::failsafe::FaultCode;
+    use crate::reading::Reading;
+    use oleo_interface::{Gauge, PressurePoint, StrutPressures};
+
+    const GOOD: (FaultCode, [bool; 4]) = (FaultCode::None, [false; 4]);
+
+    /// A vehicle whose struts are shaken together by 10 mm at 2 Hz; p1 to p4 follow by 10 MPa/m.
+    fn shaken(tick: u32) -> Inputs {
+        let swing = libm::sinf(core::f32::consts::TAU * 2.0 * 0.005 * tick as f32);
+        let pressure = StrutPressures::splat(Gauge(2.0e6 + 1.0e5 * swing));
+        Inputs::from_values(Corners::splat(0.01 * swing), Corners::splat(pressure))
+    }
+
+    fn parked(_: u32) -> Inputs {
+        shaken(0)
+    }
+
+    struct Vehicle {
+        state: State,
+        tick: u32,
+        inputs: fn(u32) -> Inputs,
+    }
+
+    impl Vehicle {
+        fn settled(inputs: fn(u32) -> Inputs) -> Self {
+            let (state, tick) = (State::default(), 0);
+            let mut vehicle = Self { state, tick, inputs };
+            assert_eq!(vehicle.run(600, |_| {}), GOOD);
+            vehicle
+        }
+
+        /// Ticks in which `spoil` changes the inputs; returns cause and corners of the last one.
+        fn run(&mut self, ticks: u32, spoil: impl Fn(&mut Inputs)) -> (FaultCode, [bool; 4]) {
+            let parameters = Configuration::defender110().plausibility;
+            let context = Context {
+                spring_settled_open: true,
+                spring_commanded_closed: false,
+                learning: true,
+            };
+            let mut health = crate::failsafe::Health::default();
+            for _ in 0..ticks {
+                let mut inputs = (self.inputs)(self.tick);
+                spoil(&mut inputs);
+                health = self.state.step(&parameters, &inputs, &context).health;
+                self.tick += 1;
+            }
+            (health.cause, health.affected.into_array())
+        }
+    }
+
+    fn only(corner: Corner) -> [bool; 4] {
+        Corners::from_fn(|other| other == corner).into_array()
+    }
+
+    fn offset(reading: &mut Reading, offset: f32) {
+        *reading = Reading::new(reading.value().unwrap_or(0.0) + offset);
+    }
+
+    #[test]
+    fn a_missing_reading_concerns_its_corner() {
+        for corner in Corner::ALL {
+            let mut vehicle = Vehicle::settled(parked);
+            let missing = |inputs: &mut Inputs| inputs.displacement[corner] = Reading::INVALID;
+            assert_eq!(vehicle.run(2, missing), GOOD);
+            assert_eq!(vehicle.run(1, missing), (FaultCode::SensorRange, only(corner)));
+            assert_eq!(vehicle.run(11, |_| {}), (FaultCode::SensorRange, only(corner)));
+            assert_eq!(vehicle.run(1, |_| {}), GOOD);
+        }
+    }
+
+    #[test]
+    fn bus_and_solenoids_are_faults_while_all_readings_are_good() {
+        let mut vehicle = Vehicle::settled(parked);
+        let silent = |inputs: &mut Inputs| inputs.lost_messages = MessageSet::ALL;
+        assert_eq!(vehicle.run(1, silent), (FaultCode::BusSilent, [false; 4]));
+        assert_eq!(vehicle.run(1, |_| {}), GOOD);
+        assert_eq!(
+            vehicle.run(1, |inputs| inputs.foreign_sender = true),
+            (FaultCode::ForeignSender, [true; 4])
+        );
+        assert_eq!(vehicle.run(1, |_| {}), GOOD);
+        assert_eq!(
+            vehicle.run(1, |inputs| inputs.solenoid_failed = true),
+            (FaultCode::Solenoid, [false; 4])
+        );
+        assert_eq!(vehicle.run(1, |_| {}), GOOD);
+    }
+
+    /// What a comparison says of one corner comes and goes without the others.
+    #[test]
+    fn corners_are_compared_each_for_itself() {
+        for first in Corner::ALL {
+            for second in Corner::ALL.into_iter().filter(|second| *second != first) {
+                let mut vehicle = Vehicle::settled(parked);
+                let wrong = |corner: Corner| move |inputs: &mut Inputs| offset(&mut inputs.pressure[corner].p2, 2.0e6);
+                assert_eq!(vehicle.run(300, wrong(first)), (FaultCode::SensorVote, only(first)));
+                let both = |inputs: &mut Inputs| [first, second].into_iter().for_each(|corner| wrong(corner)(inputs));
+                let two = Corners::from_fn(|corner| corner == first || corner == second).into_array();
+                assert_eq!(vehicle.run(300, both), (FaultCode::SensorVote, two));
+                assert_eq!(vehicle.run(600, wrong(second)), (FaultCode::SensorVote, only(second)));
+                assert_eq!(vehicle.run(600, |_| {}), GOOD);
+            }
+        }
+    }
+
+    #[test]
+    fn a_stuck_pressure_is_found_within_200_ticks_and_forgiven_when_it_moves() {
+        for corner in Corner::ALL {
+            for point in [PressurePoint::P1, PressurePoint::P2, PressurePoint::P3] {
+                let mut vehicle = Vehicle::settled(shaken);
+                let stuck = |inputs: &mut Inputs| inputs.pressure[corner][point] = Reading::new(2.0e6);
+                let found = (1..=300).find(|_| vehicle.run(1, stuck).0 == FaultCode::SensorStuck);
+                assert!(found.is_some_and(|n| n <= 200), "{corner:?} {point:?}: {found:?}");
+                assert_eq!(vehicle.run(400, stuck), (FaultCode::SensorStuck, only(corner)));
+                assert_eq!(vehicle.run(400, |_| {}), GOOD);
+            }
+        }
+    }
+
+    /// Its own p1 moves by 0.2 MPa, which is not enough alone: two other struts must move.
+    #[test]
+    fn a_stuck_displacement_is_found_by_the_other_struts() {
+        for corner in Corner::ALL {
+            let mut vehicle = Vehicle::settled(shaken);
+            let stuck = |inputs: &mut Inputs| inputs.displacement[corner] = Reading::new(0.0);
+            let found = (1..=300).find(|_| vehicle.run(1, stuck).0 == FaultCode::SensorStuck);
+            assert!(found.is_some_and(|n| n <= 200), "{corner:?}: {found:?}");
+            assert_eq!(vehicle.run(400, |_| {}), GOOD);
+        }
+    }
+
+    /// The context is about the corner whose turn it is.
+    #[test]
+    fn turns_go_round() {
+        let mut vehicle = Vehicle::settled(parked);
+        let turns: [Corner; 8] = core::array::from_fn(|_| {
+            let turn = vehicle.state.turn();
+            vehicle.run(1, |_| {});
+            turn
+        });
+        let first = turns[0].index();
+        for (n, turn) in turns.into_iter().enumerate() {
+            assert_eq!(turn.index(), (first + n) % 4);
+        }
+    }
+}

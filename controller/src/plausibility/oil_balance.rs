@@ -133,3 +133,171 @@ impl OilBalance {
         Absolute(self.charge_pa)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use oleo_interface::PressurePoint;
+
+    const AREA_M2: f32 = 1.963_495_4e-3;
+
+    /// A strut whose gas has a charge, with oil behind valve 3, at a displacement: pressures from volumes (Boyle).
+    fn strut(charge_pa: f32, trapped_m: f32, displacement_m: f32) -> StrutPressures<Gauge<f32>> {
+        let gas2 = 4.0e-4 - AREA_M2 * trapped_m;
+        let gas1 = 5.0e-4 - AREA_M2 * displacement_m - gas2;
+        let p2 = charge_pa * 1.0e-4 / gas1;
+        StrutPressures {
+            p4: charge_pa * 4.0e-4 / gas2,
+            ..StrutPressures::splat(p2)
+        }
+        .map(|p| Absolute(p).gauge())
+    }
+
+    fn parameters() -> Parameters {
+        Parameters::new(&VehicleDescription::default())
+    }
+
+    /// One turn with a reading that may differ from the truth; returns whether the displacement is called wrong, and the charge.
+    fn turn(balance: &mut OilBalance, reading_m: f32, p: &StrutPressures<Gauge<f32>>, learning: bool) -> (bool, f32) {
+        let mut verdict = Verdicts::GOOD;
+        let charge = balance.step(&parameters(), reading_m, p, learning, &mut verdict);
+        assert!(verdict.pressures_are_good(), "it is about the displacement");
+        (verdict.gravest() == FaultCode::OilBalance, charge.pa())
+    }
+
+    /// After a second of learning at rest.
+    fn settled(charge_pa: f32) -> OilBalance {
+        let mut balance = OilBalance::default();
+        for _ in 0..50 {
+            turn(&mut balance, 0.0, &strut(charge_pa, 0.0, 0.0), true);
+        }
+        balance
+    }
+
+    /// Turns until the verdict is as wanted.
+    fn turns_until(wanted: bool, mut step: impl FnMut() -> bool) -> Option<u16> {
+        (1..1000).find(|_| step() == wanted)
+    }
+
+    #[test]
+    fn holds_at_any_displacement_with_any_oil_behind_the_valve() {
+        let mut balance = OilBalance::default();
+        for n in 0..2000_u16 {
+            let (trapped, x) = (f32::from(n % 7) * 0.005 - 0.015, f32::from(n % 11) * 0.004 - 0.02);
+            let (wrong, charge) = turn(&mut balance, x, &strut(2.4e6, trapped, x), n < 50);
+            assert!(!wrong, "turn {n}");
+            assert!((charge / 2.4e6 - 1.0).abs() < 1e-3, "turn {n}: {charge}");
+        }
+    }
+
+    #[test]
+    fn the_charge_is_learnt_quickly_at_first_and_slowly_later() {
+        let mut balance = settled(2.0e6);
+        // 5 % more: after a time constant 63 % of it are learnt.
+        let mut after = |seconds: f32, learning| {
+            let turns = (seconds / TURN_S) as u16;
+            (0..turns)
+                .map(|_| turn(&mut balance, 0.0, &strut(2.1e6, 0.0, 0.0), learning).1)
+                .last()
+                .unwrap()
+        };
+        let charge = after(60.0, false);
+        assert!((charge - 2.0e6 - 0.632e5).abs() < 2.0e3, "{charge}");
+        let charge = after(0.5, true);
+        assert!((charge - 2.1e6).abs() < 1.0e2, "{charge}");
+    }
+
+    #[test]
+    fn an_offset_is_found_in_the_documented_time_and_its_end_too() {
+        for (offset_m, found_s) in [
+            (0.035, None),
+            (-0.035, None),
+            (0.05, Some(1.61)),
+            (-0.05, Some(1.61)),
+            (0.07, Some(0.85)),
+        ] {
+            let mut balance = settled(2.0e6);
+            // The lag of 1 s: ln(d / (d - 40 mm)), and 0.2 s. The charge learns some of it meanwhile.
+            let found = turns_until(true, || turn(&mut balance, offset_m, &strut(2.0e6, 0.0, 0.0), false).0);
+            match (found, found_s) {
+                (None, None) => continue,
+                (Some(found), Some(expected)) => {
+                    let found = f32::from(found) * TURN_S;
+                    assert!(
+                        (expected..1.2 * expected + 0.25).contains(&found),
+                        "{offset_m} m: {found} s"
+                    );
+                }
+                other => panic!("{offset_m} m: {other:?}"),
+            }
+            let residual_m = balance.residual_m.abs();
+            let charge_pa = balance.charge_pa;
+            assert_eq!(
+                turn(&mut balance, offset_m, &strut(2.0e6, 0.0, 0.0), false).1,
+                charge_pa,
+                "not learnt meanwhile"
+            );
+            // Back below 25 mm, and 0.2 s.
+            let back = turns_until(false, || turn(&mut balance, 0.0, &strut(2.0e6, 0.0, 0.0), false).0);
+            let back = f32::from(back.unwrap()) * TURN_S;
+            let expected = libm::logf(residual_m / RIGHT_M) + 0.2;
+            assert!(
+                (back - expected).abs() < 0.15,
+                "{offset_m} m: back after {back} s, expected {expected} s"
+            );
+        }
+    }
+
+    #[test]
+    fn between_both_bounds_a_verdict_stays_as_it_is() {
+        let mut balance = settled(2.0e6);
+        let step = |balance: &mut OilBalance, offset_m| turn(balance, offset_m, &strut(2.0e6, 0.0, 0.0), false).0;
+        assert!(turns_until(true, || step(&mut balance, 0.06)).is_some());
+        assert!(
+            (0..1000).all(|_| step(&mut balance, 0.032)),
+            "above 25 mm it stays wrong"
+        );
+        assert!((0..1000).any(|_| !step(&mut balance, 0.015)));
+    }
+
+    #[test]
+    fn a_charge_may_drift_by_a_quarter_and_not_further() {
+        for (share, wrong) in [(0.78, false), (0.72, true), (1.27, false), (1.34, true)] {
+            let mut balance = settled(2.0e6);
+            let turns = 60_000_u16;
+            let found = (0..turns).any(|n| {
+                let charge = 2.0e6 * (1.0 + (share - 1.0) * f32::from(n) / f32::from(turns));
+                turn(&mut balance, 0.0, &strut(charge, 0.0, 0.0), false).0
+            });
+            assert_eq!(found, wrong, "{share}");
+        }
+    }
+
+    #[test]
+    fn a_charge_that_no_suspension_has_is_wrong_from_the_start() {
+        for (charge_pa, wrong) in [(0.25e6, true), (0.35e6, false), (14.5e6, false), (15.5e6, true)] {
+            let mut balance = OilBalance::default();
+            let found = turns_until(true, || turn(&mut balance, 0.0, &strut(charge_pa, 0.0, 0.0), true).0);
+            assert_eq!(found, wrong.then_some(10), "{charge_pa} Pa");
+        }
+    }
+
+    #[test]
+    fn nothing_is_learnt_from_what_is_not_measured() {
+        for place in [Place::DISPLACEMENT, Place::P2, Place::P4] {
+            let mut balance = settled(2.0e6);
+            let before = balance.charge_pa;
+            for _ in 0..500 {
+                let mut verdict = Verdicts::GOOD;
+                verdict.blame(place, FaultCode::SensorRange);
+                let charge = balance.step(&parameters(), 0.1, &strut(3.0e6, 0.0, 0.0), true, &mut verdict);
+                assert_eq!((charge.pa(), verdict.count()), (before, 1));
+            }
+        }
+        // p1 and p3 are not needed.
+        let (mut balance, mut verdict) = (settled(2.0e6), Verdicts::GOOD);
+        verdict.blame(Place::of(PressurePoint::P1), FaultCode::SensorRange);
+        let charge = balance.step(&parameters(), 0.0, &strut(3.0e6, 0.0, 0.0), true, &mut verdict);
+        assert!(charge.pa() > 2.1e6);
+    }
+}

@@ -140,4 +140,21 @@ mod tests {
         );
         assert!(!window(0.0, 0.03));
     }
+
+    #[test]
+    fn a_verdict_ends_where_the_residual_is_a_small_share() {
+        for (share, ends) in [(0.55, true), (0.65, false)] {
+            let mut motion = OilMotion::default();
+            let mut window = |residual_m: f32, moved_m: f32| {
+                for turn in 0..WINDOW_TURNS {
+                    let up = f32::from(turn % 2);
+                    let measured = (up * (moved_m + residual_m), up * residual_m);
+                    motion.step(Some(measured), &mut Verdicts::default());
+                }
+                motion.flagged
+            };
+            assert_eq!((0..4).map(|_| window(0.05, 0.05)).last(), Some(true));
+            assert_eq!(!window(share * 0.05, 0.05), ends, "{share}");
+        }
+    }
 }

@@ -242,4 +242,65 @@ mod tests {
             );
         }
     }
+
+    /// A strut whose five readings have been good for long, at a displacement and under one pressure.
+    fn calm(displacement_m: f32, pressure_pa: f32) -> (StrutReadings, f32, StrutPressures<Gauge<f32>>) {
+        let (mut checks, mut x, mut p) = (StrutReadings::default(), 0.0, StrutPressures::default());
+        let pressure = StrutPressures::splat(Reading::new(pressure_pa));
+        for _ in 0..=LIMIT {
+            checks.step((Reading::new(displacement_m), &mut x), (&pressure, &mut p), || {
+                (false, false)
+            });
+        }
+        assert!(checks.calm);
+        (checks, x, p)
+    }
+
+    /// No way of writing a jump makes it ordinary.
+    #[test]
+    fn a_jump_is_not_taken_over() {
+        for (from_m, to_m) in [
+            (0.1, -0.1),
+            (0.1, 0.0),
+            (0.0, 0.1),
+            (-0.1, 0.1),
+            (-0.1, 0.0),
+            (0.1, 0.14),
+        ] {
+            let (mut checks, mut x, mut p) = calm(from_m, 2.0e6);
+            let pressure = StrutPressures::splat(Reading::new(2.0e6));
+            let good = checks.step((Reading::new(to_m), &mut x), (&pressure, &mut p), || (false, false));
+            assert_eq!((good, x), (false, from_m), "{from_m} to {to_m}");
+        }
+    }
+
+    /// One wrong reading, and any two, keep the strut from being calm, and are told; twelve good samples end it.
+    #[test]
+    fn each_reading_and_each_pair_is_told() {
+        for wrong in (1_u8..32).filter(|wrong| wrong.count_ones() <= 2) {
+            let (mut checks, mut x, mut p) = calm(0.01, 2.0e6);
+            let mut verdicts = Verdicts::GOOD;
+            for good in [false, true] {
+                for sample in 1..=2 * LIMIT {
+                    let is_wrong = |n: u8| !good && wrong >> n & 1 == 1;
+                    let value = |n: u8, value: f32| {
+                        if is_wrong(n) {
+                            Reading::INVALID
+                        } else {
+                            Reading::new(value)
+                        }
+                    };
+                    let pressure = StrutPressures::from_array([1, 2, 3, 4].map(|n| value(n, 2.0e6)));
+                    let displacement = (value(0, 0.01), &mut x);
+                    let calm = checks.step(displacement, (&pressure, &mut p), || (false, false));
+                    verdicts = checks.verdicts();
+                    let told = if good { sample < LIMIT } else { sample >= 3 };
+                    assert_eq!(verdicts != Verdicts::GOOD, told, "{wrong:05b} sample {sample}");
+                    assert_eq!(calm, good && sample >= LIMIT, "{wrong:05b} sample {sample}");
+                    assert_eq!(u32::from(verdicts.count()), if told { wrong.count_ones() } else { 0 });
+                }
+            }
+            assert_eq!(verdicts, Verdicts::GOOD);
+        }
+    }
 }

@@ -168,4 +168,155 @@ mod tests {
             stuck.end_window();
         }
     }
+
+    /// Spans of the readings of a window.
+    #[derive(Clone, Copy)]
+    struct Window {
+        x_m: f32,
+        pressure_pa: StrutPressures<f32>,
+        open: bool,
+        moving: usize,
+    }
+
+    /// A window in which everything moves, with an open valve 3 and two other struts that move.
+    const MOVING: Window = Window {
+        x_m: 0.03,
+        pressure_pa: StrutPressures {
+            p1: 1.0e5,
+            p2: 1.0e5,
+            p3: 1.0e5,
+            p4: 1.0e5,
+        },
+        open: true,
+        moving: 3,
+    };
+
+    /// Drives a window, and returns what the first turn of the next one says of it.
+    fn after(stuck: &mut Stuck, window: Window) -> Verdicts {
+        for turn in 0..WINDOW_TURNS {
+            let share = f32::from(turn) / f32::from(WINDOW_TURNS - 1);
+            let pressure = window.pressure_pa.map(|span| Gauge(2.0e6 + span * share));
+            // The valve closes for one turn only.
+            let open = window.open || turn != WINDOW_TURNS / 2;
+            stuck.step(window.x_m * share, &pressure, open, &mut Verdicts::default());
+        }
+        stuck.end_window();
+        stuck.begin_window(window.moving);
+        let mut verdict = Verdicts::GOOD;
+        let pressure = window.pressure_pa.map(|_| Gauge(2.0e6));
+        stuck.clone().step(0.0, &pressure, window.open, &mut verdict);
+        verdict
+    }
+
+    fn only(place: Place) -> Verdicts {
+        let mut verdict = Verdicts::GOOD;
+        verdict.blame(place, FaultCode::SensorStuck);
+        verdict
+    }
+
+    #[test]
+    fn a_displacement_is_stuck_where_its_own_pressure_or_two_others_say_so() {
+        for (x_m, p1_pa, moving, is_stuck) in [
+            (2.0e-5, 3.1e5, 0, true),
+            (2.0e-5, 2.9e5, 0, false),
+            (2.0e-5, 2.9e5, 1, false),
+            (2.0e-5, 2.9e5, 2, true),
+            (2.0e-5, 0.6e5, 2, true),
+            (2.0e-5, 0.4e5, 3, false),
+            (4.0e-5, 3.1e5, 3, false),
+            (0.0, 0.0, 3, false),
+        ] {
+            let window = Window {
+                x_m,
+                pressure_pa: StrutPressures {
+                    p1: p1_pa,
+                    ..MOVING.pressure_pa
+                },
+                moving,
+                ..MOVING
+            };
+            let mut stuck = Stuck::default();
+            let expected = if is_stuck {
+                only(Place::DISPLACEMENT)
+            } else {
+                Verdicts::GOOD
+            };
+            assert_eq!(
+                after(&mut stuck, window),
+                expected,
+                "{x_m} m, {p1_pa} Pa, {moving} moving"
+            );
+            assert!(!stuck.has_moved());
+            if is_stuck {
+                let still = Window {
+                    x_m: 0.0,
+                    pressure_pa: StrutPressures::splat(0.0),
+                    ..MOVING
+                };
+                assert_eq!(after(&mut stuck, still), expected, "a parked vehicle tells nothing");
+                assert_eq!(after(&mut stuck, MOVING), Verdicts::GOOD, "it moves again");
+            }
+        }
+    }
+
+    #[test]
+    fn a_pressure_is_stuck_while_its_strut_moves() {
+        for point in PressurePoint::ALL {
+            // 5 mm are enough for p1 to p3, 20 mm for p4.
+            let enough_m = if point == PressurePoint::P4 { 0.02 } else { 0.005 };
+            for (x_m, span_pa, is_stuck) in [
+                (1.05 * enough_m, 5.0e3, true),
+                (0.95 * enough_m, 5.0e3, false),
+                (1.05 * enough_m, 6.0e3, false),
+                (0.03, 0.0, true),
+            ] {
+                let mut window = Window { x_m, ..MOVING };
+                window.pressure_pa[point] = span_pa;
+                let mut stuck = Stuck::default();
+                let expected = if is_stuck {
+                    only(Place::of(point))
+                } else {
+                    Verdicts::GOOD
+                };
+                assert_eq!(after(&mut stuck, window), expected, "{point:?}: {x_m} m, {span_pa} Pa");
+                assert_eq!(stuck.has_moved(), x_m >= 0.005);
+                let mut still = Window {
+                    x_m: 0.0,
+                    moving: 0,
+                    ..MOVING
+                };
+                still.pressure_pa = StrutPressures::splat(0.0);
+                assert_eq!(after(&mut stuck, still), expected, "a parked vehicle tells nothing");
+                assert_eq!(after(&mut stuck, MOVING), Verdicts::GOOD, "it moves again");
+            }
+        }
+    }
+
+    #[test]
+    fn p4_behind_a_valve_that_was_closed_for_a_moment_is_not_stuck() {
+        let mut window = Window { open: false, ..MOVING };
+        window.pressure_pa.p4 = 0.0;
+        let mut stuck = Stuck::default();
+        assert_eq!(after(&mut stuck, window), Verdicts::GOOD);
+        window.open = true;
+        assert_eq!(after(&mut stuck, window), only(Place::P4));
+    }
+
+    /// The value that replaces a wrong reading neither moves with the strut nor must it.
+    #[test]
+    fn a_reading_that_is_wrong_otherwise_is_not_looked_at() {
+        let mut stuck = Stuck::default();
+        for turn in 0..WINDOW_TURNS {
+            let share = f32::from(turn) / f32::from(WINDOW_TURNS - 1);
+            let mut verdict = Verdicts::GOOD;
+            verdict.blame(Place::P2, FaultCode::SensorRange);
+            let pressure = StrutPressures {
+                p2: Gauge(9.0e6 * share),
+                ..StrutPressures::splat(Gauge(2.0e6))
+            };
+            stuck.step(0.03 * share, &pressure, true, &mut verdict);
+        }
+        assert!(stuck.pressure.p2.width() < 0.0, "nothing was taken in");
+        assert!(stuck.displacement.width() > 0.02 && stuck.pressure.p1.width() == 0.0);
+    }
 }

@@ -142,4 +142,96 @@ mod tests {
         }
         assert_eq!(verdict, Verdicts::GOOD);
     }
+
+    /// One whole window with spans of p3 and p4 behind a valve that has been closed for long; returns what is said after it.
+    fn window(check: &mut TrappedOil, p3_pa: f32, p4_pa: f32) -> bool {
+        let mut verdict = Verdicts::GOOD;
+        for turn in 0..WINDOW_TURNS {
+            verdict = Verdicts::GOOD;
+            let share = f32::from(turn) / f32::from(WINDOW_TURNS - 1);
+            let pressure = StrutPressures {
+                p3: Gauge(2.0e6 + share * p3_pa),
+                p4: Gauge(3.0e6 - share * p4_pa),
+                ..StrutPressures::splat(Gauge(2.0e6))
+            };
+            check.step(&pressure, true, &mut verdict);
+        }
+        verdict.gravest() == FaultCode::ValveStuck
+    }
+
+    /// A check whose valve has been closed for long enough, at the beginning of a window.
+    fn closed() -> TrappedOil {
+        let mut check = TrappedOil::default();
+        for _ in 1..CLOSED_TURNS {
+            check.step(&StrutPressures::splat(Gauge(2.0e6)), true, &mut Verdicts::default());
+        }
+        check
+    }
+
+    /// 0.15 MPa and a third of p3, in two windows in a row.
+    #[test]
+    fn p4_must_move_far_enough_and_as_a_share_of_p3() {
+        for (p3_pa, p4_pa, is_stuck) in [
+            (0.1e6, 0.16e6, true),
+            (0.1e6, 0.14e6, false),
+            (1.0e6, 0.35e6, true),
+            (1.0e6, 0.32e6, false),
+            (0.0, 0.0, false),
+        ] {
+            let mut check = closed();
+            assert!(!window(&mut check, p3_pa, p4_pa), "one window is not enough");
+            assert_eq!(window(&mut check, p3_pa, p4_pa), is_stuck, "{p3_pa} and {p4_pa} Pa");
+        }
+        let mut check = closed();
+        for _ in 0..5 {
+            assert!(
+                !window(&mut check, 1.0e6, 1.0e6) && !window(&mut check, 1.0e6, 0.0),
+                "not in a row"
+            );
+        }
+    }
+
+    /// 0.5 MPa of p3 and less than a tenth of it in p4, in one window.
+    #[test]
+    fn a_shaken_strut_whose_p4_stays_clears_the_verdict() {
+        for (p3_pa, p4_pa, cleared) in [
+            (0.55e6, 0.05e6, true),
+            (0.45e6, 0.01e6, false),
+            (1.0e6, 0.12e6, false),
+            (1.0e6, 0.09e6, true),
+        ] {
+            let mut check = closed();
+            window(&mut check, 1.0e6, 1.0e6);
+            assert!(window(&mut check, 1.0e6, 1.0e6));
+            assert_eq!(!window(&mut check, p3_pa, p4_pa), cleared, "{p3_pa} and {p4_pa} Pa");
+        }
+    }
+
+    #[test]
+    fn a_wrong_pressure_or_an_open_valve_ends_the_window() {
+        let apart = StrutPressures {
+            p4: Gauge(4.0e6),
+            ..StrutPressures::splat(Gauge(5.0e6))
+        };
+        for (place, counts) in [(Place::P3, false), (Place::P4, false), (Place::P1, true)] {
+            let mut check = closed();
+            let mut verdict = Verdicts::GOOD;
+            check.step(&StrutPressures::splat(Gauge(2.0e6)), true, &mut verdict);
+            verdict.blame(place, FaultCode::SensorRange);
+            check.step(&apart, true, &mut verdict);
+            assert_eq!(check.turns, if counts { 2 } else { 0 }, "{place:?}");
+        }
+        let mut check = closed();
+        check.step(&apart, true, &mut Verdicts::default());
+        assert_eq!(check.turns, 1);
+        check.step(&apart, false, &mut Verdicts::default());
+        for turn in 1..CLOSED_TURNS {
+            check.step(&apart, true, &mut Verdicts::default());
+            assert_eq!(
+                (check.turns, check.p4.width() < 0.0),
+                (0, true),
+                "turn {turn}: it must settle again"
+            );
+        }
+    }
 }

@@ -87,3 +87,120 @@ impl Trusted {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use oleo_interface::{Axle, Corner, PressurePoint, Side};
+
+    const PLACES: [Place; 4] = [Place::P1, Place::P2, Place::P3, Place::P4];
+
+    /// The corners of a rigid body that has moved up, pitched and rolled, m.
+    fn rigid(heave: f32, pitch: f32, roll: f32) -> Corners<f32> {
+        Corners::from_fn(|corner| {
+            let fore = if corner.axle() == Axle::Front { 1.4 } else { -1.4 };
+            let left = if corner.side() == Side::Left { 0.5 } else { -0.5 };
+            heave + pitch * fore + roll * left
+        })
+    }
+
+    fn blamed(corner: Corner, places: &[Place]) -> Corners<Verdicts> {
+        let mut verdicts = Corners::splat(Verdicts::GOOD);
+        for place in places {
+            verdicts[corner].blame(*place, FaultCode::SensorRange);
+        }
+        verdicts
+    }
+
+    #[test]
+    fn a_missing_displacement_follows_from_a_rigid_body() {
+        for (heave, pitch, roll) in [(0.01, 0.02, -0.03), (-0.02, 0.0, 0.04), (0.0, -0.03, 0.01)] {
+            let truth = rigid(heave, pitch, roll);
+            for missing in Corner::ALL {
+                let mut measured = Trusted {
+                    displacement_m: truth,
+                    ..Trusted::default()
+                };
+                measured.displacement_m[missing] = 0.2;
+                let mut trusted = Trusted::default();
+                trusted.substitute(&measured, &blamed(missing, &[Place::DISPLACEMENT]));
+                for (corner, x) in trusted.displacement_m.iter() {
+                    assert!((x - truth[corner]).abs() < 1e-6, "{missing:?}: {trusted:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_replaces_a_displacement_is_in_range_and_two_missing_ones_are_kept() {
+        let mut measured = Trusted {
+            displacement_m: Corners::from_array([0.0, 0.2, 0.2, -0.2]),
+            ..Trusted::default()
+        };
+        let mut trusted = Trusted::default();
+        trusted.substitute(&measured, &blamed(Corner::FrontLeft, &[Place::DISPLACEMENT]));
+        assert_eq!(trusted.displacement_m[Corner::FrontLeft], DISPLACEMENT.most);
+        measured.displacement_m = Corners::from_array([0.2, -0.2, -0.2, 0.0]);
+        trusted.substitute(&measured, &blamed(Corner::RearRight, &[Place::DISPLACEMENT]));
+        assert_eq!(trusted.displacement_m[Corner::RearRight], DISPLACEMENT.least);
+        let mut two = blamed(Corner::FrontLeft, &[Place::DISPLACEMENT]);
+        two[Corner::RearLeft] = two[Corner::FrontLeft];
+        trusted.substitute(&measured, &two);
+        assert_eq!(trusted.displacement_m, measured.displacement_m);
+    }
+
+    /// p1 to p3 are equal at rest, so one that is measured stands for those that are not. p4 has no replacement.
+    #[test]
+    fn missing_pressures_follow_from_the_strut_s_others() {
+        let last = StrutPressures::from_array([1.0e6, 2.0e6, 3.0e6, 4.0e6]).map(Gauge);
+        for missing in 0..16_u8 {
+            let is_missing = |n: usize| missing >> n & 1 == 1;
+            let mut verdicts = Corners::splat(Verdicts::GOOD);
+            for (_, place) in PLACES.into_iter().enumerate().filter(|(n, _)| is_missing(*n)) {
+                verdicts[Corner::RearLeft].blame(place, FaultCode::SensorRate);
+            }
+            let measured = Trusted {
+                pressure: Corners::splat(last),
+                ..Trusted::default()
+            };
+            let mut trusted = Trusted::default();
+            trusted.substitute(&measured, &verdicts);
+            // The first of p1, p2, p3 that is measured; the last good p1 if none is.
+            let stand_in = (0..3).find(|n| !is_missing(*n)).unwrap_or(0);
+            for (n, point) in PressurePoint::ALL.into_iter().enumerate() {
+                let from = if is_missing(n) && n < 3 { stand_in } else { n };
+                let expected = last[PressurePoint::ALL[from]];
+                assert_eq!(
+                    trusted.pressure[Corner::RearLeft][point],
+                    expected,
+                    "{missing:04b} {point:?}"
+                );
+                assert_eq!(trusted.pressure[Corner::FrontLeft][point], last[point]);
+            }
+        }
+    }
+
+    #[test]
+    fn the_gravest_cause_is_told_and_the_corners_that_it_concerns() {
+        let mut verdicts = blamed(Corner::FrontRight, &[Place::P1, Place::P4]);
+        verdicts[Corner::RearLeft].blame(Place::DISPLACEMENT, FaultCode::MessageLost);
+        let judged = |inputs: &Inputs| {
+            let mut trusted = Trusted::default();
+            trusted.judge(&verdicts, inputs);
+            (
+                trusted.health.cause,
+                trusted.health.affected.into_array(),
+                trusted.invalid_readings,
+            )
+        };
+        let mut inputs = Inputs::default();
+        let two = [false, true, true, false];
+        assert_eq!(judged(&inputs), (FaultCode::MessageLost, two, 3));
+        inputs.lost_messages = MessageSet::ALL;
+        assert_eq!(judged(&inputs), (FaultCode::BusSilent, two, 3));
+        inputs.foreign_sender = true;
+        assert_eq!(judged(&inputs), (FaultCode::ForeignSender, [true; 4], 3));
+        inputs.solenoid_failed = true;
+        assert_eq!(judged(&inputs), (FaultCode::Solenoid, [true; 4], 3));
+    }
+}

@@ -193,4 +193,233 @@ mod tests {
             assert!(!outvoted(&verdict), "turn {turn}");
         }
     }
+
+    /// Pressures at rest, of which one has an offset.
+    fn resting(point: PressurePoint, offset_pa: f32) -> StrutPressures<Gauge<f32>> {
+        let mut pressure = StrutPressures::splat(Gauge(4.0e6));
+        pressure[point] = Gauge(4.0e6 + offset_pa);
+        pressure
+    }
+
+    /// What the vote says in a turn.
+    fn turn(vote: &mut Vote, pressure: &StrutPressures<Gauge<f32>>, p4_follows: bool) -> Verdicts {
+        let mut verdict = Verdicts::GOOD;
+        vote.step(&Parameters::default(), pressure, p4_follows, &mut verdict);
+        verdict
+    }
+
+    /// The verdict that blames one pressure alone.
+    fn only(point: PressurePoint) -> Verdicts {
+        let mut verdict = Verdicts::GOOD;
+        verdict.blame(Place::of(point), FaultCode::SensorVote);
+        verdict
+    }
+
+    /// Turns until the verdict is as wanted; before, it is always as it was.
+    fn turns_until(wanted: Verdicts, before: Verdicts, mut step: impl FnMut() -> Verdicts) -> Option<u16> {
+        (1..2000).find(|turn| {
+            let said = step();
+            assert!(said == wanted || said == before, "turn {turn}: {said:?}");
+            said == wanted
+        })
+    }
+
+    /// A vote that has agreed for a while.
+    fn agreeing() -> Vote {
+        let mut vote = Vote::default();
+        for _ in 0..100 {
+            assert_eq!(turn(&mut vote, &resting(PressurePoint::P1, 0.0), true), Verdicts::GOOD);
+        }
+        vote
+    }
+
+    /// `ln(d / (d - 1 MPa))` seconds and 0.2 s, for each pressure and both signs. Below 1 MPa never.
+    #[test]
+    fn each_pressure_is_outvoted_alone_and_in_time() {
+        for point in PressurePoint::ALL {
+            for offset_pa in [1.05e6, 1.7e6, 4.0e6] {
+                let expected_s = libm::logf(offset_pa / (offset_pa - 1.0e6)) + 0.2;
+                for offset_pa in [offset_pa, -offset_pa] {
+                    let mut vote = agreeing();
+                    let found = turns_until(only(point), Verdicts::GOOD, || {
+                        turn(&mut vote, &resting(point, offset_pa), true)
+                    });
+                    let found_s = f32::from(found.unwrap()) * TURN_S;
+                    assert!(
+                        (found_s - expected_s).abs() < 0.06,
+                        "{point:?} {offset_pa}: {found_s} of {expected_s} s"
+                    );
+                }
+            }
+            let mut vote = agreeing();
+            assert!((0..2000).all(|_| turn(&mut vote, &resting(point, 0.95e6), true) == Verdicts::GOOD));
+        }
+    }
+
+    /// It stays so above 0.6 MPa, and ends `ln((d - e) / (0.6 MPa - e))` seconds and 0.2 s after the offset has become `e`.
+    #[test]
+    fn an_outvoted_pressure_is_believed_when_it_agrees_again() {
+        for point in PressurePoint::ALL {
+            let mut vote = agreeing();
+            for _ in 0..400 {
+                turn(&mut vote, &resting(point, 1.5e6), true);
+            }
+            assert!(
+                (0..1000).all(|_| turn(&mut vote, &resting(point, 0.7e6), true) == only(point)),
+                "{point:?}"
+            );
+            let back = turns_until(Verdicts::GOOD, only(point), || {
+                turn(&mut vote, &resting(point, 0.4e6), true)
+            });
+            let (back_s, expected_s) = (f32::from(back.unwrap()) * TURN_S, libm::logf(0.3 / 0.2) + 0.2);
+            assert!(
+                (back_s - expected_s).abs() < 0.06,
+                "{point:?}: {back_s} of {expected_s} s"
+            );
+        }
+    }
+
+    #[test]
+    fn p4_is_compared_behind_an_open_valve_only_and_its_verdict_waits_for_one() {
+        let mut vote = agreeing();
+        assert!((0..500).all(|_| turn(&mut vote, &resting(PressurePoint::P4, 3.0e6), false) == Verdicts::GOOD));
+        let p4 = only(PressurePoint::P4);
+        assert!(
+            turns_until(p4, Verdicts::GOOD, || turn(
+                &mut vote,
+                &resting(PressurePoint::P4, 3.0e6),
+                true
+            ))
+            .is_some()
+        );
+        assert!((0..500).all(|_| turn(&mut vote, &resting(PressurePoint::P4, 0.0), false) == p4));
+        assert!(
+            turns_until(Verdicts::GOOD, p4, || turn(
+                &mut vote,
+                &resting(PressurePoint::P4, 0.0),
+                true
+            ))
+            .is_some()
+        );
+    }
+
+    #[test]
+    fn where_no_two_agree_nobody_is_outvoted() {
+        let mut vote = agreeing();
+        let apart = StrutPressures::from_array([4.0e6, 6.0e6, 8.0e6, 4.0e6]).map(Gauge);
+        assert!((0..1000).all(|_| turn(&mut vote, &apart, false) == Verdicts::GOOD));
+    }
+
+    /// A pressure that is found wrong otherwise ends the comparison, and what was said before stays.
+    #[test]
+    fn a_verdict_outlives_a_gap_in_the_measurement() {
+        let mut vote = agreeing();
+        for _ in 0..400 {
+            turn(&mut vote, &resting(PressurePoint::P2, 1.5e6), true);
+        }
+        for _ in 0..500 {
+            let mut verdict = Verdicts::GOOD;
+            verdict.blame(Place::P1, FaultCode::SensorRange);
+            vote.step(
+                &Parameters::default(),
+                &resting(PressurePoint::P2, 0.0),
+                true,
+                &mut verdict,
+            );
+            assert!(!verdict.is_good(Place::P2));
+        }
+    }
+
+    /// p1, p2, p3 in MPa above p4.
+    fn spread(mpa: [f32; 3]) -> StrutPressures<Gauge<f32>> {
+        let [p1, p2, p3] = mpa.map(|mpa| 4.0e6 + 1.0e6 * mpa);
+        StrutPressures { p1, p2, p3, p4: 4.0e6 }.map(Gauge)
+    }
+
+    const POINTS: [PressurePoint; 3] = [PressurePoint::P1, PressurePoint::P2, PressurePoint::P3];
+
+    /// A pair that disagrees does not say which of the two is wrong.
+    #[test]
+    fn one_pair_apart_outvotes_nobody() {
+        for middle in 0..3 {
+            for sign in [1.0, -1.0] {
+                let mut mpa = [0.65 * sign, -0.65 * sign, 0.0];
+                mpa.rotate_right(middle);
+                let mut vote = agreeing();
+                assert!(
+                    (0..1000).all(|_| turn(&mut vote, &spread(mpa), false) == Verdicts::GOOD),
+                    "{mpa:?}"
+                );
+            }
+        }
+    }
+
+    /// One neighbour that is near is enough to be believed again.
+    #[test]
+    fn an_outvoted_pressure_needs_one_that_agrees() {
+        for (n, point) in POINTS.into_iter().enumerate() {
+            for near in (0..3).filter(|near| *near != n) {
+                let far = 3 - n - near;
+                let mut vote = agreeing();
+                let mut mpa = [0.0; 3];
+                mpa[n] = 1.5;
+                for _ in 0..400 {
+                    turn(&mut vote, &spread(mpa), false);
+                }
+                (mpa[n], mpa[far]) = (0.45, -0.45);
+                assert_eq!(turn(&mut vote, &spread(mpa), false), only(point));
+                assert!(
+                    (0..400).any(|_| turn(&mut vote, &spread(mpa), false) == Verdicts::GOOD),
+                    "{point:?} near {near}"
+                );
+            }
+        }
+    }
+
+    /// p3 stands against p1, but p2 agrees with it: p4 is compared with p3 all the same.
+    #[test]
+    fn p4_is_outvoted_beside_another_one() {
+        let mut vote = agreeing();
+        let mut pressure = resting(PressurePoint::P4, 2.0e6);
+        pressure.p1 = Gauge(1.0e6);
+        let said = (0..200)
+            .map(|_| turn(&mut vote, &pressure, true))
+            .last()
+            .unwrap_or_default();
+        assert_eq!(
+            (said.count(), said.is_good(Place::P1), said.is_good(Place::P4)),
+            (2, false, false)
+        );
+        // Where p3 is the one that stands alone, p4 is not.
+        let mut vote = agreeing();
+        for _ in 0..500 {
+            let said = turn(&mut vote, &resting(PressurePoint::P3, 2.0e6), true);
+            assert!(said == Verdicts::GOOD || said == only(PressurePoint::P3));
+        }
+    }
+
+    /// What was lagged before a gap says nothing: the comparison begins again from agreement.
+    #[test]
+    fn a_gap_forgets_the_disagreement_before_it() {
+        let mut vote = agreeing();
+        for _ in 0..500 {
+            assert_eq!(
+                turn(&mut vote, &resting(PressurePoint::P2, 0.95e6), false),
+                Verdicts::GOOD
+            );
+        }
+        let mut verdict = Verdicts::GOOD;
+        verdict.blame(Place::P1, FaultCode::SensorRange);
+        vote.step(
+            &Parameters::default(),
+            &resting(PressurePoint::P2, 0.95e6),
+            false,
+            &mut verdict,
+        );
+        let found = turns_until(only(PressurePoint::P2), Verdicts::GOOD, || {
+            turn(&mut vote, &resting(PressurePoint::P2, 1.05e6), false)
+        });
+        let (found_s, expected_s) = (f32::from(found.unwrap()) * TURN_S, libm::logf(21.0) + 0.2);
+        assert!((found_s - expected_s).abs() < 0.06, "{found_s} of {expected_s} s");
+    }
 }

@@ -107,11 +107,9 @@ impl Decide for RoadAndCornering {
         } else {
             ValveCommand::from_corners(Corners::splat(StrutValves::new(!state.very_rough, true, true)))
         };
-        // At once, whatever lean that traps; only where wheels leave the ground a lean passes by itself within the patience.
+        // At once, whatever lean that traps.
         let urgency = if rollover_guard || corners {
             Urgency::Emergency
-        } else if corners {
-            Urgency::Handling
         } else {
             Urgency::Comfort
         };

@@ -240,4 +240,28 @@ mod tests {
         assert!(settled(DamperPolicy::Karnopp, -0.3, 0.0, 0.0, 0.07));
         assert!(!settled(DamperPolicy::Karnopp, 0.3, 0.0, 0.0, 0.07));
     }
+
+    /// Names lead back to policies, and each value outside its range is named.
+    #[test]
+    fn policies_have_names_and_values_have_ranges() {
+        for name in <DamperPolicy as strum::VariantNames>::VARIANTS {
+            assert_eq!(name.parse().map(DamperPolicy::name), Ok(*name));
+        }
+        assert_eq!(Tuning::default().check(), Ok(()));
+        let velocity = Tuning {
+            body_velocity_share_s: -0.1,
+            ..Tuning::default()
+        };
+        let name = velocity.check().map_err(|error| error.name);
+        assert_eq!(name, Err("tuning.strategy.ride_handling.dampers.body_velocity_share_s"));
+        let acceleration = Tuning {
+            body_acceleration_share: 101.0,
+            ..Tuning::default()
+        };
+        let name = acceleration.check().map_err(|error| error.name);
+        assert_eq!(
+            name,
+            Err("tuning.strategy.ride_handling.dampers.body_acceleration_share")
+        );
+    }
 }

@@ -16,7 +16,7 @@ use crate::newcomer::Newcomer;
 use crate::record::{Recording, Sample};
 use crate::scenario::Scenario;
 use crate::sync::{Decoded, Role, Session, Sync, Terms};
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Assembly, Vehicle};
 
 /// How the wait for the controller ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -208,6 +208,7 @@ impl<B: Bus> PlantNode<B> {
             motion: self.vehicle.motion(),
             displacement_m: self.vehicle.strut_displacement_m(),
             strut: self.vehicle.strut_output(),
+            heard: self.ticks_without_command == 0,
             command,
             energised,
         });
@@ -257,6 +258,7 @@ impl<B: Bus> PlantNode<B> {
             counters: self.bus.counters(),
             ending: self.vehicle.ending(),
             track: self.vehicle.track().cloned(),
+            assembly: self.vehicle.assembly().clone(),
             recording: self.recording,
         }
     }
@@ -289,4 +291,6 @@ pub struct PlantResult {
     pub ending: Option<Ending>,
     /// The line that the driver followed, with its cones.
     pub track: Option<Track>,
+    /// What the vehicle was made of.
+    pub assembly: Assembly,
 }

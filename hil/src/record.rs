@@ -60,6 +60,8 @@ pub struct Sample {
     pub displacement_m: Corners<f64>,
     /// Force and pressures of each strut.
     pub strut: Corners<StrutOutput>,
+    /// Whether a command of the controller arrived in this tick and passed its check.
+    pub heard: bool,
     /// The command that the drivers obeyed, after check and watchdog.
     pub command: ValveCommand,
     /// Positions of the valves' signals, stuck valves included.

@@ -10,15 +10,27 @@
 use oleo_interface::Corners;
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::{Drive, Ending, NotFinite, Signals, Track};
-use oleo_plant_sim::strut::StrutOutput;
+use oleo_plant_sim::strut::{StrutModel, StrutOutput};
 use oleo_plant_sim::vehicle::suspension::StrutElement;
 use oleo_plant_sim::vehicle::{BodyMotion, RideVehicle, Seats, VehicleParameters};
 
 use crate::record::{CourseMotion, Motion, Wheel};
 
+/// What a vehicle is made of, as it was loaded.
+#[derive(Clone, Debug)]
+pub struct Assembly {
+    /// Body, axles, tyres, with the load.
+    pub parameters: VehicleParameters,
+    /// The four struts, each charged for the load that it carries.
+    pub struts: Corners<StrutModel>,
+    /// Corners of the body seen from above, ahead and left of its centre of mass, m.
+    pub outline_m: [[f64; 2]; 4],
+}
+
 /// A vehicle on its way.
 pub struct Vehicle {
     model: Model,
+    assembly: Assembly,
     seats: Seats<[f64; 3]>,
     behind_front_axle_m: f64,
     steps_per_tick: u32,
@@ -33,23 +45,30 @@ enum Model {
 
 impl Vehicle {
     /// Straight ahead with the ride model.
-    pub fn on_road(model: RideVehicle, parameters: &VehicleParameters) -> Self {
-        Self::new(model.step_s(), Model::Ride(Box::new(model)), parameters)
+    pub fn on_road(model: RideVehicle, assembly: Assembly) -> Self {
+        Self::new(model.step_s(), Model::Ride(Box::new(model)), assembly)
     }
 
     /// On a course with the handling model.
-    pub fn on_course(drive: Drive<StrutElement>, parameters: &VehicleParameters) -> Self {
-        Self::new(drive.model().step_s(), Model::Course(Box::new(drive)), parameters)
+    pub fn on_course(drive: Drive<StrutElement>, assembly: Assembly) -> Self {
+        Self::new(drive.model().step_s(), Model::Course(Box::new(drive)), assembly)
     }
 
-    fn new(step_s: f64, model: Model, parameters: &VehicleParameters) -> Self {
+    fn new(step_s: f64, model: Model, assembly: Assembly) -> Self {
+        let parameters = &assembly.parameters;
         Self {
             model,
             seats: Seats::from_fn(|seat| parameters.seat_place_m(seat)),
             behind_front_axle_m: parameters.body_cg_behind_front_axle_m(),
             steps_per_tick: (TICK_S / step_s).round() as u32,
             measured_road_m: None,
+            assembly,
         }
+    }
+
+    /// What it is made of.
+    pub fn assembly(&self) -> &Assembly {
+        &self.assembly
     }
 
     /// The same vehicle, on a road that was measured over this length, m.

@@ -74,6 +74,8 @@ impl Dots {
             "xaxis": self.x_axis.to_json(),
             "yaxis": {
                 "automargin": true, "type": "category", "categoryorder": "array", "showspikes": false,
+                // Room below the last row for the label of the line.
+                "range": [-1.0, self.rows.len() as f64 - 0.4],
                 "categoryarray": self.rows.iter().rev().collect::<Vec<_>>(),
             },
             "showlegend": self.traces.len() > 1, "hovermode": "closest",

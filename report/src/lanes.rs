@@ -23,14 +23,18 @@ pub enum Tint {
     Grey,
     /// Switched on, open.
     Blue,
+    /// Another choice, as good as the one without colour.
+    Sky,
     /// As it should be.
     Green,
     /// Restricted.
     Amber,
-    /// Failed, or disturbed.
+    /// Failed.
     Red,
-    /// Ended for good.
+    /// Done from outside.
     Violet,
+    /// Ended for good.
+    Pink,
 }
 
 impl Tint {
@@ -38,10 +42,12 @@ impl Tint {
         match self {
             Self::Grey => "rgba(127,127,127,0.55)",
             Self::Blue => "rgba(0,114,178,0.75)",
+            Self::Sky => "rgba(86,180,233,0.75)",
             Self::Green => "rgba(0,158,115,0.75)",
             Self::Amber => "rgba(230,159,0,0.8)",
             Self::Red => "rgba(213,94,0,0.85)",
             Self::Violet => "rgba(140,107,177,0.85)",
+            Self::Pink => "rgba(204,121,167,0.85)",
         }
     }
 }

@@ -19,6 +19,7 @@ pub struct Scene {
     /// Indices of the samples that are shown.
     shown: Vec<usize>,
     at: Vec<f64>,
+    begin: f64,
     parts: Map<String, Value>,
     lamps: Map<String, Value>,
 }
@@ -38,6 +39,7 @@ impl Scene {
             unit: unit.into(),
             at: shown.iter().map(|&i| hundredth(at[i])).collect(),
             shown,
+            begin: 0.0,
             parts: Map::new(),
             lamps: Map::new(),
         }
@@ -46,6 +48,12 @@ impl Scene {
     /// Words under the drawing: what to see in it.
     pub fn caption(&mut self, caption: &str) -> &mut Self {
         self.caption = caption.into();
+        self
+    }
+
+    /// The time that is shown first.
+    pub fn begin(&mut self, at: f64) -> &mut Self {
+        self.begin = at;
         self
     }
 
@@ -65,11 +73,12 @@ impl Scene {
 
     pub(crate) fn to_html(&self, number: usize) -> String {
         let last = self.at.len().saturating_sub(1);
+        let first = self.at.partition_point(|at| *at < self.begin).min(last);
         let data = json!({ "at": self.at, "parts": self.parts, "lamps": self.lamps });
         format!(
             "<figure class=\"scene\" data-link=\"{link}\" id=\"scene-{number}\"><h3>{title}</h3>{svg}\
              <div class=\"player\"><button type=\"button\">Play</button>\
-             <input type=\"range\" min=\"0\" max=\"{last}\" value=\"0\" aria-label=\"{title}: time\">\
+             <input type=\"range\" min=\"0\" max=\"{last}\" value=\"{first}\" aria-label=\"{title}: time\">\
              <output></output> {unit}</div><figcaption>{caption}</figcaption>\
              <script type=\"application/json\" id=\"scene-{number}-data\">{data}</script></figure>\n",
             link = escape(&self.link),
@@ -106,7 +115,8 @@ mod tests {
         assert_eq!(scene.parts["body"][799], json!([4999.0, 0.13, 0.0]));
         let lamp = scene.lamps["open"].as_str().expect("states");
         assert!(lamp.starts_with('0') && lamp.ends_with('1') && lamp.len() == 800);
-        assert!(scene.to_html(1).contains("max=\"799\""));
+        assert!(scene.to_html(1).contains("max=\"799\" value=\"0\""));
+        assert!(scene.begin(2_500.0).to_html(1).contains("max=\"799\" value=\"400\""));
     }
 
     #[test]

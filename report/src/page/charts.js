@@ -39,6 +39,8 @@
     if (chart.closest("[hidden]")) return;
     const drawing = JSON.parse(document.getElementById(chart.id + "-data").textContent);
     const { link } = chart.dataset;
+    // Series on the places of an earlier one have its number instead.
+    drawing.data.forEach((series) => { if (typeof series.x === "number") series.x = drawing.data[series.x].x; });
     drawing.layout.template = template(dark.matches);
     chart.classList.add("drawn");
     Plotly.newPlot(chart, drawing.data, drawing.layout, configuration);

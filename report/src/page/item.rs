@@ -3,7 +3,9 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use super::Verdict;
+use serde_json::{Value, json};
+
+use super::verdict::Verdict;
 use crate::equation::to_mathml;
 use crate::figure::Figure;
 use crate::scene::Scene;
@@ -93,8 +95,7 @@ impl Item {
 }
 
 fn figure_html(figure: &Figure, number: usize) -> String {
-    // A value JSON cannot hold became null long before; a drawing is plain data.
-    let drawing = serde_json::to_string(&figure.drawing).unwrap_or_else(|_| "{\"data\":[],\"layout\":{}}".into());
+    let drawing = drawing_json(figure).to_string();
     // "</script>" inside the data would end it.
     let drawing = drawing.replace("</", "<\\/");
     let link = figure
@@ -112,6 +113,30 @@ fn figure_html(figure: &Figure, number: usize) -> String {
         title = escape(&figure.title),
         height = figure.height_px,
     )
+}
+
+/// Fewest values of a series that is worth a reference.
+const SHARED: usize = 50;
+
+/// The figure as plotly.js takes it, but a series on the same places as an earlier one has the number of that one as its `x`, which
+/// the page's script puts in: the places are half of the data of most pages.
+fn drawing_json(figure: &Figure) -> Value {
+    // A value JSON cannot hold became null long before; a drawing is plain data.
+    let mut drawing = serde_json::to_value(&figure.drawing).unwrap_or_else(|_| json!({ "data": [], "layout": {} }));
+    let Some(data) = drawing["data"].as_array_mut() else {
+        return drawing;
+    };
+    for index in 1..data.len() {
+        let (before, rest) = data.split_at_mut(index);
+        let x = &mut rest[0]["x"];
+        if x.as_array().is_none_or(|x| x.len() < SHARED) {
+            continue;
+        }
+        if let Some(same) = before.iter().position(|trace| trace["x"] == *x) {
+            *x = json!(same);
+        }
+    }
+    drawing
 }
 
 /// Figures behind buttons; the first is shown.
@@ -134,4 +159,32 @@ fn choice_html(label: &str, figures: &[(String, Figure)], count: &mut Count) -> 
         "<div class=\"choice\"><fieldset><legend>{}</legend>{buttons}</fieldset>{shown}</div>\n",
         escape(label)
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Axis, Curves};
+
+    #[test]
+    fn places_that_series_share_are_in_the_page_once() {
+        let time: Vec<f64> = (0..100).map(f64::from).collect();
+        let later: Vec<f64> = time.iter().map(|t| t + 0.5).collect();
+        let mut curves = Curves::new("Strut", Axis::new("Time", "s"));
+        curves.panel(Axis::new("Force", "N"));
+        curves
+            .line("a", &time, &time)
+            .line("b", &later, &time)
+            .line("c", &time, &later);
+        curves
+            .line("short", &[0.0, 1.0], &[0.0, 1.0])
+            .line("as short", &[0.0, 1.0], &[1.0, 0.0]);
+        let drawing = drawing_json(&curves.into());
+        let x = |trace: usize| &drawing["data"][trace]["x"];
+        assert_eq!(
+            (x(0).as_array().map(Vec::len), x(1).as_array().map(Vec::len)),
+            (Some(100), Some(100))
+        );
+        assert_eq!((x(2), x(4)), (&json!(0), &json!([0.0, 1.0])));
+    }
 }

@@ -3,24 +3,15 @@
 
 mod item;
 mod library;
+mod verdict;
 
 use item::{Count, Item};
 use library::library;
+pub use verdict::Verdict;
 
 use crate::figure::Figure;
 use crate::scene::Scene;
 use crate::table::{Table, escape};
-
-/// How a run ended, in a word and a colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// All checks are met; shown in green.
-    Pass,
-    /// The result needs the reader's attention; shown in amber.
-    Attention,
-    /// A check failed; shown in red.
-    Fail,
-}
 
 /// A page being put together, top to bottom. Texts are plain: markup in them is shown, not obeyed.
 #[derive(Clone)]
@@ -97,8 +88,8 @@ impl Page {
         self.push(Item::Code(summary.into(), text.into()))
     }
 
-    /// What follows is about a topic, until the next section or topic. A click on an element of a drawing with the same
-    /// `data-topic` shows the items of that topic only. `None` is what is always shown.
+    /// What follows is about a topic, or several with spaces between them, until the next section or topic. A click on an element
+    /// of a drawing with one of them as its `data-topic` shows the items of that topic only. `None` is what is always shown.
     pub fn topic(&mut self, topic: Option<&str>) -> &mut Self {
         self.topic = topic.map(str::to_owned);
         self

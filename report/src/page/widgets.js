@@ -14,13 +14,14 @@
   // A click on a place of a drawing hides what is about other places; a second click shows everything.
   const places = [...document.querySelectorAll("svg [data-topic]")];
   const items = [...document.querySelectorAll("div[data-topic]")];
+  const topics = (item) => item.dataset.topic.split(" ");
   let selected = null;
   const note = document.createElement("p");
   note.className = "selected";
   note.setAttribute("role", "status");
   const select = (topic) => {
     selected = topic === selected ? null : topic;
-    items.forEach((item) => { item.hidden = selected !== null && item.dataset.topic !== selected; });
+    items.forEach((item) => { item.hidden = selected !== null && !topics(item).includes(selected); });
     places.forEach((place) => {
       place.classList.toggle("selected", place.dataset.topic === selected);
       place.setAttribute("aria-pressed", String(place.dataset.topic === selected));
@@ -28,7 +29,7 @@
     note.textContent = selected === null ? "" : `Only what is about ${selected} is shown. Click it again to see everything.`;
     shown();
   };
-  places.filter((place) => items.some((item) => item.dataset.topic === place.dataset.topic)).forEach((place) => {
+  places.filter((place) => items.some((item) => topics(item).includes(place.dataset.topic))).forEach((place) => {
     place.classList.add("selectable");
     place.setAttribute("tabindex", "0");
     place.setAttribute("role", "button");

@@ -119,7 +119,7 @@ fn a_recorded_strut_is_consistent_with_the_model_of_the_plant() {
     assert_eq!(ours, theirs);
     let unmapped = run(&["diagnose", foreign.to_str().expect("a path"), "--no-out"]);
     assert_eq!(unmapped.status.code(), Some(2));
-    assert!(complaint(&unmapped).contains("semicolons"), "{}", complaint(&unmapped));
+    assert!(complaint(&unmapped).contains("time_s"), "{}", complaint(&unmapped));
     let again = printed(&[
         "diagnose",
         foreign.to_str().expect("a path"),

@@ -1,7 +1,7 @@
 //! A run as a recording of one strut: what a test rig would have recorded of the strut while the vehicle drove, with the model that
 //! the plant has of it. `oleo diagnose` takes both as a campaign.
 //!
-//! The displacement and the switching signals are the inputs, force and pressures the readings. Each gets the white noise that the
+//! The recording has a row for each integration step of the vehicle, because pressures change within a tick. The displacement and the switching signals are the inputs, force and pressures the readings. Each gets the white noise that the
 //! model states for its channel. A second at rest before the start shows the offsets of the sensors.
 
 use oleo_interface::tick::TICK_S;
@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::record::Sample;
+use crate::record::StrutStep;
 use crate::run::Outcome;
 use crate::scenario::Scenario;
 
@@ -34,20 +34,33 @@ impl StrutRecording {
     pub fn of(scenario: &Scenario, outcome: &Outcome, corner: Corner) -> Self {
         let mut model = outcome.plant.assembly.struts[corner].clone();
         model.specimen.name = format!("{} {}", scenario.name, corner.name());
-        let samples = &outcome.plant.recording.samples;
-        let rest = (REST_S / TICK_S).round() as usize;
-        // At the start the vehicle stands still on its struts.
-        let at = |row: usize| samples.get(row.saturating_sub(rest));
-        let rows = if samples.is_empty() { 0 } else { rest + samples.len() };
+        let recording = &outcome.plant.recording;
+        let (samples, steps) = (&recording.samples, &recording.strut_steps);
+        let step_s = recording.step_s;
+        let (rest, a_tick) = (
+            (REST_S / step_s).round() as usize,
+            (TICK_S / step_s).round().max(1.0) as usize,
+        );
+        // Before the first step the vehicle stands still on its struts.
+        let start = samples.first().map(|sample| StrutStep {
+            displacement_m: sample.displacement_m,
+            strut: sample.strut,
+        });
+        let at = |row: usize| match row.checked_sub(rest + 1) {
+            Some(step) => steps.get(step).copied(),
+            None => start,
+        };
+        // The command of a tick acts from its begin; the state at the end of the last one has none.
+        let rows = if steps.is_empty() { 0 } else { rest + steps.len() };
         let mut random = ChaCha8Rng::seed_from_u64(scenario.seed);
         random.set_stream(FIRST_STREAM + corner.index() as u64);
         let mut columns: Vec<(String, Vec<f64>)> =
-            vec![("time_s".into(), (0..rows).map(|i| i as f64 * TICK_S).collect())];
-        let mut reading = |name: &str, value: &dyn Fn(&Sample) -> f64| {
+            vec![("time_s".into(), (0..rows).map(|i| i as f64 * step_s).collect())];
+        let mut reading = |name: &str, value: &dyn Fn(&StrutStep) -> f64| {
             let noise = model.noise.get(name).copied().unwrap_or(0.0);
             let values = (0..rows).filter_map(at).map(|sample| {
                 let standard: f64 = StandardNormal.sample(&mut random);
-                value(sample) + noise * standard
+                value(&sample) + noise * standard
             });
             columns.push((name.to_owned(), values.collect()));
         };
@@ -61,7 +74,7 @@ impl StrutRecording {
         for valve in Valve::ALL {
             let open = (0..rows).map(|row| {
                 // All valves are closed before the first tick.
-                let sample = (row >= rest).then(|| at(row)).flatten();
+                let sample = row.checked_sub(rest).and_then(|step| samples.get(step / a_tick));
                 f64::from(u8::from(sample.is_some_and(|s| s.energised.is_open(corner, valve))))
             });
             columns.push((format!("valve{}", valve.number()), open.collect()));
@@ -81,27 +94,33 @@ mod tests {
             ticks: 600,
             ..scenario::named("belgian").unwrap()
         };
-        let outcome = run::both(&scenario, run::vehicle(&scenario).unwrap(), 1, &mut |_| true).unwrap();
+        let vehicle = run::vehicle(&scenario).unwrap().recording_struts();
+        let outcome = run::both(&scenario, vehicle, 1, &mut |_| true).unwrap();
         let recording = StrutRecording::of(&scenario, &outcome, Corner::RearLeft);
         let column = |name: &str| {
             let found = recording.columns.iter().find(|(other, _)| other == name);
             &found.expect("a column").1
         };
-        assert!(recording.columns.iter().all(|(_, values)| values.len() == 800));
+        let (rest, rows) = (1000, 4000);
+        assert!(recording.columns.iter().all(|(_, values)| values.len() == rows));
+        assert_eq!((column("time_s")[1], column("time_s")[rows - 1]), (0.001, 3.999));
         assert_eq!(recording.columns.len(), 10);
-        let rest = &column("p1_Pa")[..200];
-        let mean = rest.iter().sum::<f64>() / 200.0;
-        let deviation = (rest.iter().map(|p| (p - mean) * (p - mean)).sum::<f64>() / 199.0).sqrt();
+        let still = &column("p1_Pa")[..rest];
+        let mean = still.iter().sum::<f64>() / rest as f64;
+        let deviation = (still.iter().map(|p| (p - mean) * (p - mean)).sum::<f64>() / rest as f64).sqrt();
         assert!(
-            (deviation / recording.model.noise["p1_Pa"] - 1.0).abs() < 0.2,
+            (deviation / recording.model.noise["p1_Pa"] - 1.0).abs() < 0.1,
             "{deviation}"
         );
         // It is charged for the rear's load, and carries it.
-        let area_m2 = recording.model.piston_area_m2();
-        assert!((column("force_N")[..200].iter().sum::<f64>() / 200.0 / (mean * area_m2) - 1.0).abs() < 0.02);
-        assert!(column("valve1")[..200].iter().all(|open| *open == 0.0));
+        let force_n = column("force_N")[..rest].iter().sum::<f64>() / rest as f64;
         assert!(
-            column("displacement_m")[200..].iter().any(|x| x.abs() > 0.01),
+            (force_n / (mean * recording.model.piston_area_m2()) - 1.0).abs() < 0.02,
+            "{force_n}"
+        );
+        assert!(column("valve1")[..rest].iter().all(|open| *open == 0.0));
+        assert!(
+            column("displacement_m")[rest..].iter().any(|x| x.abs() > 0.01),
             "it moves"
         );
         let again = StrutRecording::of(&scenario, &outcome, Corner::RearLeft);

@@ -14,7 +14,7 @@ use oleo_plant_sim::strut::{StrutModel, StrutOutput};
 use oleo_plant_sim::vehicle::suspension::StrutElement;
 use oleo_plant_sim::vehicle::{BodyMotion, RideVehicle, Seats, VehicleParameters};
 
-use crate::record::{CourseMotion, Motion, Wheel};
+use crate::record::{CourseMotion, Motion, StrutStep, Wheel};
 
 /// What a vehicle is made of, as it was loaded.
 #[derive(Clone, Debug)]
@@ -35,6 +35,7 @@ pub struct Vehicle {
     behind_front_axle_m: f64,
     steps_per_tick: u32,
     measured_road_m: Option<f64>,
+    records_struts: bool,
 }
 
 /// Which model drives. Both are some kilobytes, so that neither is moved about.
@@ -62,6 +63,7 @@ impl Vehicle {
             behind_front_axle_m: parameters.body_cg_behind_front_axle_m(),
             steps_per_tick: (TICK_S / step_s).round() as u32,
             measured_road_m: None,
+            records_struts: false,
             assembly,
         }
     }
@@ -77,6 +79,19 @@ impl Vehicle {
             measured_road_m,
             ..self
         }
+    }
+
+    /// The same vehicle, whose struts are recorded after every integration step.
+    pub fn recording_struts(self) -> Self {
+        Self {
+            records_struts: true,
+            ..self
+        }
+    }
+
+    /// Whether its struts are recorded after every integration step.
+    pub fn records_struts(&self) -> bool {
+        self.records_struts
     }
 
     /// Length of the measured road, m; `None` for a road that is computed. Beyond it the vehicle drives over its mirror image.
@@ -158,23 +173,41 @@ impl Vehicle {
         }
     }
 
-    /// Drives for a tick under switching signals. `felt` gets the vertical acceleration at the driver's and at the passenger's seat,
-    /// m/s2, after each integration step.
+    /// Drives for a tick under switching signals. After each integration step `felt` gets the vertical acceleration at the driver's and
+    /// at the passenger's seat, m/s2, and the struts if they are recorded.
     ///
     /// # Errors
     /// The handling model's motion is not finite.
-    pub fn drive(&mut self, signals: Signals, mut felt: impl FnMut([f64; 2])) -> Result<(), NotFinite> {
+    pub fn drive(
+        &mut self,
+        signals: Signals,
+        mut felt: impl FnMut([f64; 2], Option<StrutStep>),
+    ) -> Result<(), NotFinite> {
         let Seats { driver, passenger } = self.seats;
         match &mut self.model {
             Model::Ride(model) => {
                 for _ in 0..self.steps_per_tick {
                     model.step(signals);
-                    felt([driver, passenger].map(|[x, y, _]| model.vertical_acceleration_at(x, y)));
+                    let struts = self.records_struts.then(|| StrutStep {
+                        displacement_m: model.strut_displacement_m(),
+                        strut: model.strut_output(),
+                    });
+                    felt(
+                        [driver, passenger].map(|[x, y, _]| model.vertical_acceleration_at(x, y)),
+                        struts,
+                    );
                 }
                 Ok(())
             }
             Model::Course(drive) => drive.tick(signals, |model| {
-                felt([driver, passenger].map(|place| model.acceleration_at(place).vertical_m_s2));
+                let struts = self.records_struts.then(|| StrutStep {
+                    displacement_m: model.strut_displacement_m(),
+                    strut: model.strut_output(),
+                });
+                felt(
+                    [driver, passenger].map(|place| model.acceleration_at(place).vertical_m_s2),
+                    struts,
+                );
             }),
         }
     }

@@ -139,7 +139,10 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     }
     let name = format!("hil-{}", scenario.name);
     let staged = args.results.stage("oleo hil", &name, inputs(&args, &scenario))?;
-    let vehicle = run::vehicle(&scenario)?;
+    let mut vehicle = run::vehicle(&scenario)?;
+    if args.record.is_some() {
+        vehicle = vehicle.recording_struts();
+    }
     let road_measured_m = vehicle.measured_road_m();
     let progress = Progress::new(&scenario.name, scenario.ticks.into());
     // In real time Ctrl-C ends the run, and what has been driven is reported.

@@ -293,13 +293,15 @@ fn missing(title: &str, separator: char, header: &csv::StringRecord) -> String {
     )
 }
 
-/// Bytes as text: UTF-8, with or without a mark at its begin, or else Latin-1.
+/// Bytes as text with plain line ends: UTF-8, with or without a mark at its begin, or else Latin-1.
 fn decoded(bytes: &[u8]) -> String {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    match std::str::from_utf8(bytes) {
+    let text = match std::str::from_utf8(bytes) {
         Ok(text) => text.to_owned(),
         Err(_) => bytes.iter().copied().map(char::from).collect(),
-    }
+    };
+    // The reader counts the line of a row before it has passed the second half of such a line end.
+    text.replace("\r\n", "\n")
 }
 
 #[cfg(test)]

@@ -37,14 +37,29 @@ pub struct ResultsArgs {
     /// Open the page in the browser
     #[arg(long, help_heading = "Results")]
     open: bool,
+    /// What is printed on standard output: tables and the path of the page, or summary.json (of diagnose report.json)
+    #[arg(long, value_enum, default_value_t = Format::Text, help_heading = "Results")]
+    format: Format,
+}
+
+/// What a command prints of its results.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    /// Tables, and the path of the page as the last line
+    Text,
+    /// The summary as it is in the folder, and nothing else
+    Json,
 }
 
 impl ResultsArgs {
     /// Stages the folder of a command: `command` is `oleo hil`, `name` what the folder is called without `--out`. A folder that
     /// cannot be written is refused here, before the work.
     pub fn stage(&self, command: &str, name: &str, inputs: Vec<PathBuf>) -> Result<Option<OutputDirectory>, Failure> {
-        let Some(folder) = self.folder(name)? else {
-            return Ok(None);
+        let folder = match self.folder(name)? {
+            Some(folder) => folder,
+            // What is printed is staged like what is written, and dropped.
+            None if self.format == Format::Json => std::env::temp_dir().join(format!("oleo-{}", std::process::id())),
+            None => return Ok(None),
         };
         Ok(Some(OutputDirectory::stage(
             folder,
@@ -62,6 +77,11 @@ impl ResultsArgs {
         ledger: &str,
     ) -> Result<Option<(OutputDirectory, PathBuf)>, Failure> {
         let Some(folder) = self.folder(name)? else {
+            if self.format == Format::Json {
+                return Err(Failure::new(
+                    "--format json: this command keeps its finished runs in a folder; leave out --no-out",
+                ));
+            }
             return Ok(None);
         };
         let staged = OutputDirectory::stage_with_ledger(folder, origin(command, inputs), self.force, ledger)?;
@@ -77,11 +97,23 @@ impl ResultsArgs {
         }
     }
 
-    /// Moves the results into place and prints `text`, and the path of the page as the last line.
+    /// Moves the results into place and prints `text`, and the path of the page as the last line; or the summary.
     pub fn publish(&self, out: Option<OutputDirectory>, text: &str) -> Result<(), Failure> {
+        self.publish_with(out, text, PAGE)
+    }
+
+    /// As [`Self::publish`], where another file is the one to look at.
+    pub fn publish_with(&self, out: Option<OutputDirectory>, text: &str, shown: &str) -> Result<(), Failure> {
         let Some(out) = out else { return say(text) };
-        let page = out.commit()?.join(PAGE);
-        say(&format!("{text}{}\n", page.display()))?;
+        let summary = out.summary_text().to_owned();
+        if self.no_out {
+            return say(&summary);
+        }
+        let page = out.commit()?.join(shown);
+        match self.format {
+            Format::Json => say(&summary)?,
+            Format::Text => say(&format!("{text}{}\n", page.display()))?,
+        }
         if self.open {
             open(&page);
         }

@@ -330,6 +330,32 @@ mod tests {
         }
     }
 
+    #[test]
+    fn the_state_of_a_board_is_sent_each_second_once_there_is_one() {
+        let mut node = Node::new(Configuration::defender110());
+        let sent = |node: &mut Node| {
+            let (_, frames) = node.tick();
+            let board = frames.into_iter().find(|frame| frame.id == BOARD.id)?;
+            BoardMessage::decode(&board.data)
+        };
+        assert!(
+            (0..500).all(|_| sent(&mut node).is_none()),
+            "a simulated controller has no board"
+        );
+        for tick in 0..1000_u32 {
+            let state = BoardMessage {
+                overruns: (tick / 10) as u8,
+                ..BoardMessage::default()
+            };
+            node.report_board(state);
+            assert_eq!(
+                sent(&mut node),
+                tick.is_multiple_of(200).then_some(state),
+                "tick {tick}"
+            );
+        }
+    }
+
     /// Each 100 ms; what it says is what the tick decided.
     #[test]
     fn the_status_says_what_was_decided() {

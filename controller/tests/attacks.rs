@@ -8,7 +8,9 @@ mod common;
 use std::collections::VecDeque;
 
 use common::{Loop, rough_road};
-use oleo_controller::can::{COMMAND, CommandMessage, FRAME_BYTES, Frame, Protector, STATUS, StatusMessage};
+use oleo_controller::can::{
+    BOARD, BoardMessage, COMMAND, CommandMessage, FRAME_BYTES, Frame, Protector, STATUS, StatusMessage,
+};
 use oleo_controller::{
     Configuration, Corner, Corners, FaultCode, Gauge, Inputs, Mode, Outputs, PlantEnd, SensorMessage, Strategy,
     StrutPressures, ValveCommand,
@@ -162,6 +164,7 @@ fn own_identifiers_heard_from_elsewhere() {
         (COMMAND.id, sealed),
         (COMMAND.id, [0; FRAME_BYTES]),
         (STATUS.id, StatusMessage::default().encode()),
+        (BOARD.id, BoardMessage::default().encode()),
     ] {
         let mut it = soft_loop();
         let (n, outputs) = until_reaction(&mut it, 1, |_, frames| frames.push(Frame { id, data }));

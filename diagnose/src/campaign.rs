@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use oleo_plant_sim::rig::ColumnMap;
 use rayon::prelude::*;
 
 use crate::error::DiagnoseError;
-use crate::recording::{ColumnSpec, GapPolicy, MIN_SAMPLES, Recording, read};
+use crate::recording::{ColumnSpec, GapPolicy, MIN_SAMPLES, Recording, read, read_by};
 use crate::specimen::{ModelFile, Specimen};
 
 /// A campaign, ready to be diagnosed.
@@ -56,7 +57,15 @@ impl Campaign {
     /// # Errors
     /// One line that says which file is wrong, where, and what to do.
     pub fn open(folder: &Path) -> Result<Self, DiagnoseError> {
-        let (model, recordings, notes) = read_folder(folder)?;
+        Self::open_by(folder, None)
+    }
+
+    /// As [`Self::open`], with the map of the columns of recordings that another program wrote.
+    ///
+    /// # Errors
+    /// As [`Self::open`], and what the map does not fit.
+    pub fn open_by(folder: &Path, map: Option<&ColumnMap>) -> Result<Self, DiagnoseError> {
+        let (model, recordings, notes) = read_folder(folder, map)?;
         Self::of(folder, model, recordings, notes)
     }
 
@@ -65,8 +74,12 @@ impl Campaign {
     ///
     /// # Errors
     /// The errors of [`Self::open`]; a name that no recording has; too few samples left to fit; no data held out.
-    pub fn open_in_part(folder: &Path, kept_back: &KeptBack) -> Result<(Self, CompleteRecordings), DiagnoseError> {
-        let (model, whole, notes) = read_folder(folder)?;
+    pub fn open_in_part(
+        folder: &Path,
+        kept_back: &KeptBack,
+        map: Option<&ColumnMap>,
+    ) -> Result<(Self, CompleteRecordings), DiagnoseError> {
+        let (model, whole, notes) = read_folder(folder, map)?;
         let names = || whole.iter().map(|r| r.name.as_str()).collect::<Vec<_>>().join(", ");
         if let Some(name) = kept_back
             .recordings
@@ -135,7 +148,10 @@ impl CompleteRecordings {
     }
 }
 
-fn read_folder(folder: &Path) -> Result<(ModelFile, Vec<Recording>, Vec<String>), DiagnoseError> {
+fn read_folder(
+    folder: &Path,
+    map: Option<&ColumnMap>,
+) -> Result<(ModelFile, Vec<Recording>, Vec<String>), DiagnoseError> {
     let model_path = folder.join(MODEL_FILE);
     if !folder.is_dir() {
         return Err(DiagnoseError::file(
@@ -163,7 +179,7 @@ fn read_folder(folder: &Path) -> Result<(ModelFile, Vec<Recording>, Vec<String>)
             "holds no recording; put the recordings (*.csv) beside model.toml",
         ));
     }
-    let (recordings, notes) = read_all(&files, &columns, gaps)?;
+    let (recordings, notes) = read_all(&files, &columns, gaps, map)?;
     Ok((file, recordings, notes))
 }
 
@@ -172,8 +188,13 @@ fn read_all(
     files: &[PathBuf],
     specs: &[ColumnSpec],
     gaps: GapPolicy,
+    map: Option<&ColumnMap>,
 ) -> Result<(Vec<Recording>, Vec<String>), DiagnoseError> {
-    let read: Vec<Result<Recording, DiagnoseError>> = files.par_iter().map(|f| read(f, specs, gaps)).collect();
+    let one = |file: &PathBuf| match map {
+        Some(map) => read_by(file, map, specs, gaps),
+        None => read(file, specs, gaps),
+    };
+    let read: Vec<Result<Recording, DiagnoseError>> = files.par_iter().map(one).collect();
     let (mut recordings, mut notes, mut last) = (Vec::new(), Vec::new(), None);
     for result in read {
         match result {

@@ -34,6 +34,9 @@ pub enum DiagnoseError {
     /// The model file is wrong.
     #[error(transparent)]
     ModelFile(#[from] oleo_plant_sim::model_file::ModelFileError),
+    /// A recording of another program cannot be read by its map of columns.
+    #[error(transparent)]
+    ColumnMap(#[from] oleo_plant_sim::rig::ColumnMapError),
     /// The model cannot be used with these recordings; the text says why.
     #[error("{0}")]
     Model(String),

@@ -18,6 +18,7 @@
 //! * [`scenario`] describes what is driven, which faults occur and which checks must be met; [`run`] turns a scenario into a recording.
 //! * [`metrics`] and [`output`] turn a recording into figures and files; [`bit_timing`] computes when a wire would have carried each
 //!   frame.
+//! * [`strut_recording`] gives a run as a recording of one strut, for a diagnosis.
 //! * [`drive_log`] reads what a vehicle's bus carried from a candump log.
 #![forbid(unsafe_code)]
 
@@ -43,6 +44,7 @@ pub mod plant_node;
 pub mod record;
 pub mod run;
 pub mod scenario;
+pub mod strut_recording;
 pub mod sync;
 mod time_series;
 pub mod vehicle;

@@ -16,7 +16,7 @@ use crate::newcomer::Newcomer;
 use crate::record::{Recording, Sample};
 use crate::scenario::Scenario;
 use crate::sync::{Decoded, Role, Session, Sync, Terms};
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Assembly, Vehicle};
 
 /// How the wait for the controller ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,6 +63,7 @@ impl<B: Bus> PlantNode<B> {
     /// A plant at the start of the road. With `wall_clock` the traced frames carry the time.
     pub fn new(bus: B, scenario: &Scenario, vehicle: Vehicle, wall_clock: bool) -> Self {
         let ticks = scenario.ticks as usize;
+        let recording = Recording::with_capacity(ticks, vehicle.steps_per_tick() as usize, vehicle.step_s());
         let injections: Vec<_> = scenario.faults.iter().filter_map(|fault| fault.injection()).collect();
         Self {
             bus: FaultInjector::new(
@@ -71,7 +72,11 @@ impl<B: Bus> PlantNode<B> {
                 scenario.seed,
             ),
             end: PlantEnd::new(),
-            recording: Recording::with_capacity(ticks, vehicle.steps_per_tick() as usize, vehicle.step_s()),
+            recording: if vehicle.records_struts() {
+                recording.with_struts()
+            } else {
+                recording
+            },
             vehicle,
             instruments: Instruments::new(&scenario.faults, scenario.seed),
             stuck: StuckValves::new(&scenario.faults),
@@ -208,11 +213,19 @@ impl<B: Bus> PlantNode<B> {
             motion: self.vehicle.motion(),
             displacement_m: self.vehicle.strut_displacement_m(),
             strut: self.vehicle.strut_output(),
+            heard: self.ticks_without_command == 0,
             command,
             energised,
         });
-        let felt = &mut self.recording.seat_acceleration_m_s2;
-        self.vehicle.drive(energised.corners(), |seats| felt.push(seats))?;
+        let Recording {
+            seat_acceleration_m_s2: felt,
+            strut_steps,
+            ..
+        } = &mut self.recording;
+        self.vehicle.drive(energised.corners(), |seats, struts| {
+            felt.push(seats);
+            strut_steps.extend(struts);
+        })?;
         self.tick += 1;
         Ok(())
     }
@@ -257,6 +270,7 @@ impl<B: Bus> PlantNode<B> {
             counters: self.bus.counters(),
             ending: self.vehicle.ending(),
             track: self.vehicle.track().cloned(),
+            assembly: self.vehicle.assembly().clone(),
             recording: self.recording,
         }
     }
@@ -289,4 +303,6 @@ pub struct PlantResult {
     pub ending: Option<Ending>,
     /// The line that the driver followed, with its cones.
     pub track: Option<Track>,
+    /// What the vehicle was made of.
+    pub assembly: Assembly,
 }

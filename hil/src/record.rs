@@ -60,10 +60,21 @@ pub struct Sample {
     pub displacement_m: Corners<f64>,
     /// Force and pressures of each strut.
     pub strut: Corners<StrutOutput>,
+    /// Whether a command of the controller arrived in this tick and passed its check.
+    pub heard: bool,
     /// The command that the drivers obeyed, after check and watchdog.
     pub command: ValveCommand,
     /// Positions of the valves' signals, stuck valves included.
     pub energised: ValveCommand,
+}
+
+/// The four struts after an integration step.
+#[derive(Clone, Copy, Debug)]
+pub struct StrutStep {
+    /// Strut displacement, m, compression positive.
+    pub displacement_m: Corners<f64>,
+    /// Force and pressures of each strut.
+    pub strut: Corners<StrutOutput>,
 }
 
 /// The samples of a run.
@@ -73,6 +84,8 @@ pub struct Recording {
     pub samples: Vec<Sample>,
     /// Vertical acceleration at the driver's and at the left rear passenger's seat for every integration step, m/s2.
     pub seat_acceleration_m_s2: Vec<[f64; 2]>,
+    /// The struts after every integration step, if the vehicle records them.
+    pub strut_steps: Vec<StrutStep>,
     /// Integration step of the vehicle, s.
     pub step_s: f64,
 }
@@ -83,8 +96,15 @@ impl Recording {
         Self {
             samples: Vec::with_capacity(ticks),
             seat_acceleration_m_s2: Vec::with_capacity(ticks * steps_per_tick),
+            strut_steps: Vec::new(),
             step_s,
         }
+    }
+
+    /// The same with memory for the struts after every integration step.
+    pub fn with_struts(mut self) -> Self {
+        self.strut_steps.reserve(self.seat_acceleration_m_s2.capacity());
+        self
     }
 
     /// The valve words that the drivers obeyed, one for each tick.

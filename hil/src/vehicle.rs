@@ -10,19 +10,32 @@
 use oleo_interface::Corners;
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::{Drive, Ending, NotFinite, Signals, Track};
-use oleo_plant_sim::strut::StrutOutput;
+use oleo_plant_sim::strut::{StrutModel, StrutOutput};
 use oleo_plant_sim::vehicle::suspension::StrutElement;
 use oleo_plant_sim::vehicle::{BodyMotion, RideVehicle, Seats, VehicleParameters};
 
-use crate::record::{CourseMotion, Motion, Wheel};
+use crate::record::{CourseMotion, Motion, StrutStep, Wheel};
+
+/// What a vehicle is made of, as it was loaded.
+#[derive(Clone, Debug)]
+pub struct Assembly {
+    /// Body, axles, tyres, with the load.
+    pub parameters: VehicleParameters,
+    /// The four struts, each charged for the load that it carries.
+    pub struts: Corners<StrutModel>,
+    /// Corners of the body seen from above, ahead and left of its centre of mass, m.
+    pub outline_m: [[f64; 2]; 4],
+}
 
 /// A vehicle on its way.
 pub struct Vehicle {
     model: Model,
+    assembly: Assembly,
     seats: Seats<[f64; 3]>,
     behind_front_axle_m: f64,
     steps_per_tick: u32,
     measured_road_m: Option<f64>,
+    records_struts: bool,
 }
 
 /// Which model drives. Both are some kilobytes, so that neither is moved about.
@@ -33,23 +46,31 @@ enum Model {
 
 impl Vehicle {
     /// Straight ahead with the ride model.
-    pub fn on_road(model: RideVehicle, parameters: &VehicleParameters) -> Self {
-        Self::new(model.step_s(), Model::Ride(Box::new(model)), parameters)
+    pub fn on_road(model: RideVehicle, assembly: Assembly) -> Self {
+        Self::new(model.step_s(), Model::Ride(Box::new(model)), assembly)
     }
 
     /// On a course with the handling model.
-    pub fn on_course(drive: Drive<StrutElement>, parameters: &VehicleParameters) -> Self {
-        Self::new(drive.model().step_s(), Model::Course(Box::new(drive)), parameters)
+    pub fn on_course(drive: Drive<StrutElement>, assembly: Assembly) -> Self {
+        Self::new(drive.model().step_s(), Model::Course(Box::new(drive)), assembly)
     }
 
-    fn new(step_s: f64, model: Model, parameters: &VehicleParameters) -> Self {
+    fn new(step_s: f64, model: Model, assembly: Assembly) -> Self {
+        let parameters = &assembly.parameters;
         Self {
             model,
             seats: Seats::from_fn(|seat| parameters.seat_place_m(seat)),
             behind_front_axle_m: parameters.body_cg_behind_front_axle_m(),
             steps_per_tick: (TICK_S / step_s).round() as u32,
             measured_road_m: None,
+            records_struts: false,
+            assembly,
         }
+    }
+
+    /// What it is made of.
+    pub fn assembly(&self) -> &Assembly {
+        &self.assembly
     }
 
     /// The same vehicle, on a road that was measured over this length, m.
@@ -58,6 +79,19 @@ impl Vehicle {
             measured_road_m,
             ..self
         }
+    }
+
+    /// The same vehicle, whose struts are recorded after every integration step.
+    pub fn recording_struts(self) -> Self {
+        Self {
+            records_struts: true,
+            ..self
+        }
+    }
+
+    /// Whether its struts are recorded after every integration step.
+    pub fn records_struts(&self) -> bool {
+        self.records_struts
     }
 
     /// Length of the measured road, m; `None` for a road that is computed. Beyond it the vehicle drives over its mirror image.
@@ -139,23 +173,41 @@ impl Vehicle {
         }
     }
 
-    /// Drives for a tick under switching signals. `felt` gets the vertical acceleration at the driver's and at the passenger's seat,
-    /// m/s2, after each integration step.
+    /// Drives for a tick under switching signals. After each integration step `felt` gets the vertical acceleration at the driver's and
+    /// at the passenger's seat, m/s2, and the struts if they are recorded.
     ///
     /// # Errors
     /// The handling model's motion is not finite.
-    pub fn drive(&mut self, signals: Signals, mut felt: impl FnMut([f64; 2])) -> Result<(), NotFinite> {
+    pub fn drive(
+        &mut self,
+        signals: Signals,
+        mut felt: impl FnMut([f64; 2], Option<StrutStep>),
+    ) -> Result<(), NotFinite> {
         let Seats { driver, passenger } = self.seats;
         match &mut self.model {
             Model::Ride(model) => {
                 for _ in 0..self.steps_per_tick {
                     model.step(signals);
-                    felt([driver, passenger].map(|[x, y, _]| model.vertical_acceleration_at(x, y)));
+                    let struts = self.records_struts.then(|| StrutStep {
+                        displacement_m: model.strut_displacement_m(),
+                        strut: model.strut_output(),
+                    });
+                    felt(
+                        [driver, passenger].map(|[x, y, _]| model.vertical_acceleration_at(x, y)),
+                        struts,
+                    );
                 }
                 Ok(())
             }
             Model::Course(drive) => drive.tick(signals, |model| {
-                felt([driver, passenger].map(|place| model.acceleration_at(place).vertical_m_s2));
+                let struts = self.records_struts.then(|| StrutStep {
+                    displacement_m: model.strut_displacement_m(),
+                    strut: model.strut_output(),
+                });
+                felt(
+                    [driver, passenger].map(|place| model.acceleration_at(place).vertical_m_s2),
+                    struts,
+                );
             }),
         }
     }

@@ -56,6 +56,11 @@ impl Axis {
         &self.unit
     }
 
+    /// Whether the scale is logarithmic.
+    pub(crate) fn is_logarithmic(&self) -> bool {
+        self.logarithmic
+    }
+
     /// The axis as plotly.js expects it.
     pub(crate) fn to_json(&self) -> Value {
         let mut axis = json!({ "title": { "text": escape_plotly(&self.label()) }, "automargin": true });

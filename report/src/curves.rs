@@ -3,11 +3,11 @@
 
 use plotly::Scatter;
 use plotly::Trace;
-use plotly::common::{DashType, ErrorData, ErrorType, Line, LineShape, Marker, Mode, Position};
+use plotly::common::{DashType, ErrorData, ErrorType, HoverInfo, Line, LineShape, Marker, Mode, Position};
 use serde_json::{Value, json};
 
 use crate::axis::{Axis, escape_plotly};
-use crate::decimate::{extrema_by_bucket, rounded};
+use crate::decimate::{drawn, extrema_by_bucket, rounded};
 use crate::figure::{Drawing, Figure, colour};
 
 /// Buckets a line is reduced to: about three per pixel of a wide page are not visible.
@@ -26,6 +26,8 @@ pub enum Style {
     Dashed,
     /// Held until the next point, for switching signals.
     Step,
+    /// A thin line without decimation, for outlines with gaps.
+    Outline,
     /// Markers only, for measurements.
     Points,
     /// Markers joined by a line, for few points in an order (the path of an optimiser).
@@ -122,7 +124,7 @@ impl Curves {
     pub fn series(&mut self, style: Style, name: &str, x: &[f64], y: &[f64]) -> &mut Self {
         let colour = self.colour_of(name);
         let (x, y) = match style {
-            Style::Points | Style::LineAndPoints | Style::NamedPoints => (x.into(), y.into()),
+            Style::Outline | Style::Points | Style::LineAndPoints | Style::NamedPoints => (x.into(), y.into()),
             _ => extrema_by_bucket(x, y, BUCKETS),
         };
         let series = Series {
@@ -130,7 +132,7 @@ impl Curves {
             style,
             colour,
             x: rounded(&x),
-            y: rounded(&y),
+            y: drawn(&y),
             interval: None,
         };
         self.last_panel().series.push(series);
@@ -288,9 +290,15 @@ impl Series {
             .legend_group(&name)
             .show_legend(in_legend)
             .mode(mode)
-            .line(line.width(1.5).color(colour))
+            .line(
+                line.width(if self.style == Style::Outline { 0.8 } else { 1.5 })
+                    .color(colour),
+            )
             .marker(Marker::new().size(6).color(colour))
             .y_axis(y_axis);
+        if self.style == Style::Outline {
+            trace = trace.hover_info(HoverInfo::Skip);
+        }
         if self.style == Style::NamedPoints {
             trace = trace
                 .text_array(vec![name.as_str()])

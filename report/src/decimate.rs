@@ -45,12 +45,17 @@ pub fn extrema_by_bucket<'a>(x: &'a [f64], y: &'a [f64], buckets: usize) -> (Cow
 
 /// Nine significant digits: finer than any screen, and half the size of the page's data.
 pub(crate) fn rounded(values: &[f64]) -> Vec<f64> {
-    values.iter().map(|&value| nine_digits(value)).collect()
+    values.iter().map(|&value| to_digits(value, 9)).collect()
 }
 
-fn nine_digits(value: f64) -> f64 {
+/// Six significant digits, for what is drawn and not placed: a thousandth of a pixel before anything is zoomed.
+pub(crate) fn drawn(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|&value| to_digits(value, 6)).collect()
+}
+
+fn to_digits(value: f64, digits: usize) -> f64 {
     if value.is_finite() {
-        format!("{value:.8e}").parse().unwrap_or(value)
+        format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
     } else {
         f64::NAN
     }
@@ -102,9 +107,10 @@ mod tests {
     }
 
     #[test]
-    fn nine_digits_are_enough_and_shorter() {
-        assert_eq!(nine_digits(0.1 + 0.2), 0.3);
-        assert_eq!(nine_digits(12_345.678_901_234), 12_345.678_9);
-        assert!(nine_digits(f64::INFINITY).is_nan());
+    fn fewer_digits_are_enough_and_shorter() {
+        assert_eq!(to_digits(0.1 + 0.2, 9), 0.3);
+        assert_eq!(to_digits(12_345.678_901_234, 9), 12_345.678_9);
+        assert_eq!(drawn(&[12_345.678_901_234]), [12_345.7]);
+        assert!(to_digits(f64::INFINITY, 9).is_nan());
     }
 }

@@ -3,7 +3,8 @@
 //! * [`OutputDirectory`]: files of a run are staged in a hidden folder and appear in `--out DIR` at once, or not at all.
 //! * [`OutputFile`]: one such file on its own.
 //! * [`Page`]: one self-contained `report.html` that opens offline: what was run, the outcome, figures that zoom.
-//! * [`Curves`], [`Field`], [`Bars`]: the kinds of figure; every [`Axis`] names its quantity and unit.
+//! * [`Curves`], [`Lanes`], [`Dots`], [`Field`], [`Bars`]: the kinds of figure; every [`Axis`] names its quantity and unit.
+//! * [`Scene`]: a drawing that moves with the time at the pointer.
 //! * [`Table`]: the same rows on standard output and in the page.
 //! * [`Progress`]: for runs of more than a second, a progress bar on a terminal and a line a phase elsewhere.
 //!
@@ -38,21 +39,28 @@ mod axis;
 mod bars;
 mod curves;
 mod decimate;
+mod dots;
+mod equation;
 mod field;
 mod figure;
 pub mod interrupt;
+mod lanes;
 mod output;
 mod page;
 mod progress;
+mod scene;
 mod table;
 
 pub use axis::Axis;
 pub use bars::Bars;
 pub use curves::{Curves, Style};
 pub use decimate::extrema_by_bucket;
+pub use dots::Dots;
 pub use field::{Field, FieldStyle};
 pub use figure::Figure;
+pub use lanes::{Lanes, Tint};
 pub use output::{Origin, OutputDirectory, OutputError, OutputFile};
 pub use page::{Page, Verdict};
 pub use progress::Progress;
+pub use scene::Scene;
 pub use table::{Cell, Column, Table, significant};

@@ -53,7 +53,18 @@ enum Tone {
 pub struct Cell {
     text: String,
     tone: Tone,
+    gauge: Option<Gauge>,
 }
+
+/// A bar with a mark at its limit, in parts of the cell's width.
+#[derive(Clone, Copy, Debug)]
+struct Gauge {
+    bar: f64,
+    limit: f64,
+}
+
+/// Where the mark of a limit is in a gauge whose bar does not go far beyond it.
+const LIMIT_AT: f64 = 0.7;
 
 impl Cell {
     /// "ok", or what else says that all is well.
@@ -61,6 +72,7 @@ impl Cell {
         Self {
             text: text.into(),
             tone: Tone::Good,
+            gauge: None,
         }
     }
 
@@ -69,6 +81,7 @@ impl Cell {
         Self {
             text: text.into(),
             tone: Tone::Warning,
+            gauge: None,
         }
     }
 
@@ -77,12 +90,31 @@ impl Cell {
         Self {
             text: text.into(),
             tone: Tone::Bad,
+            gauge: None,
         }
     }
 
     /// "yes" as good or "NO" as bad, for the outcome of a check.
     pub fn check(met: bool) -> Self {
         if met { Self::good("yes") } else { Self::bad("NO") }
+    }
+
+    /// A value as a bar against its limit, green where `met`. A limit of zero or of another sign than the value has no scale,
+    /// and the cell is empty.
+    pub fn gauge(value: f64, limit: f64, met: bool) -> Self {
+        let share = value / limit;
+        let gauge = (share.is_finite() && share >= 0.0).then(|| {
+            let scale = LIMIT_AT / (share * LIMIT_AT).max(1.0);
+            Gauge {
+                bar: share * scale,
+                limit: scale,
+            }
+        });
+        Self {
+            text: String::new(),
+            tone: if met { Tone::Good } else { Tone::Bad },
+            gauge,
+        }
     }
 }
 
@@ -91,7 +123,19 @@ impl<T: Into<String>> From<T> for Cell {
         Self {
             text: text.into(),
             tone: Tone::Neutral,
+            gauge: None,
         }
+    }
+}
+
+impl Gauge {
+    fn to_html(self) -> String {
+        let percent = |part: f64| (1000.0 * part).round() / 10.0;
+        format!(
+            "<i class=\"gauge\"><i style=\"width:{}%\"></i><b style=\"left:{}%\"></b></i>",
+            percent(self.bar),
+            percent(self.limit)
+        )
     }
 }
 
@@ -140,8 +184,9 @@ impl Table {
         for row in &self.rows {
             html += "<tr>";
             for (cell, column) in row.iter().zip(&self.columns) {
-                let text = escape(&cell.text);
+                let text = cell.gauge.map_or_else(|| escape(&cell.text), Gauge::to_html);
                 let text = match cell.tone {
+                    _ if text.is_empty() => text,
                     Tone::Neutral => text,
                     Tone::Good => format!("<span class=\"good\">{text}</span>"),
                     Tone::Warning => format!("<span class=\"warning\">{text}</span>"),
@@ -225,6 +270,25 @@ pub(crate) fn escape(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_gauge_keeps_its_bar_and_its_limit_in_the_cell() {
+        for (value, limit, bar, mark) in [
+            (35.0, 50.0, 0.49, 0.7),
+            (50.0, 50.0, 0.7, 0.7),
+            (200.0, 50.0, 1.0, 0.25),
+        ] {
+            let gauge = Cell::gauge(value, limit, value <= limit).gauge.expect("a scale");
+            assert!(
+                (gauge.bar - bar).abs() < 1e-12 && (gauge.limit - mark).abs() < 1e-12,
+                "{gauge:?}"
+            );
+        }
+        assert!(Cell::gauge(1.0, 0.0, false).gauge.is_none() && Cell::gauge(-1.0, 2.0, true).gauge.is_none());
+        let mut table = Table::new([Column::text("Figure against limit")]);
+        table.row([Cell::gauge(35.0, 50.0, true)]);
+        assert!(table.to_html().contains("width:49%") && table.to_html().contains("left:70%"));
+    }
 
     fn example() -> Table {
         let mut table = Table::new([Column::text("Limit"), Column::number("Value, MPa"), Column::text("Met")]);

@@ -12,6 +12,7 @@ use oleo_diagnose::estimation::LeastSquares;
 use oleo_diagnose::{Campaign, Diagnosis, KeptBack, MODEL_FILE, Predictions, json, page};
 use oleo_report::{Cell, Column, Progress, Table};
 
+use super::column_map::column_map;
 use crate::failure::Failure;
 use crate::results::{ResultsArgs, command_line};
 
@@ -46,6 +47,9 @@ pub struct Args {
     /// Recording (file name without .csv) that is not fitted but predicted; may be repeated
     #[arg(long, value_name = "NAME")]
     hold_out: Vec<String>,
+    /// Map of the columns of recordings that another program wrote: separator, decimal commas, titles and units (docs/diagnose.md)
+    #[arg(long, value_name = "MAP.toml", conflicts_with_all = ["vehicle", "self_test"])]
+    columns: Option<PathBuf>,
     #[command(flatten)]
     results: ResultsArgs,
     #[command(flatten)]
@@ -75,14 +79,17 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         fit_until: args.fit_until,
         recordings: args.hold_out.clone(),
     };
+    let map = args.columns.as_deref().map(column_map).transpose()?;
     let (campaign, complete) = if kept_back.is_nothing() {
-        (Campaign::open(folder)?, None)
+        (Campaign::open_by(folder, map.as_ref())?, None)
     } else {
-        let (campaign, complete) = Campaign::open_in_part(folder, &kept_back)?;
+        let (campaign, complete) = Campaign::open_in_part(folder, &kept_back, map.as_ref())?;
         (campaign, Some(complete))
     };
+    let mut inputs = inputs(folder);
+    inputs.extend(args.columns.clone());
     // Staged before the work: Ctrl-C from here on removes the folder and ends with nothing half-written.
-    let mut out = (args.results).stage("oleo diagnose", &format!("diagnose-{}", campaign.name), inputs(folder))?;
+    let mut out = (args.results).stage("oleo diagnose", &format!("diagnose-{}", campaign.name), inputs)?;
     if let Some(out) = &out {
         out.refuse(MODEL_FILE)?;
     }
@@ -151,6 +158,11 @@ impl Args {
             )));
         }
         let logs = vehicle::Logs::in_folder(first)?;
+        if logs.is_some() && self.columns.is_some() {
+            return Err(Failure::new(
+                "--columns: the logs of a vehicle have no columns; leave the option out",
+            ));
+        }
         if logs.is_some() && (self.fit_until.is_some() || !self.hold_out.is_empty()) {
             return Err(Failure::new(
                 "--fit-until and --hold-out: no part of a vehicle's drives can be held out yet; leave the options out"

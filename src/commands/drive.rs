@@ -1,7 +1,9 @@
 //! `oleo drive`: drives a vehicle through a manoeuvre with the ride model, the handling model or both.
 
 mod arguments;
+mod columns;
 mod measures;
+mod page;
 mod plan;
 mod sheet;
 mod suspension;

@@ -1,5 +1,7 @@
 //! `oleo hil`: reads the options and the scenario, runs them with `oleo_hil`, and writes the results.
 
+mod record;
+
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -21,6 +23,7 @@ use oleo_report::interrupt::{self, Graceful};
 use oleo_report::{Column, OutputDirectory, Progress, Table, significant};
 use strum::VariantNames;
 
+use self::record::{Recorded, record, recorded};
 use super::course_arguments::{CourseArgs, option_failure};
 use crate::failure::Failure;
 use crate::results::{ResultsArgs, command_line, say};
@@ -37,6 +40,7 @@ Examples:
   oleo hil --road ../shared/roads/belgian_block.crg         drive over a measured road
   oleo hil --scenario lane-change-on-belgian --out lane     change lanes in the middle of a rough road
   oleo hil --manoeuvre lane-change-2 --driver hard --load laden --road flat
+  oleo hil --record rear-left --out run                     record a strut, for oleo diagnose run/rear-left
   oleo hil --bus socketcan:vcan0                            send the frames over SocketCAN
   oleo hil --clock realtime --duration-s 5                  run in real time
   oleo hil --firmware oleo-firmware                         run the controller as an image on an emulated board
@@ -105,6 +109,10 @@ pub struct Args {
     /// Number of threads for the two nodes, 1 or 2 (real time always uses 2)
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=2))]
     threads: u8,
+    /// Record a strut as a test rig would, or all four: DIR/CORNER is then a campaign for oleo diagnose, with the model that the plant
+    /// has of the strut and sensor noise on every channel
+    #[arg(long, value_name = "CORNER|all", value_parser = recorded, conflicts_with = "no_out")]
+    record: Option<Recorded>,
     #[command(flatten)]
     results: ResultsArgs,
 }
@@ -122,11 +130,19 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         suits_image(&scenario)?;
     }
     if args.node == Some(Role::Controller) {
+        if args.record.is_some() {
+            return Err(Failure::new(
+                "--record: the controller's node has no strut; give it to the plant's node",
+            ));
+        }
         return controller(&args, &scenario);
     }
     let name = format!("hil-{}", scenario.name);
     let staged = args.results.stage("oleo hil", &name, inputs(&args, &scenario))?;
-    let vehicle = run::vehicle(&scenario)?;
+    let mut vehicle = run::vehicle(&scenario)?;
+    if args.record.is_some() {
+        vehicle = vehicle.recording_struts();
+    }
     let road_measured_m = vehicle.measured_road_m();
     let progress = Progress::new(&scenario.name, scenario.ticks.into());
     // In real time Ctrl-C ends the run, and what has been driven is reported.
@@ -135,6 +151,9 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         progress.set(ticks.into());
         !graceful.as_ref().is_some_and(Graceful::requested)
     };
+    if args.node.is_some() {
+        waiting_for(Role::Controller, &scenario);
+    }
     let outcome = match (&args.firmware, args.node) {
         (Some(image), _) => run::with_firmware(&scenario, vehicle, image, &mut watch)?,
         (None, Some(_)) => run::plant_alone(&scenario, vehicle, &mut watch)?,
@@ -295,6 +314,9 @@ fn report(
     if let Some(out) = &mut staged {
         output::write(out, scenario, outcome, &metrics, &summary)?;
         out.page(&page::page(scenario, outcome, &metrics, &summary, &command_line()))?;
+        for corner in args.record.iter().flat_map(|recorded| &recorded.0) {
+            text += &record(out, scenario, outcome, *corner)?;
+        }
     }
     args.results.publish(staged, &text)?;
     if let Some(failure) = &summary.bus_failure {
@@ -311,12 +333,23 @@ fn report(
     })
 }
 
+/// Says for what a node waits, so that a user who forgot to start the other one need not guess.
+fn waiting_for(partner: Role, scenario: &Scenario) {
+    let _ = writeln!(
+        std::io::stderr(),
+        "waiting for the {0} on the bus of {1}; if it does not run yet, start `oleo hil --node {0}` on the same bus",
+        partner.name(),
+        scenario.bus
+    );
+}
+
 /// Runs the controller's node alone. Its results go to standard output and to `summary.json`.
 fn controller(args: &Args, scenario: &Scenario) -> Result<ExitCode, Failure> {
     let name = format!("hil-{}-controller", scenario.name);
-    let staged = args
+    let mut staged = args
         .results
         .stage("oleo hil --node controller", &name, inputs(args, scenario))?;
+    waiting_for(Role::Plant, scenario);
     let ended = run::controller_alone(scenario)?;
     let mut table = Table::new([Column::text("Quantity"), Column::number("Value")]);
     table.row(["node".to_owned(), Role::Controller.name().to_owned()]);
@@ -337,11 +370,10 @@ fn controller(args: &Args, scenario: &Scenario) -> Result<ExitCode, Failure> {
         table.row(["lateness, median / 99 % / largest, us".to_owned(), figures]);
         table.row(["overruns".to_owned(), late.overruns.to_string()]);
     }
-    say(&table.to_string())?;
-    if let Some(mut out) = staged {
+    if let Some(out) = &mut staged {
         out.summary("summary.json", Some(scenario.seed), &controller_summary(&ended))?;
-        say(&format!("{}\n", out.commit()?.join("summary.json").display()))?;
     }
+    args.results.publish_with(staged, &table.to_string(), "summary.json")?;
     let Some(lost) = ended.plant_lost else {
         return Ok(ExitCode::SUCCESS);
     };

@@ -1,6 +1,7 @@
 //! One file a command: `pub struct Args` (clap, with units and an example in the help) and
 //! `pub fn run(args: Args) -> Result<ExitCode, Failure>`.
 
+mod column_map;
 mod course_arguments;
 pub mod diagnose;
 pub mod drive;

@@ -6,6 +6,7 @@
 //! the recorded position and speed at the start of each window.
 
 use std::fs::File;
+use std::io::{Cursor, Read};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -15,6 +16,7 @@ use oleo_plant_sim::specimen::{CylinderModel, DamperModel, DriveModel, GasSpring
 use oleo_plant_sim::strut::{StrutModel, replay};
 use oleo_report::{Column, OutputDirectory, OutputFile, Table};
 
+use super::column_map::column_map;
 use crate::failure::Failure;
 use crate::results::{default_path, origin, say};
 
@@ -32,12 +34,31 @@ pub struct Args {
     /// Recording whose inputs are simulated
     #[arg(value_name = "RECORDING.csv")]
     recording: PathBuf,
+    /// Map of the columns of a recording that another program wrote: separator, decimal commas, titles and units (docs/diagnose.md)
+    #[arg(long, value_name = "MAP.toml")]
+    columns: Option<PathBuf>,
     /// CSV file that is written, with the columns of the recording [default: a file in oleo-out/predict]
     #[arg(long, value_name = "SIM.csv")]
     out: Option<PathBuf>,
     /// Replace a file of a campaign. Inputs are never replaced
     #[arg(long)]
     force: bool,
+}
+
+/// The text of a recording.
+type Source = Box<dyn Read>;
+
+/// Opens the recording; one of another program is translated by the map of its columns.
+fn source(args: &Args) -> Result<Source, Failure> {
+    let file = args.recording.display();
+    let unreadable = |error| Failure::new(format!("{file}: cannot read the recording: {error}; check the path"));
+    let Some(path) = &args.columns else {
+        return Ok(Box::new(File::open(&args.recording).map_err(unreadable)?));
+    };
+    let map = column_map(path)?;
+    let bytes = std::fs::read(&args.recording).map_err(unreadable)?;
+    let text = map.translate(&bytes, &file.to_string())?;
+    Ok(Box::new(Cursor::new(text)))
 }
 
 /// A channel: its name, recorded and predicted values, and the standard deviation of its noise.
@@ -56,8 +77,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let (model_file, file) = (args.model.display().to_string(), args.recording.display().to_string());
     let text = std::fs::read_to_string(&args.model)
         .map_err(|error| Failure::new(format!("{model_file}: cannot read the model: {error}; check the path")))?;
-    let source = File::open(&args.recording)
-        .map_err(|error| Failure::new(format!("{file}: cannot read the recording: {error}; check the path")))?;
+    let source = source(&args)?;
     let target = Target::of(&args)?;
 
     let kind = specimen_name(&text, &model_file)?.kind;
@@ -98,7 +118,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
 /// Inputs by name, in the order of a recording, and predicted channels.
 type Predicted = (Vec<(String, Vec<f64>)>, Vec<Channel>);
 
-fn strut(text: &str, model_file: &str, source: File, file: &str) -> Result<Predicted, Failure> {
+fn strut(text: &str, model_file: &str, source: Source, file: &str) -> Result<Predicted, Failure> {
     let model = StrutModel::from_toml(text, model_file)?;
     let recording = RecordedStrut::read(source, file)?;
     let noise = |name: &str| model.noise.get(name).copied();
@@ -135,7 +155,7 @@ fn strut(text: &str, model_file: &str, source: File, file: &str) -> Result<Predi
     Ok((inputs, channels))
 }
 
-fn gas_spring(text: &str, model_file: &str, source: File, file: &str) -> Result<Predicted, Failure> {
+fn gas_spring(text: &str, model_file: &str, source: Source, file: &str) -> Result<Predicted, Failure> {
     let model = GasSpringModel::from_toml(text, model_file)?;
     let recording = Columns::read(source, file, &["displacement_m", "p_Pa"], &[])?;
     let (time, x) = (recording.time_s(), column(&recording, "displacement_m"));
@@ -156,7 +176,7 @@ fn gas_spring(text: &str, model_file: &str, source: File, file: &str) -> Result<
     Ok((inputs, vec![channel]))
 }
 
-fn cylinder(text: &str, model_file: &str, source: File, file: &str) -> Result<Predicted, Failure> {
+fn cylinder(text: &str, model_file: &str, source: Source, file: &str) -> Result<Predicted, Failure> {
     let model = CylinderModel::from_toml(text, model_file)?;
     let mut needed = vec!["displacement_m"];
     needed.extend(model.chamber.iter().map(|chamber| chamber.column.as_str()));
@@ -190,7 +210,7 @@ fn cylinder(text: &str, model_file: &str, source: File, file: &str) -> Result<Pr
     Ok((inputs, vec![channel]))
 }
 
-fn damper(text: &str, model_file: &str, source: File, file: &str) -> Result<Predicted, Failure> {
+fn damper(text: &str, model_file: &str, source: Source, file: &str) -> Result<Predicted, Failure> {
     let model = DamperModel::from_toml(text, model_file)?;
     let recording = Columns::read(source, file, &["displacement_m"], &["force_N"])?;
     let (time, x) = (recording.time_s(), column(&recording, "displacement_m"));
@@ -210,7 +230,7 @@ fn damper(text: &str, model_file: &str, source: File, file: &str) -> Result<Pred
     Ok((inputs, vec![channel]))
 }
 
-fn drive(text: &str, model_file: &str, source: File, file: &str) -> Result<Predicted, Failure> {
+fn drive(text: &str, model_file: &str, source: Source, file: &str) -> Result<Predicted, Failure> {
     let model = DriveModel::from_toml(text, model_file)?;
     let recording = Columns::read(source, file, &["force_N", "position_m"], &[])?;
     let (time, force) = (recording.time_s(), column(&recording, "force_N"));
@@ -274,7 +294,8 @@ enum Target {
 impl Target {
     /// Refuses what cannot be written, before the work.
     fn of(args: &Args) -> Result<Self, Failure> {
-        let inputs = vec![args.model.clone(), args.recording.clone()];
+        let mut inputs = vec![args.model.clone(), args.recording.clone()];
+        inputs.extend(args.columns.clone());
         if let Some(out) = &args.out {
             return Ok(Self::File(OutputFile::stage(out, &inputs, args.force)?));
         }

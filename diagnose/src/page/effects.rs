@@ -17,8 +17,10 @@ pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
         page.text("No effect improves the prediction of held-out stretches by more than chance and the smoothing of the inputs can explain.");
     }
     for e in &diagnosis.effects {
+        page.topic(Some(&words::topic(&e.place)));
         effect(page, campaign, e);
     }
+    page.topic(None);
     if found {
         page.text(
             "For each effect, its strongest rival was fitted in its place, together with all other parameters, and judged on \
@@ -45,18 +47,18 @@ fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
         return;
     }
     page.text(&format!(
-        "{} {} ({}){}",
+        "{} {} ({}).",
         words::sentence(named),
         words::at(&e.place),
-        words::effect_name(e),
-        known.equation_in(kind, &e.label).map_or_else(
-            || ".".to_owned(),
-            |equation| {
-                let meaning = words::sentence(known.meaning());
-                format!(". Equation: {}. {meaning}. Source: {}.", equation.text, equation.source)
-            }
-        ),
+        words::effect_name(e)
     ));
+    if let Some(equation) = known.equation_in(kind, &e.label) {
+        page.equation(equation.text).text(&format!(
+            "{}. Source: {}.",
+            words::sentence(known.meaning()),
+            equation.source
+        ));
+    }
     if !e.parameters.is_empty() && has_readable_numbers(e) {
         let mut table = Table::new([
             Column::text("Parameter"),
@@ -240,7 +242,8 @@ mod tests {
     use super::*;
     use crate::diagnosis::Effect;
     use crate::effect::unlisted;
-    use crate::vocabulary::{EffectId, Site};
+    use crate::vocabulary::{EffectId, Site, SpecimenKind};
+    use strum::VariantArray;
 
     fn numbers_of(effect: &Effect, parameters: &[crate::parameter::Parameter]) -> bool {
         let estimate = |p: &crate::parameter::Parameter| crate::diagnosis::Estimate {
@@ -251,6 +254,24 @@ mod tests {
         let mut effect = effect.clone();
         effect.parameters = parameters.iter().map(estimate).collect();
         has_readable_numbers(&effect)
+    }
+
+    /// Equations are written as text where they are computed; the page can set every one of them.
+    #[test]
+    fn every_equation_is_set_and_not_shown_as_text() {
+        for &id in EffectId::VARIANTS {
+            for &kind in SpecimenKind::VARIANTS {
+                let Some(equation) = of(id).equation_in(kind, "") else {
+                    continue;
+                };
+                if id == EffectId::Unlisted && !equation.text.contains('=') {
+                    continue;
+                }
+                let mut page = Page::new("Equation", "oleo diagnose");
+                page.equation(equation.text);
+                assert!(page.render().contains("<math "), "{id}: {}", equation.text);
+            }
+        }
     }
 
     /// A page that says "drawn" draws it: every law that the search may fit to a strut has a figure.

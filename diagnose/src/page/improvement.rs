@@ -1,6 +1,6 @@
 //! The section "How much better": held-out noise ratios, and tests whether the residuals are noise.
 
-use oleo_report::{Axis, Bars, Cell, Column, Curves, Page, Style, Table, significant};
+use oleo_report::{Axis, Cell, Column, Curves, Dots, Page, Style, Table, significant};
 
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
@@ -17,19 +17,20 @@ fn channels(page: &mut Page, diagnosis: &Diagnosis) {
     let channels = &diagnosis.channels;
     let names: Vec<&str> = channels.iter().map(|c| c.column.as_str()).collect();
     let column = |f: fn(&crate::diagnosis::ChannelFigures) -> f64| channels.iter().map(f).collect::<Vec<_>>();
-    let mut bars = Bars::new(
+    let mut dots = Dots::new(
         "Noise ratio of each channel",
         names,
-        Axis::new("RMS residual", "sensor noise").logarithmic(),
+        Axis::new("RMS residual over sensor noise", "").logarithmic(),
     );
-    bars.caption(
+    dots.caption(
         "The first series is the model as it was given. In the held-out series every stretch of the recordings is predicted with \
-         parameters that were fitted without it. A ratio of 1 means that only sensor noise is left.",
+         parameters that were fitted without it. At the line only sensor noise is left.",
     );
-    bars.series("as given", &column(|c| c.before))
+    dots.series("as given", &column(|c| c.before))
         .series("recalibrated only, held out", &column(|c| c.held_out_before))
-        .series("improved, held out", &column(|c| c.held_out_after));
-    page.figure(bars);
+        .series("improved, held out", &column(|c| c.held_out_after))
+        .line(1.0, "only noise");
+    page.figure(dots);
     let mut table = Table::new([
         Column::text("Noise ratio of channel"),
         Column::number("As given"),

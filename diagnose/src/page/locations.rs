@@ -3,18 +3,16 @@
 
 use oleo_report::{Axis, Bars, Column, Curves, Page, Style, Table, extrema_by_bucket, significant};
 
-use super::words;
+use super::{explained, words};
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
 use crate::effect::of;
-use crate::locate::{self, Location};
+use crate::locate::Location;
 use crate::specimen::Specimen;
-use crate::vocabulary::{Place, Site, SpecimenKind, State};
+use crate::vocabulary::{Place, Site, SpecimenKind};
 
 /// Number of buckets into which a line over time is reduced; more cannot be seen on a page.
 const BUCKETS: usize = 260;
-/// Largest number of markers in a figure of the residual over a state.
-const MARKERS: usize = 1200;
 /// Largest number of locations that get figures.
 const DRAWN: usize = 6;
 /// Largest number of relations in the bar chart.
@@ -29,7 +27,8 @@ pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
         page.drawing(
             &svg,
             if marked {
-                "The specimen. The marked places are those where the model and the recordings disagree."
+                "The specimen. The marked places are those where the model and the recordings disagree. Click one to see only what is \
+                 about it."
             } else {
                 "The specimen. No place is marked, because no place was found where the model and the recordings disagree."
             },
@@ -49,9 +48,11 @@ pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     }
     relations(page, diagnosis);
     for location in diagnosis.locations.iter().take(DRAWN) {
+        page.topic(Some(&words::topic(&location.place)));
         over_time(page, specimen, diagnosis, location);
-        over_state(page, specimen, diagnosis, location);
+        explained::over_state(page, specimen, diagnosis, location);
     }
+    page.topic(None);
 }
 
 fn locations(specimen: &dyn Specimen, locations: &[Location]) -> Table {
@@ -123,7 +124,7 @@ fn relations(page: &mut Page, diagnosis: &Diagnosis) {
     }
 }
 
-fn title(kind: SpecimenKind, diagnosis: &Diagnosis, location: &Location) -> String {
+pub(super) fn title(kind: SpecimenKind, diagnosis: &Diagnosis, location: &Location) -> String {
     let effect =
         (diagnosis.effects.iter()).find(|e| e.candidate() == location.candidate && location.candidate.is_some());
     match effect {
@@ -162,11 +163,7 @@ fn over_time(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, lo
     let without = &location.without[r][c];
     let (quantity, unit) = (channel.column.quantity(), channel.column.unit());
     let (scale, unit) = scaled(unit);
-    let simulated = |residual: &[f64]| -> Vec<f64> {
-        (measured.iter().zip(residual))
-            .map(|(m, e)| scale * (m - e * channel.noise))
-            .collect()
-    };
+    let nothing_found = location.candidate.is_none();
     let mut curves = Curves::new(
         &format!(
             "{}: {} in {}",
@@ -177,17 +174,17 @@ fn over_time(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, lo
         Axis::new("Time", "s"),
     );
     curves.caption(&format!(
-        "The upper panel shows the recording and the predictions. The lower panel shows recording minus prediction, divided by \
-         the sensor noise ({} {}). The misfit is found in the shaded interval, {:.2} to {:.2} s. The condition over all \
-         recordings is: {}.",
+        "The upper panel shows recording less prediction, and what the effect adds to the prediction; the sensor noise is {} {}. The \
+         lower panel shows the recording. The misfit is found in the shaded interval, {:.2} to {:.2} s. The condition over all \
+         recordings is: {}.{}",
         significant(channel.noise * scale, 2),
         unit,
         location.t_s[0],
         location.t_s[1],
-        location.condition.text
+        location.condition.text,
+        together(specimen, diagnosis, location)
     ));
     curves.height(560);
-    let nothing_found = location.candidate.is_none();
     let mut draw = |axis: Axis, series: &[(Style, &str, Vec<f64>)]| {
         curves.panel(axis);
         for (style, name, values) in series {
@@ -196,98 +193,40 @@ fn over_time(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, lo
         }
         curves.region(location.t_s[0], location.t_s[1], "found here");
     };
-    let recorded: Vec<f64> = measured.iter().map(|m| scale * m).collect();
-    if nothing_found {
-        draw(
-            Axis::new(quantity, unit),
-            &[
-                (Style::Line, "improved model", simulated(with)),
-                (Style::Dashed, "recording", recorded),
-            ],
-        );
-        draw(
-            Axis::new("Residual", "noise"),
-            &[(Style::Line, "improved model", with.clone())],
-        );
+    let in_units = |residual: &[f64]| -> Vec<f64> { residual.iter().map(|e| scale * e * channel.noise).collect() };
+    let left = (Style::Line, "left by the improved model", in_units(with));
+    let residuals = if nothing_found {
+        vec![left]
     } else {
-        draw(
-            Axis::new(quantity, unit),
-            &[
-                (Style::Line, "without this effect", simulated(without)),
-                (Style::Line, "improved model", simulated(with)),
-                (Style::Dashed, "recording", recorded),
-            ],
-        );
-        draw(
-            Axis::new("Residual", "noise"),
-            &[
-                (Style::Line, "without this effect", without.clone()),
-                (Style::Line, "improved model", with.clone()),
-            ],
-        );
-    }
+        let adds: Vec<f64> = without.iter().zip(with).map(|(without, with)| without - with).collect();
+        vec![
+            (Style::Line, "recording less model without it", in_units(without)),
+            left,
+            (Style::Dashed, "what the effect adds", in_units(&adds)),
+        ]
+    };
+    draw(Axis::new("Residual", unit), &residuals);
+    let recorded: Vec<f64> = measured.iter().map(|m| scale * m).collect();
+    draw(Axis::new(quantity, unit), &[(Style::Line, "recording", recorded)]);
     page.figure(curves);
 }
 
-fn over_state(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, location: &Location) {
-    let condition = &location.condition;
-    let name = match (&condition.region, &condition.follows) {
-        (Some(region), _) => region.state,
-        (None, Some((state, _))) => *state,
-        // Time says it: a decay needs no second picture.
-        (None, None) if condition.decays => return,
-        (None, None) => State::Displacement,
+/// What "without the effect" means, where it is more than the place of this figure.
+fn together(specimen: &dyn Specimen, diagnosis: &Diagnosis, location: &Location) -> String {
+    let Some(candidate) = location.candidate else {
+        return String::new();
     };
-    let every = specimen.samples().div_ceil(MARKERS).max(1);
-    let Some(state) = locate::states(specimen, every).into_iter().find(|s| s.state == name) else {
-        return;
-    };
-    let c = location.channel;
-    let pooled = |set: &[crate::specimen::Series]| -> Vec<f64> {
-        set.iter().flat_map(|r| r[c].iter().step_by(every).copied()).collect()
-    };
-    let (quantity, unit) = name.quantity_and_unit();
-    let (scale, unit) = scaled(unit);
-    let values: Vec<f64> = state.values.iter().map(|v| scale * v).collect();
-    let mut curves = Curves::new(
-        &format!(
-            "{}: residual of {} over {quantity}, all recordings",
-            title(specimen.kind(), diagnosis, location),
-            specimen.channels()[c].column
-        ),
-        Axis::new(quantity, unit),
-    );
-    curves.panel(Axis::new("Residual", "noise"));
-    if location.candidate.is_some() {
-        curves.series(
-            Style::Points,
-            "without this effect",
-            &brief(&values),
-            &brief(&pooled(&location.without)),
+    let place = &specimen.candidates()[candidate].place;
+    let mut text = String::new();
+    if place.site.parts().len() > 1 {
+        let sites: Vec<String> = place.site.parts().iter().map(ToString::to_string).collect();
+        text += &format!(
+            " The effect is one for {}, and was removed from all of them together.",
+            sites.join(" and ")
         );
     }
-    curves.series(
-        Style::Points,
-        "improved model",
-        &brief(&values),
-        &brief(&pooled(&diagnosis.residuals.improved)),
-    );
-    if let Some(region) = &condition.region {
-        curves.region(scale * region.from, scale * region.to, "found here");
-        curves.caption(&format!(
-            "The shaded range contains the most misfit relative to its number of samples: {}.",
-            region.words()
-        ));
-    } else if let Some((_, part)) = &condition.follows {
-        curves.caption(&format!(
-            "The mean residual as a function of {quantity} explains {:.0} % of {}.",
-            100.0 * part,
-            if location.candidate.is_some() {
-                "what the effect changes"
-            } else {
-                "the residual"
-            }
-        ));
+    if diagnosis.effects.iter().filter(|e| e.selected.is_some()).count() > 1 {
+        text += " The other effects stay in the model, and all other parameters were fitted again without this one.";
     }
-    page.figure(curves);
+    text
 }

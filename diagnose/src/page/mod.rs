@@ -2,18 +2,19 @@
 //! better it predicts, and what to record next.
 
 mod effects;
+mod explained;
 mod improvement;
 mod locations;
 mod model;
+mod next;
 mod portrait;
 pub mod words;
 
-use oleo_report::{Cell, Column, Page, Table, Verdict as Colour, significant};
+use oleo_report::{Column, Page, Table, Verdict as Colour, significant};
 
 use crate::campaign::Campaign;
 use crate::diagnosis::{Diagnosis, Effect, Verdict};
 use crate::effect::{Candidate, of};
-use crate::json;
 use crate::specimen::Specimen;
 use crate::vocabulary::SpecimenKind;
 
@@ -44,7 +45,7 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
         specimen.inputs_in_words()
     ));
     evidence(&mut page, campaign, diagnosis);
-    next(&mut page, campaign, diagnosis);
+    next::section(&mut page, campaign, diagnosis);
     if !campaign.notes.is_empty() {
         page.section("Notes on the recordings");
         campaign.notes.iter().for_each(|n| {
@@ -188,35 +189,6 @@ fn in_brief(kind: SpecimenKind, diagnosis: &Diagnosis) -> Table {
 /// Number of points of a law that was fitted as a table.
 fn points(effect: &Effect) -> Option<usize> {
     effects::law(effect).map(|law| law.argument.len())
-}
-
-fn next(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
-    page.section("What to record next");
-    page.text(&diagnosis.next_experiment.clone().unwrap_or_else(|| {
-        format!(
-            "No further recording is needed to separate effects from each other. {}",
-            improvement::residuals_in_words(diagnosis)
-        )
-    }));
-    let missing = json::not_tested(&*campaign.specimen);
-    if missing.is_empty() {
-        page.text("Every effect of the vocabulary was tested. If one were present, these recordings would show it.");
-        return;
-    }
-    let mut table = Table::new([
-        Column::text("Effect that was not tested"),
-        Column::text("Place"),
-        Column::text("Reason, and what to record"),
-    ]);
-    for m in &missing {
-        table.row([text(&m["id"]), text(&m["place"]), text(&m["why"])]);
-    }
-    page.text("These recordings cannot show the following effects, so it is unknown whether they are present.")
-        .table(table);
-}
-
-fn text(value: &serde_json::Value) -> Cell {
-    Cell::from(value.as_str().unwrap_or_default())
 }
 
 /// The effects, as printed on standard output.

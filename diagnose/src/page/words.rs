@@ -37,6 +37,13 @@ pub fn at(place: &Place) -> String {
     }
 }
 
+/// The sites of a place as the topics of a page, which the drawing of the specimen selects.
+#[must_use]
+pub fn topic(place: &Place) -> String {
+    let sites: Vec<String> = place.site.parts().iter().map(ToString::to_string).collect();
+    sites.join(" ")
+}
+
 /// The text with its first letter in upper case.
 #[must_use]
 pub fn sentence(text: &str) -> String {

@@ -11,6 +11,6 @@ mod series;
 mod thinning;
 
 pub use columns::{ColumnKind, ColumnSpec, GapPolicy};
-pub use reader::{MIN_SAMPLES, parse, read};
+pub use reader::{MIN_SAMPLES, parse, read, read_by};
 pub use series::Recording;
 pub use thinning::MAX_SAMPLES;

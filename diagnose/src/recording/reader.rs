@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use oleo_plant_sim::rig::{other_separator, wrong_separator};
+use oleo_plant_sim::rig::{ColumnMap, other_separator, wrong_separator};
 
 use super::columns::{ColumnKind, ColumnSpec, GapPolicy};
 use super::series::Recording;
@@ -23,6 +23,21 @@ pub fn read(path: &Path, specs: &[ColumnSpec], gaps: GapPolicy) -> Result<Record
     let open = || std::fs::File::open(path).map_err(|e| DiagnoseError::file(path, e.to_string()));
     let rows = count_lines(open()?).map_err(|e| DiagnoseError::file(path, e.to_string()))?;
     parse(open()?, rows, path, specs, gaps)
+}
+
+/// Reads one recording that another program wrote, by a map of its columns.
+///
+/// # Errors
+/// As [`read`], and what the map does not fit.
+pub fn read_by(
+    path: &Path,
+    map: &ColumnMap,
+    specs: &[ColumnSpec],
+    gaps: GapPolicy,
+) -> Result<Recording, DiagnoseError> {
+    let bytes = std::fs::read(path).map_err(|e| DiagnoseError::file(path, e.to_string()))?;
+    let text = map.translate(&bytes, &path.display().to_string())?;
+    parse(text.as_bytes(), text.matches('\n').count(), path, specs, gaps)
 }
 
 /// Lines of a file, read in pieces.

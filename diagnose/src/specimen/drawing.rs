@@ -53,8 +53,17 @@ impl<'p> Drawing<'p> {
 
     /// A box that is a site: marked where something was found there.
     pub fn site(&mut self, at: (u32, u32, u32, u32), text: &str, site: Site) {
-        let found = self.found_at(&[site]);
+        self.part(at, text, &[site]);
+    }
+
+    /// A box that is the first of several sites, and is marked where something was found at any of them. It selects what the page
+    /// says about the first.
+    pub fn part(&mut self, at: (u32, u32, u32, u32), text: &str, sites: &[Site]) {
+        let found = self.found_at(sites);
+        let Some(site) = sites.first() else { return };
+        let _ = write!(self.body, "<g data-topic=\"{site}\">");
         self.block(at, text, found);
+        self.body += "</g>";
     }
 
     /// A measuring point: its symbol in a small frame around (x, y).

@@ -47,7 +47,7 @@ fn directly(scenario: &Scenario) -> Run {
         .unwrap();
     let length_m = settings.road_length_m(&manoeuvre, &loaded);
     let surface = road::from_name_or_path(&scenario.road, length_m, scenario.seed).unwrap();
-    let struts = parameters.struts(loaded.static_strut_load_n()).unwrap();
+    let struts = Parameters::at_rest(&parameters.charged(loaded.static_strut_load_n())).unwrap();
     let course = settings.course(manoeuvre, surface);
     Drive::begin(&course, &loaded, &parameters.handling, struts.map(StrutElement::new))
         .unwrap()

@@ -63,16 +63,20 @@ impl Parameters {
         describe(&self.vehicle, &self.handling, &self.strut)
     }
 
-    /// Four struts at rest, each charged for the load (N) that it carries, as in a workshop; all valves closed.
+    /// The models of the four struts, each charged for the load (N) that it carries, as in a workshop.
+    pub fn charged(&self, load_n: Corners<f64>) -> Corners<StrutModel> {
+        Corners::from_fn(|corner| {
+            let mut model = self.struts[corner].clone();
+            model.cylinder.static_pressure_pa = load_n[corner] / model.piston_area_m2();
+            model
+        })
+    }
+
+    /// Four struts at rest; all valves closed.
     ///
     /// # Errors
     /// A strut that cannot be charged for its load.
-    pub fn struts(&self, load_n: Corners<f64>) -> Result<Corners<Strut>, RunError> {
-        let strut = |corner| {
-            let mut model = self.struts[corner].clone();
-            model.cylinder.static_pressure_pa = load_n[corner] / model.piston_area_m2();
-            Ok(Strut::at_rest(&model, StrutValves::default())?)
-        };
-        Corners::try_from_fn(strut)
+    pub fn at_rest(charged: &Corners<StrutModel>) -> Result<Corners<Strut>, RunError> {
+        Corners::try_from_fn(|corner| Ok(Strut::at_rest(&charged[corner], StrutValves::default())?))
     }
 }

@@ -11,7 +11,7 @@ use oleo_plant_sim::vehicle::suspension::StrutElement;
 use super::error::RunError;
 use super::parameters::Parameters;
 use crate::scenario::Scenario;
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Assembly, Vehicle};
 
 /// The loaded vehicle of a scenario at its start.
 ///
@@ -39,18 +39,30 @@ fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunErr
             step_s,
         });
     }
-    let struts = parameters.struts(loaded.static_strut_load_n())?;
+    let charged = parameters.charged(loaded.static_strut_load_n());
+    let struts = Parameters::at_rest(&charged)?;
+    let outline_m = parameters.handling.outline.corners_m(&loaded);
     let surface = |length_m: f64| road::from_name_or_path(&scenario.road, length_m, scenario.seed);
     let Some(settings) = &scenario.course else {
         let road = surface(scenario.road_length_m())?;
         let measured_m = road.measured_length_m();
         let model = RideVehicle::new(&loaded, struts, road, scenario.speed_m_s)?;
-        return Ok(Vehicle::on_road(model, &loaded).over_measured(measured_m));
+        let assembly = Assembly {
+            parameters: loaded,
+            struts: charged,
+            outline_m,
+        };
+        return Ok(Vehicle::on_road(model, assembly).over_measured(measured_m));
     };
     let manoeuvre = settings
         .manoeuvre(scenario.speed_m_s, Some(scenario.duration_s()))
         .map_err(RunError::Course)?;
     let course = settings.course(manoeuvre, surface(settings.road_length_m(&manoeuvre, &loaded))?);
     let drive = Drive::begin(&course, &loaded, &parameters.handling, struts.map(StrutElement::new))?;
-    Ok(Vehicle::on_course(drive, &loaded).over_measured(course.road.measured_length_m()))
+    let assembly = Assembly {
+        parameters: loaded,
+        struts: charged,
+        outline_m,
+    };
+    Ok(Vehicle::on_course(drive, assembly).over_measured(course.road.measured_length_m()))
 }

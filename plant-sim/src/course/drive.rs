@@ -70,10 +70,6 @@ impl<E: SuspensionElement> Drive<E> {
         let track = course.track(vehicle);
         let speed_m_s = manoeuvre.initial_speed_m_s();
         let model = HandlingModel::with_elements(vehicle, handling, elements, Arc::clone(&course.road), speed_m_s)?;
-        let nose_m = vehicle.body_cg_behind_front_axle_m() + handling.outline.front_overhang_m;
-        let length_m =
-            vehicle.layout.wheelbase_m + handling.outline.front_overhang_m + handling.outline.rear_overhang_m;
-        let (tail_m, half_m) = (nose_m - length_m, 0.5 * vehicle.layout.width_m);
         let duration_s = manoeuvre.duration_s(&track);
         Ok(Self {
             steps_a_tick: (TICK_S / model.step_s()).round().max(1.0) as u32,
@@ -81,7 +77,7 @@ impl<E: SuspensionElement> Drive<E> {
             handling: handling.clone(),
             mass_kg: vehicle.total_mass_kg(),
             seats: Seats::from_fn(|seat| vehicle.seat_place_m(seat)),
-            outline_m: [[nose_m, half_m], [nose_m, -half_m], [tail_m, half_m], [tail_m, -half_m]],
+            outline_m: handling.outline.corners_m(vehicle),
             ticks: 0,
             last_tick: (duration_s / TICK_S).round() as u32,
             model,
@@ -246,6 +242,11 @@ impl<E: SuspensionElement> Drive<E> {
             front_axle_roll_rad,
             valves,
         }
+    }
+
+    /// Corners of the body's outline, ahead and left of the centre of mass, m.
+    pub fn outline_m(&self) -> [[f64; 2]; 4] {
+        self.outline_m
     }
 
     /// Room between the body's outline and the nearest cones beside it now, m; negative where one is hit; `None` where there

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::magic_formula::MagicFormula;
 use crate::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, checked, read};
+use crate::vehicle::VehicleParameters;
 
 /// Handling parameters of a vehicle. All values SI.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -229,6 +230,18 @@ pub struct Outline {
     pub front_overhang_m: f64,
     /// Behind the rear axle, m.
     pub rear_overhang_m: f64,
+}
+
+impl Outline {
+    /// Corners of a vehicle's body seen from above, ahead and left of its centre of mass, m: front left and right, rear left and
+    /// right.
+    #[must_use]
+    pub fn corners_m(&self, vehicle: &VehicleParameters) -> [[f64; 2]; 4] {
+        let nose_m = vehicle.body_cg_behind_front_axle_m() + self.front_overhang_m;
+        let length_m = vehicle.layout.wheelbase_m + self.front_overhang_m + self.rear_overhang_m;
+        let (tail_m, half_m) = (nose_m - length_m, 0.5 * vehicle.layout.width_m);
+        [[nose_m, half_m], [nose_m, -half_m], [tail_m, half_m], [tail_m, -half_m]]
+    }
 }
 
 impl Checked for Outline {

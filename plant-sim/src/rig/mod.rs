@@ -11,9 +11,10 @@
 //! | design specifications i to vii of section 3.3 | `limits` | - |
 //!
 //! `programme` is the actuator: what displacement and switching signals it plays. `isothermal` is the prediction that spring
-//! measurements are held against.
+//! measurements are held against. `recording` reads recordings, and `column_map` makes them of other programs' files.
 
 mod bulk_modulus;
+mod column_map;
 mod damping;
 mod generations;
 mod isothermal;
@@ -25,6 +26,7 @@ mod spring;
 mod valve_response;
 
 pub use bulk_modulus::{OilCompression, compress_oil};
+pub use column_map::{ColumnMap, ColumnMapError, Source};
 pub use damping::{DampingPoint, DampingState, measure_damping};
 pub use generations::{FirstGenerationRun, demonstration, run_first_generation, spring_comparison};
 pub use isothermal::{Isothermal, Oil};

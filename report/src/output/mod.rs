@@ -51,6 +51,8 @@ pub struct OutputDirectory {
     inputs: Vec<Input>,
     /// Inputs as the system knows them.
     input_paths: Vec<PathBuf>,
+    /// The text of the last summary.
+    summary: String,
 }
 
 impl OutputDirectory {
@@ -109,6 +111,7 @@ impl OutputDirectory {
             before,
             origin,
             input_paths,
+            summary: String::new(),
         })
     }
 
@@ -239,19 +242,20 @@ impl OutputDirectory {
 
     /// Writes indented JSON with a final line end.
     pub fn json(&mut self, name: &str, value: &impl Serialize) -> Result<(), OutputError> {
-        let mut text = serde_json::to_string_pretty(value).map_err(|error| OutputError::Format {
-            name: name.to_owned(),
-            reason: error.to_string(),
-        })?;
-        text.push('\n');
-        self.write(name, text)
+        self.write(name, indented(name, value)?)
     }
 
     /// Writes a summary as JSON, behind what every summary says of itself: `schema`, `command`, `version`, `inputs` with
     /// SHA-256, and the `seed` of everything random.
     pub fn summary(&mut self, name: &str, seed: Option<u64>, content: &impl Serialize) -> Result<(), OutputError> {
-        let (origin, inputs) = (self.origin.clone(), self.inputs.clone());
-        self.json(name, &Stamped::new(&origin, &inputs, seed, content))
+        self.summary = indented(name, &Stamped::new(&self.origin, &self.inputs, seed, content))?;
+        let text = self.summary.clone();
+        self.write(name, text)
+    }
+
+    /// The text of the last summary that was written.
+    pub fn summary_text(&self) -> &str {
+        &self.summary
     }
 
     /// Writes the page as `report.html`.
@@ -411,6 +415,15 @@ impl Drop for OutputDirectory {
             interrupt::forget(&mut folders, staging.path());
         }
     }
+}
+
+/// Indented JSON with a final line end, for the file `name`.
+fn indented(name: &str, value: &impl Serialize) -> Result<String, OutputError> {
+    let text = serde_json::to_string_pretty(value).map_err(|error| OutputError::Format {
+        name: name.to_owned(),
+        reason: error.to_string(),
+    })?;
+    Ok(text + "\n")
 }
 
 /// The existing folder that holds `path`.

@@ -111,6 +111,11 @@ impl Plan {
         (rise[Corner::FrontLeft], rise[Corner::RearLeft])
     }
 
+    /// Corners of the body seen from above, ahead and left of its centre of mass, m.
+    pub fn outline_m(&self) -> [[f64; 2]; 4] {
+        self.handling.outline.corners_m(&self.vehicle)
+    }
+
     /// Displacements as sensors say that were set to zero when the struts were charged.
     fn sensed_m(&self, displacement_m: Corners<f64>) -> Corners<f64> {
         Corners::from_fn(|corner| displacement_m[corner] - self.struts[corner].rise_m)

@@ -21,22 +21,31 @@ pub fn drawing(found: &[&Place]) -> String {
     ] {
         let n = branch.number();
         let path = d.found_at(&[Site::Path(branch), Site::Paths]);
-        let valve = d.found_at(&[Site::Valve(bypass), Site::Valves]);
         d.line(&format!("365,{0} 410,{0} 410,{1} 470,{1}", y + 30, y), path);
         d.line(&format!("410,{0} 410,{1} 470,{1}", y + 30, y + 55), path);
-        d.block((470, y - 17, 90, 34), &format!("damper {n}"), path);
-        d.block((470, y + 38, 90, 34), &format!("valve {n}"), valve);
+        d.part(
+            (470, y - 17, 90, 34),
+            &format!("damper {n}"),
+            &[Site::Path(branch), Site::Paths],
+        );
+        d.part(
+            (470, y + 38, 90, 34),
+            &format!("valve {n}"),
+            &[Site::Valve(bypass), Site::Valves],
+        );
         d.line(&format!("560,{0} 610,{0} 610,{1} 560,{1}", y, y + 55), path);
         d.line(&format!("610,{0} 760,{0}", y + 30), path);
     }
-    let spring = d.found_at(&[Site::Valve(Valve::Spring), Site::Valves]);
-    d.block((660, 205, 70, 40), "valve 3", spring);
+    d.part(
+        (660, 205, 70, 40),
+        "valve 3",
+        &[Site::Valve(Valve::Spring), Site::Valves],
+    );
     for (branch, y) in [(Branch::First, 65), (Branch::Second, 190)] {
-        let gas = d.found_at(&[Site::Accumulator(branch), Site::Accumulators]);
-        d.block(
+        d.part(
             (760, y, 125, 70),
             &format!("accumulator {}|(gas)", branch.number()),
-            gas,
+            &[Site::Accumulator(branch), Site::Accumulators],
         );
     }
     for (at, text, column) in [

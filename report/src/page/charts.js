@@ -17,12 +17,15 @@
   const configuration = { responsive: true, displaylogo: false, modeBarButtonsToRemove: ["lasso2d", "select2d"],
                           toImageButtonOptions: { format: "svg" } };
   const charts = [];
+  // What part of a common axis is shown, by the name of the link; a figure that is drawn later begins there.
+  const ranges = {};
   const linked = (source, change) => {
     const range = change["xaxis.range[0]"] !== undefined
       ? { "xaxis.range": [change["xaxis.range[0]"], change["xaxis.range[1]"]] }
       : change["xaxis.range"] ? { "xaxis.range": change["xaxis.range"] }
       : change["xaxis.autorange"] ? { "xaxis.autorange": true } : null;
     if (!range) return;
+    ranges[source.dataset.link] = range;
     for (const chart of charts) {
       if (chart === source || chart.dataset.link !== source.dataset.link) continue;
       chart.following = true;
@@ -31,12 +34,30 @@
   };
   const colour = (night) => charts.forEach((chart) => Plotly.relayout(chart, { template: template(night) }));
 
-  const draw = () => document.querySelectorAll(".chart").forEach((chart) => {
+  // Figures that are hidden have no width; they are drawn when they are shown.
+  const draw = () => document.querySelectorAll(".chart:not(.drawn)").forEach((chart) => {
+    if (chart.closest("[hidden]")) return;
     const drawing = JSON.parse(document.getElementById(chart.id + "-data").textContent);
+    const { link } = chart.dataset;
+    // Series on the places of an earlier one have its number instead.
+    drawing.data.forEach((series) => { if (typeof series.x === "number") series.x = drawing.data[series.x].x; });
     drawing.layout.template = template(dark.matches);
+    chart.classList.add("drawn");
     Plotly.newPlot(chart, drawing.data, drawing.layout, configuration);
     charts.push(chart);
-    if (chart.dataset.link) chart.on("plotly_relayout", (change) => { if (!chart.following) linked(chart, change); });
+    if (!link) return;
+    if (ranges[link]) {
+      chart.following = true;
+      Plotly.relayout(chart, ranges[link]).then(() => { chart.following = false; });
+    }
+    chart.on("plotly_relayout", (change) => { if (!chart.following) linked(chart, change); });
+    chart.on("plotly_hover", (pointed) => document.dispatchEvent(
+      new CustomEvent("pointed", { detail: { link, at: pointed.xvals ? pointed.xvals[0] : pointed.points[0].x } })));
+  });
+  document.addEventListener("shown", () => {
+    if (!window.Plotly) return;
+    draw();
+    charts.filter((chart) => !chart.closest("[hidden]")).forEach((chart) => Plotly.Plots.resize(chart));
   });
   // The library is in the page, packed; unpacking is the browser's own.
   const unpack = async () => {

@@ -1,28 +1,17 @@
 //! The one page a run leaves for people: what was run, the outcome first, then the figures. Everything it needs is inside
 //! it, so it opens from a disk, a mail or an archive years later; the drawing library is in it once.
 
-use std::io::Write;
-use std::sync::OnceLock;
+mod item;
+mod library;
+mod verdict;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use flate2::Compression;
-use flate2::write::GzEncoder;
-use plotly::Plot;
+use item::{Count, Item};
+use library::library;
+pub use verdict::Verdict;
 
 use crate::figure::Figure;
+use crate::scene::Scene;
 use crate::table::{Table, escape};
-
-/// How a run ended, in a word and a colour.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// All checks are met; shown in green.
-    Pass,
-    /// The result needs the reader's attention; shown in amber.
-    Attention,
-    /// A check failed; shown in red.
-    Fail,
-}
 
 /// A page being put together, top to bottom. Texts are plain: markup in them is shown, not obeyed.
 #[derive(Clone)]
@@ -31,24 +20,14 @@ pub struct Page {
     command: String,
     facts: Vec<(String, String)>,
     sections: Vec<Section>,
+    topic: Option<String>,
 }
 
 /// A stretch of the page under a heading (the first has none).
 #[derive(Clone, Default)]
 struct Section {
     heading: String,
-    items: Vec<Item>,
-}
-
-#[derive(Clone)]
-enum Item {
-    Verdict(Verdict, String),
-    Text(String),
-    Table(Table),
-    Details(String, Table),
-    Code(String, String),
-    Drawing(String, String),
-    Figure(Box<Figure>),
+    items: Vec<(Option<String>, Item)>,
 }
 
 impl Page {
@@ -59,6 +38,7 @@ impl Page {
             command: command.into(),
             facts: Vec::new(),
             sections: vec![Section::default()],
+            topic: None,
         }
     }
 
@@ -78,8 +58,9 @@ impl Page {
         self.push(Item::Table(table))
     }
 
-    /// Starts a section; what follows is in it.
+    /// Starts a section; what follows is in it, and of no topic.
     pub fn section(&mut self, heading: &str) -> &mut Self {
+        self.topic = None;
         self.sections.push(Section {
             heading: heading.into(),
             items: Vec::new(),
@@ -107,20 +88,52 @@ impl Page {
         self.push(Item::Code(summary.into(), text.into()))
     }
 
+    /// What follows is about a topic, or several with spaces between them, until the next section or topic. A click on an element
+    /// of a drawing with one of them as its `data-topic` shows the items of that topic only. `None` is what is always shown.
+    pub fn topic(&mut self, topic: Option<&str>) -> &mut Self {
+        self.topic = topic.map(str::to_owned);
+        self
+    }
+
+    /// An equation that is written as plain text, such as `dp/dt = beta / V (A dx/dt - Q)`.
+    pub fn equation(&mut self, text: &str) -> &mut Self {
+        self.push(Item::Equation(text.into()))
+    }
+
+    /// A link that saves `content` as a file of this name.
+    pub fn download(&mut self, label: &str, name: &str, content: &str) -> &mut Self {
+        self.push(Item::Download {
+            label: label.into(),
+            name: name.into(),
+            content: content.into(),
+        })
+    }
+
+    /// Figures of the same kind of which one is shown at a time, each with the word that selects it.
+    pub fn choice(&mut self, label: &str, figures: impl IntoIterator<Item = (String, Figure)>) -> &mut Self {
+        self.push(Item::Choice(label.into(), figures.into_iter().collect()))
+    }
+
+    /// A drawing that moves.
+    pub fn scene(&mut self, scene: Scene) -> &mut Self {
+        self.push(Item::Scene(Box::new(scene)))
+    }
+
     /// A drawing of one's own as an `<svg>` element, shown as it is, with words under it. Draw with `currentColor` and the
     /// page's classes, so that it can be seen on light and dark grounds.
     pub fn drawing(&mut self, svg: &str, caption: &str) -> &mut Self {
         self.push(Item::Drawing(svg.into(), caption.into()))
     }
 
-    /// A [`Curves`](crate::Curves), [`Field`](crate::Field) or [`Bars`](crate::Bars).
+    /// A [`Curves`](crate::Curves), [`Lanes`](crate::Lanes), [`Dots`](crate::Dots), [`Field`](crate::Field) or
+    /// [`Bars`](crate::Bars).
     pub fn figure(&mut self, figure: impl Into<Figure>) -> &mut Self {
         self.push(Item::Figure(Box::new(figure.into())))
     }
 
     fn push(&mut self, item: Item) -> &mut Self {
         if let Some(section) = self.sections.last_mut() {
-            section.items.push(item);
+            section.items.push((self.topic.clone(), item));
         }
         self
     }
@@ -128,7 +141,7 @@ impl Page {
     /// The page as HTML. The same page has the same bytes.
     pub fn render(&self) -> String {
         let mut body = String::new();
-        let mut figures = 0;
+        let mut count = Count::default();
         for (index, section) in self.sections.iter().enumerate() {
             if index > 0 {
                 body += &format!(
@@ -136,8 +149,12 @@ impl Page {
                     escape(&section.heading)
                 );
             }
-            for item in &section.items {
-                body += &item.to_html(&mut figures);
+            for (topic, item) in &section.items {
+                let html = item.to_html(&mut count);
+                body += &match topic {
+                    Some(topic) => format!("<div data-topic=\"{}\">{html}</div>\n", escape(topic)),
+                    None => html,
+                };
             }
             if index > 0 {
                 body += "</section>\n";
@@ -152,8 +169,12 @@ impl Page {
             facts += &format!("<dt>{}</dt><dd>{}</dd>", escape(name), escape(value));
         }
         // No library where there is nothing to draw: such a page is a few kilobytes.
-        let library = if figures > 0 { library() } else { "" };
-        let script = if figures > 0 { include_str!("page.js") } else { "" };
+        let library = if count.figures > 0 { library() } else { "" };
+        let script = if count.figures > 0 {
+            concat!(include_str!("charts.js"), include_str!("widgets.js"))
+        } else {
+            ""
+        };
         format!(
             "<!doctype html>\n<html lang=\"en-GB\"><head><meta charset=\"utf-8\">\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
@@ -163,7 +184,7 @@ impl Page {
              {contents}{body}\
              <footer>Drag to zoom, double-click to see everything, click a name in a legend to hide it. The data are in the \
              files beside this page.</footer>\n</main>\n<script>{script}</script></body></html>\n",
-            style = include_str!("page.css"),
+            style = include_str!("style.css"),
             contents = self.contents(),
         )
     }
@@ -181,93 +202,13 @@ impl Page {
     }
 }
 
-impl Item {
-    fn to_html(&self, figures: &mut usize) -> String {
-        match self {
-            Self::Verdict(verdict, sentence) => {
-                let class = match verdict {
-                    Verdict::Pass => "good",
-                    Verdict::Attention => "warning",
-                    Verdict::Fail => "bad",
-                };
-                format!("<div class=\"verdict {class}\">{}</div>\n", escape(sentence))
-            }
-            Self::Text(text) => format!("<p>{}</p>\n", escape(text)),
-            Self::Table(table) => table.to_html() + "\n",
-            Self::Details(summary, table) => {
-                format!(
-                    "<details><summary>{}</summary>{}</details>\n",
-                    escape(summary),
-                    table.to_html()
-                )
-            }
-            Self::Code(summary, text) => {
-                format!(
-                    "<details><summary>{}</summary><pre>{}</pre></details>\n",
-                    escape(summary),
-                    escape(text)
-                )
-            }
-            Self::Drawing(svg, caption) => {
-                format!("<figure>{svg}<figcaption>{}</figcaption></figure>\n", escape(caption))
-            }
-            Self::Figure(figure) => {
-                *figures += 1;
-                figure_html(figure, *figures)
-            }
-        }
-    }
-}
-
-fn figure_html(figure: &Figure, number: usize) -> String {
-    // A value JSON cannot hold became null long before; a drawing is plain data.
-    let drawing = serde_json::to_string(&figure.drawing).unwrap_or_else(|_| "{\"data\":[],\"layout\":{}}".into());
-    // "</script>" inside the data would end it.
-    let drawing = drawing.replace("</", "<\\/");
-    let link = figure
-        .link
-        .as_ref()
-        .map_or(String::new(), |name| format!(" data-link=\"{}\"", escape(name)));
-    let caption = if figure.caption.is_empty() {
-        String::new()
-    } else {
-        format!("<figcaption>{}</figcaption>", escape(&figure.caption))
-    };
-    format!(
-        "<figure><h3>{title}</h3><div class=\"chart\" id=\"figure-{number}\" style=\"height:{height}px\"{link}></div>{caption}\
-         <script type=\"application/json\" id=\"figure-{number}-data\">{drawing}</script></figure>\n",
-        title = escape(&figure.title),
-        height = figure.height_px,
-    )
-}
-
-/// plotly.js, packed with gzip, as the page's script unpacks it: a third of its 4.7 MB. Packed once a process.
-fn library() -> &'static str {
-    static PACKED: OnceLock<String> = OnceLock::new();
-    PACKED.get_or_init(|| {
-        let mut gzip = GzEncoder::new(Vec::new(), Compression::new(6));
-        // Writing to memory does not fail.
-        let packed = gzip
-            .write_all(drawing_library().as_bytes())
-            .and_then(|()| gzip.finish());
-        format!(
-            "<script type=\"text/plain\" id=\"library\">{}</script>\n",
-            STANDARD.encode(packed.unwrap_or_default())
-        )
-    })
-}
-
-/// The source of plotly.js. The crate gives it as a script element and appends MathJax, 2 MB that nothing here needs.
-fn drawing_library() -> String {
-    let scripts = Plot::offline_js_sources();
-    let source = scripts.split_once("</script>").map_or("", |(first, _)| first);
-    source.split_once('>').map_or("", |(_, source)| source).to_owned()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::{Axis, Bars, Column, Curves, Field, FieldStyle};
+    use base64::Engine;
+    use base64::engine::general_purpose::STANDARD;
+    use library::drawing_library;
 
     fn example() -> Page {
         let mut page = Page::new("Rig <damping>", "oleo rig damping --out x");
@@ -319,6 +260,31 @@ mod tests {
             .and_then(|rest| rest.split("</script>").next())
             .expect("data");
         serde_json::from_str::<serde_json::Value>(data).expect("the data end where they should");
+    }
+
+    #[test]
+    fn one_of_a_choice_is_shown_and_a_topic_is_around_its_items() {
+        let figure = |title: &str| {
+            let mut curves = Curves::new(title, Axis::new("Time", "s"));
+            curves
+                .panel(Axis::new("Force", "N"))
+                .line("force", &[0.0, 1.0], &[1.0, 2.0]);
+            (title.to_owned(), curves.into())
+        };
+        let mut page = Page::new("Choice", "oleo hil");
+        page.choice("Corner", [figure("front left"), figure("front right")])
+            .topic(Some("path-1"))
+            .text("about path 1")
+            .section("Next")
+            .text("about everything")
+            .equation("F = k x")
+            .download("Save", "a.csv", "time_s\n0\n");
+        let html = page.render();
+        assert_eq!(html.matches("type=\"radio\"").count(), 2);
+        assert_eq!(html.matches("class=\"option\" hidden").count(), 1, "the second figure");
+        assert!(html.contains("<div data-topic=\"path-1\"><p>about path 1</p>\n</div>"));
+        assert!(html.contains("<p>about everything</p>") && html.contains("<math "));
+        assert!(html.contains("download=\"a.csv\" href=\"data:text/csv;base64,dGltZV9zCjAK\""));
     }
 
     #[test]

@@ -46,7 +46,9 @@ const SURELY_CLOSED_TICKS: u8 = 2 * COMMAND.timeout_ticks;
 #[derive(Clone, Copy, Debug)]
 pub struct OutputStage {
     receiver: Receiver,
-    /// What the right commands of this tick say.
+    /// Number of frames of this tick, right or wrong; it saturates.
+    frames: u8,
+    /// What the right ones say.
     heard: Option<Heard>,
     command: ValveCommand,
     switching: SwitchingLimit,
@@ -61,8 +63,6 @@ struct Heard {
     youngest: CommandMessage,
     /// The valves that all of them, and their modes, want or permit open.
     permitted: ValveCommand,
-    /// Whether there was more than one.
-    several: bool,
 }
 
 impl Heard {
@@ -72,7 +72,6 @@ impl Heard {
         Self {
             youngest: content,
             permitted: before.map_or(permitted, |before| both(before.permitted, permitted)),
-            several: before.is_some(),
         }
     }
 }
@@ -93,6 +92,7 @@ impl OutputStage {
     pub fn new() -> Self {
         Self {
             receiver: Receiver::new(&COMMAND),
+            frames: 0,
             heard: None,
             command: ValveCommand::SAFE,
             switching: SwitchingLimit::default(),
@@ -106,6 +106,7 @@ impl OutputStage {
         // A frame of the wrong length cannot carry the right CRC: it has the same consequence.
         let data = <&[u8; FRAME_BYTES]>::try_from(data).unwrap_or(&[0xFF; FRAME_BYTES]);
         let status = self.receiver.receive(data);
+        self.frames = self.frames.saturating_add(1);
         if status.is_error() {
             self.errors = self.errors.wrapping_add(1);
         }
@@ -127,6 +128,7 @@ impl OutputStage {
     /// Ends a tick, with its number modulo 256 as the displacement messages carry it; returns the command to obey.
     pub fn end_of_tick(&mut self, plant_tick: u8) -> ValveCommand {
         let heard = self.heard.take();
+        let alone = core::mem::take(&mut self.frames) == 1;
         if let Some(Heard { youngest, .. }) = heard {
             let age = plant_tick.wrapping_sub(youngest.echo_tick);
             self.answered_late |= age > SURELY_CLOSED_TICKS;
@@ -138,7 +140,7 @@ impl OutputStage {
         let wanted = match heard {
             _ if self.receiver.is_lost() => ValveCommand::SAFE,
             Some(heard) => {
-                let obeyed = new && !heard.several;
+                let obeyed = new && alone;
                 if obeyed && heard.permitted == ValveCommand::SAFE {
                     self.answered_late = false;
                 }
@@ -306,6 +308,18 @@ mod tests {
                 pair.send(ValveCommand::from_word(word), Mode::Normal, 0);
             }
             assert_eq!(pair.end().word(), 0x010, "the closing is not delayed");
+
+            // A forged one that is ahead of the right one makes it look out of sequence.
+            let mut pair = Pair::new();
+            pair.step(ValveCommand::SAFE, Mode::Latched, 0);
+            pair.controller.protect(&mut [0; FRAME_BYTES]);
+            pair.end();
+            let right = pair.controller;
+            pair.controller.protect(&mut [0; FRAME_BYTES]);
+            pair.send(ValveCommand::SOFT, Mode::Normal, 0);
+            pair.controller = right;
+            pair.send(ValveCommand::SAFE, Mode::Latched, 0);
+            assert_eq!(pair.end(), ValveCommand::SAFE);
         }
     }
 

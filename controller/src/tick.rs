@@ -176,4 +176,23 @@ mod tests {
             state.estimate = estimate::State::default();
         }
     }
+
+    /// A missing reading is replaced, and the estimate goes on.
+    #[test]
+    fn the_estimate_goes_on_in_degraded_mode() {
+        let (configuration, mut state) = (Configuration::defender110(), State::new());
+        let pressure = Corners::splat(StrutPressures::splat(Gauge(2.0e6)));
+        let mut inputs = Inputs::from_values(Corners::splat(0.0), pressure);
+        for _ in 0..200 {
+            tick(&configuration, &mut state, &inputs);
+        }
+        inputs.displacement[oleo_interface::Corner::RearLeft] = crate::reading::Reading::INVALID;
+        for n in 1..=20 {
+            let outputs = tick(&configuration, &mut state, &inputs);
+            assert_eq!(outputs.mode == Mode::Degraded, n >= 3);
+            for load_n in outputs.estimate.static_load_n.values() {
+                assert!((load_n - 2.0e6 * 1.963_495_4e-3).abs() < 1.0, "{load_n} N");
+            }
+        }
+    }
 }

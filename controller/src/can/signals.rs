@@ -281,3 +281,14 @@ impl StatusMessage {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_pressure_is_a_measurement_and_the_next_raw_value_is_not() {
+        assert_eq!(pressure_from_raw(u64::from(PRESSURE_RAW_MAX)).value(), Some(35.945e6));
+        assert_eq!(pressure_from_raw(u64::from(PRESSURE_RAW_ERROR)).value(), None);
+    }
+}

@@ -15,7 +15,7 @@
 //!
 //! The fuzz target `fault_plan`, `tests/hostile_bytes.rs` of the root package, and tests and example `fault_plans` of the controller
 //! use it.
-#![allow(dead_code, reason = "each of the programs uses its part")]
+#![allow(dead_code, unused_imports, reason = "each of the programs uses its part")]
 
 mod bus;
 mod drive;

@@ -176,8 +176,8 @@ mod tests {
         assert_eq!(ending_in_words(completed, Some(0.2)), "completed");
         assert_eq!(ending_in_words(completed, Some(-0.2)), "completed, but a cone was hit");
         assert_eq!(
-            ending_in_words(Some(Ending::RolledOver(4.125)), Some(-1.0)),
-            "rolled over at 4.13 s"
+            ending_in_words(Some(Ending::RolledOver(4.25)), Some(-1.0)),
+            "rolled over at 4.25 s"
         );
         assert!(went(completed, Some(-0.25)).contains("hit a cone") && went(completed, Some(0.25)).contains("0.25 m"));
     }

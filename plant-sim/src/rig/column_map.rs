@@ -345,8 +345,8 @@ mod tests {
         let title = "Zeit;Weg;Druck \u{fc}ber Umgebung;Ventil 3";
         assert!(refused("x\nZeit,Weg\n0,1\n").starts_with("m.csv:2: there is no column with the title"));
         assert!(refused("x\nZeit\tWeg\n0\t1\n").contains("set separator"));
-        let said = refused(&format!("x\n{title}\n0;1;2;ZU\n\n1;1.5;2;ZU\n"));
-        assert!(said.starts_with("m.csv:5: Weg is \"1.5\", not a number"), "{said}");
+        let said = refused(&format!("x\n{title}\n0;1;2;ZU\n1;1.5;2;ZU\n"));
+        assert!(said.starts_with("m.csv:4: Weg is \"1.5\", not a number"), "{said}");
         let bad = |text: &str| ColumnMap::from_toml(text, "map.toml").expect_err("refused").to_string();
         assert!(bad("[columns]\np1_Pa = { title = \"p\", unit = \"mm\" }\n").contains("the units are Pa, kPa"));
         assert!(bad("decimal_comma = true\n[columns]\n").contains("set separator"));

@@ -150,6 +150,14 @@ mod tests {
     }
 
     #[test]
+    fn a_derivative_of_what_is_in_brackets_is_one_fraction() {
+        let set = to_mathml("p = 1 + delta d(alpha_r)/d(delta)");
+        let d = "<mrow><mi mathvariant=\"normal\">d</mi>";
+        assert_eq!(set.matches(d).count(), 2, "{set}");
+        assert_eq!(set.matches("<mfrac>").count(), 1, "{set}");
+    }
+
+    #[test]
     fn words_and_what_is_no_equation() {
         assert!(to_mathml("p V^n = constant").contains("<mtext>constant</mtext>"));
         assert_eq!(to_mathml("the tabulated law"), "<code>the tabulated law</code>");

@@ -209,7 +209,7 @@ impl<'t> Reader<'_, 't> {
         if let Some(function) = FUNCTIONS.into_iter().find(|f| *f == name && called) {
             return Some(Node::Call(function, self.inside('(', ')')?));
         }
-        if differential && name == "d" && called {
+        if name == "d" && called {
             return Some(Node::Differential(String::new(), self.inside('(', ')')?));
         }
         if WORDS.contains(&name) {

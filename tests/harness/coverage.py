@@ -18,6 +18,7 @@ def main():
     for line in Path(sys.argv[1]).read_text().splitlines():
         if line.startswith("SF:"):
             name = line[3:].partition(f"/{SOURCES}")[2]
+            name = "" if name.endswith("tests.rs") else name
         elif line.startswith("DA:") and name:
             number, count = line[3:].split(",")[:2]
             counts.setdefault(name, {})[int(number)] = int(count)

@@ -6,7 +6,8 @@
 `cargo mutants --list` says which changes there are. Building the tests anew for each of nearly two thousand takes hours, so
 all are built at once: each changed place in a copy of the checkout becomes `if on(NUMBER) { changed } else { as it was }`, and the
 environment chooses the number at run time. A first run of each test program notes which places it reaches; each mutant is
-then run by the programs that reach it, the unit tests first, until one fails.
+then run by the programs that reach it, the unit tests first, until one fails. An operator is replaced where it stands in the syntax
+tree: its operands stay what they are, also where the changed text would be read with another precedence.
 
 Not switched, and therefore not run: places that the compiler evaluates (`const`), and changes that do not compile.
 

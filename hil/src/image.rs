@@ -110,7 +110,7 @@ fn segments(elf: &[u8]) -> Result<Vec<Segment>, SealError> {
             .map_err(|()| SealError::NoElf("a segment ends behind the file".to_owned()))?;
         segments.push(Segment {
             flash_at: (address - FLASH) as usize,
-            file_at: u32::from(header.p_offset(endian)) as usize,
+            file_at: header.p_offset(endian) as usize,
             bytes: data.len(),
         });
     }

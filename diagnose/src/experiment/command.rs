@@ -15,6 +15,8 @@ const PAUSE_S: f64 = 2.0;
 const POINTS_A_CYCLE: u32 = 40;
 /// Duration of a change of a switching signal in the trace, s: no time on any recorder.
 const EDGE_S: f64 = 1e-4;
+/// A ramp is longer than this, s.
+const LEAST_RAMP_S: f64 = 1e-9;
 
 /// A motion of the actuator, in mm and mm/s from the static position, jounce positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -216,9 +218,10 @@ impl Trace {
             } => {
                 let (begin_s, period_s) = (self.end_s(), TAU * amplitude / speed);
                 for k in 1..=count * POINTS_A_CYCLE {
-                    let cycles = f64::from(k) / f64::from(POINTS_A_CYCLE);
-                    let x = about + amplitude * libm::sin(TAU * cycles);
-                    self.point(begin_s + cycles * period_s, x, self.valves.last().copied());
+                    let cycles = |k| f64::from(k) / f64::from(POINTS_A_CYCLE);
+                    // Each cycle ends where it began, to the last bit.
+                    let x = about + amplitude * libm::sin(TAU * cycles(k % POINTS_A_CYCLE));
+                    self.point(begin_s + cycles(k) * period_s, x, self.valves.last().copied());
                 }
             }
             Motion::Step { to, speed, hold_s } => {
@@ -230,7 +233,8 @@ impl Trace {
 
     fn ramp(&mut self, to_mm: f64, speed_mm_s: f64) {
         let takes_s = (to_mm - self.end_mm()).abs() / speed_mm_s;
-        if takes_s > 0.0 {
+        // What is left of rounding is no way to go.
+        if takes_s > LEAST_RAMP_S {
             self.point(self.end_s() + takes_s, to_mm, self.valves.last().copied());
         }
     }

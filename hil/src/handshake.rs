@@ -39,7 +39,11 @@ pub enum HandshakeError {
 /// Pause between two `Hello`s.
 const HELLO_PERIOD: Duration = Duration::from_millis(50);
 
-/// Finds the partner, whichever was started first. Returns the session, in which all further frames are.
+/// A partner that is running answers sooner.
+const SAID_AFTER: Duration = Duration::from_secs(1);
+
+/// Finds the partner, whichever was started first. Returns the session, in which all further frames are. `waiting` is called once if the
+/// partner does not answer within a second.
 ///
 /// # Errors
 /// The partner did not answer within `patience`, wants another run, or the bus failed.
@@ -49,13 +53,18 @@ pub fn handshake(
     role: Role,
     terms: Terms,
     patience: Duration,
+    waiting: &mut dyn FnMut(),
 ) -> Result<Session, HandshakeError> {
     let partner = role.other();
     let started = Instant::now();
     let mut session = Session::of(role, drawn());
     let number = session.number(role);
     let (mut heard, mut is_heard) = (false, false);
+    let mut said = false;
     while !(heard && is_heard) {
+        if started.elapsed() > SAID_AFTER && !core::mem::replace(&mut said, true) {
+            waiting();
+        }
         if started.elapsed() > patience {
             return Err(HandshakeError::Alone {
                 partner,
@@ -131,12 +140,12 @@ mod tests {
             let (mut a, mut b) = crate::bus::in_process_pair();
             std::thread::scope(|scope| {
                 let early = scope.spawn(move || {
-                    let session = handshake(&mut a, "x", late.other(), terms, Duration::from_secs(20));
+                    let session = handshake(&mut a, "x", late.other(), terms, Duration::from_secs(20), &mut || {});
                     // The end lives until the other node has read from it.
                     (session, a)
                 });
                 std::thread::sleep(Duration::from_millis(120));
-                let session = handshake(&mut b, "x", late, terms, Duration::from_secs(20)).unwrap();
+                let session = handshake(&mut b, "x", late, terms, Duration::from_secs(20), &mut || {}).unwrap();
                 assert_eq!(early.join().unwrap().0.unwrap(), session);
             });
         }
@@ -150,7 +159,14 @@ mod tests {
             vehicle: 7,
         };
         let (mut a, mut b) = crate::bus::in_process_pair();
-        let alone = handshake(&mut a, "socketcan:vcan0", Role::Plant, terms, Duration::from_millis(60));
+        let alone = handshake(
+            &mut a,
+            "socketcan:vcan0",
+            Role::Plant,
+            terms,
+            Duration::from_millis(60),
+            &mut || {},
+        );
         assert!(
             alone
                 .unwrap_err()
@@ -174,7 +190,7 @@ mod tests {
                 number: 5,
             };
             b.send(&hello.encode(Role::Controller, Session::default())).unwrap();
-            let other = handshake(&mut a, "x", Role::Plant, terms, Duration::from_secs(9)).unwrap_err();
+            let other = handshake(&mut a, "x", Role::Plant, terms, Duration::from_secs(9), &mut || {}).unwrap_err();
             assert!(other.to_string().contains(what), "{other}");
         }
     }

@@ -151,12 +151,14 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         progress.set(ticks.into());
         !graceful.as_ref().is_some_and(Graceful::requested)
     };
-    if args.node.is_some() {
-        waiting_for(Role::Controller, &scenario);
-    }
     let outcome = match (&args.firmware, args.node) {
         (Some(image), _) => run::with_firmware(&scenario, vehicle, image, &mut watch)?,
-        (None, Some(_)) => run::plant_alone(&scenario, vehicle, &mut watch)?,
+        (None, Some(_)) => run::plant_alone(
+            &scenario,
+            vehicle,
+            &mut || waiting_for(Role::Controller, &scenario),
+            &mut watch,
+        )?,
         (None, None) => run::both(&scenario, vehicle, args.threads.into(), &mut watch)?,
     };
     drop(progress);
@@ -349,8 +351,7 @@ fn controller(args: &Args, scenario: &Scenario) -> Result<ExitCode, Failure> {
     let mut staged = args
         .results
         .stage("oleo hil --node controller", &name, inputs(args, scenario))?;
-    waiting_for(Role::Plant, scenario);
-    let ended = run::controller_alone(scenario)?;
+    let ended = run::controller_alone(scenario, &mut || waiting_for(Role::Plant, scenario))?;
     let mut table = Table::new([Column::text("Quantity"), Column::number("Value")]);
     table.row(["node".to_owned(), Role::Controller.name().to_owned()]);
     table.row(["ticks".to_owned(), ended.words.len().to_string()]);

@@ -105,16 +105,21 @@ pub fn both(scenario: &Scenario, vehicle: Vehicle, threads: usize, watch: Watch)
     Ok(end.outcome(plant, lateness, started))
 }
 
-/// Runs the plant; the controller is another process.
+/// Runs the plant; the controller is another process. `waiting` is called once if that takes more than a second to answer.
 ///
 /// # Errors
 /// See [`RunError`].
-pub fn plant_alone(scenario: &Scenario, vehicle: Vehicle, watch: Watch) -> Result<Outcome, RunError> {
+pub fn plant_alone(
+    scenario: &Scenario,
+    vehicle: Vehicle,
+    waiting: &mut dyn FnMut(),
+    watch: Watch,
+) -> Result<Outcome, RunError> {
     let bus = scenario.bus.open()?.ok_or(RunError::NoOtherProcess)?;
     let real_time = scenario.clock == Clock::RealTime;
     let mut plant = PlantNode::new(bus, scenario, vehicle, real_time);
     let (name, terms) = (scenario.bus.to_string(), terms(scenario)?);
-    let session = handshake(plant.bus(), &name, Role::Plant, terms, PATIENCE)?;
+    let session = handshake(plant.bus(), &name, Role::Plant, terms, PATIENCE, waiting)?;
     plant.join(session, terms);
     let started = Instant::now();
     let end = if real_time {
@@ -139,15 +144,23 @@ pub fn with_firmware(scenario: &Scenario, vehicle: Vehicle, image: &Path, watch:
     Ok(end.outcome(plant, Vec::new(), started))
 }
 
-/// Runs the controller; the plant is another process and says when it is over.
+/// Runs the controller; the plant is another process and says when it is over. `waiting` is called once if that takes more than a second
+/// to answer.
 ///
 /// # Errors
 /// See [`RunError`].
-pub fn controller_alone(scenario: &Scenario) -> Result<ControllerOutcome, RunError> {
+pub fn controller_alone(scenario: &Scenario, waiting: &mut dyn FnMut()) -> Result<ControllerOutcome, RunError> {
     let bus = scenario.bus.open()?.ok_or(RunError::NoOtherProcess)?;
     let mut controller = ControllerNode::new(bus, configuration(scenario)?, &scenario.faults, scenario.ticks as usize);
     let name = scenario.bus.to_string();
-    let session = handshake(controller.bus(), &name, Role::Controller, terms(scenario)?, PATIENCE)?;
+    let session = handshake(
+        controller.bus(),
+        &name,
+        Role::Controller,
+        terms(scenario)?,
+        PATIENCE,
+        waiting,
+    )?;
     controller.join(session);
     let started = Instant::now();
     let (lateness, plant_lost) = if scenario.clock == Clock::RealTime {

@@ -167,7 +167,8 @@ fn a_controller_that_is_started_again_is_let_in() {
         scope.spawn(|| {
             let patience = Duration::from_secs(20);
             for ticks in [150, u32::MAX] {
-                let session = handshake(&mut controller_end, "x", Role::Controller, terms, patience).unwrap();
+                let session =
+                    handshake(&mut controller_end, "x", Role::Controller, terms, patience, &mut || {}).unwrap();
                 let configuration = configuration(&scenario).unwrap();
                 let mut controller = ControllerNode::new(&mut controller_end, configuration, &[], 400);
                 controller.join(session);
@@ -188,7 +189,15 @@ fn a_controller_that_is_started_again_is_let_in() {
                 }
             }
         });
-        let session = handshake(&mut plant_end, "x", Role::Plant, terms, Duration::from_secs(20)).unwrap();
+        let session = handshake(
+            &mut plant_end,
+            "x",
+            Role::Plant,
+            terms,
+            Duration::from_secs(20),
+            &mut || {},
+        )
+        .unwrap();
         let mut plant = PlantNode::new(&mut plant_end, &scenario, vehicle(&scenario).unwrap(), false);
         plant.join(session, terms);
         let started = Instant::now();

@@ -3,7 +3,7 @@
 use oleo_plant_sim::strut::LawArgument::{RelativeVolume, Time, VolumeChange};
 use oleo_plant_sim::strut::LawPlace;
 
-use super::{Law, law};
+use super::law::{Law, law};
 use crate::effect::unlisted::forms::{Factor, Level, Relaxing, SettlingFactor};
 use crate::effect::unlisted::knots::{RELATIVE_VOLUME, TIME_S, VOLUME_CHANGE};
 use crate::vocabulary::{Branch, Site};

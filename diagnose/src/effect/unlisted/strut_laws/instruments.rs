@@ -3,7 +3,7 @@
 use oleo_plant_sim::strut::LawArgument::{Reading, ReadingRate, Time};
 use oleo_plant_sim::strut::LawPlace;
 
-use super::{Law, law};
+use super::law::{Law, law};
 use crate::effect::unlisted::forms::{Added, Proportional, SettlingAdded};
 use crate::effect::unlisted::knots::{FORCE_N, P1_PA, RATE, TIME_S, TRAVEL_M};
 use crate::vocabulary::{Column, Site};

@@ -1,56 +1,19 @@
 //! The laws that are tried on a strut, as tables of place, dependence and form, one file for each part of the strut.
 //!
-//! A new row is a new law to search for; a new dependence or place is one of plant-sim's ([`LawArgument`], [`LawPlace`]).
+//! A new row is a new law to search for; a new dependence or place is one of plant-sim's (`LawArgument`, `LawPlace`).
 
 mod accumulators;
 mod instruments;
+mod law;
 mod paths;
 mod seal_and_chamber;
 mod valves;
 
-use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
+use law::Law;
+use oleo_plant_sim::strut::UnlistedLaw;
 
-use super::forms::{Form, Grid};
-use super::knots::EDGE_PA;
 use crate::effect::candidate::Candidate;
-use crate::vocabulary::{EffectId, Site};
-
-/// One law that is searched for.
-struct Law {
-    /// What it relates, for people: "force over speed".
-    label: &'static str,
-    /// Place at which the law is reported.
-    site: Site,
-    /// Where it acts in the model.
-    place: LawPlace,
-    /// Quantity on which the law depends.
-    depends_on: LawArgument,
-    /// How its table comes from fitted numbers.
-    form: &'static dyn Form,
-    /// Values of the argument at which the table has points.
-    knots: &'static [f64],
-    /// Size of one fitted number that would be visible.
-    visible: f64,
-}
-
-const fn law(
-    label: &'static str,
-    site: Site,
-    (place, depends_on): (LawPlace, LawArgument),
-    form: &'static dyn Form,
-    knots: &'static [f64],
-    visible: f64,
-) -> Law {
-    Law {
-        label,
-        site,
-        place,
-        depends_on,
-        form,
-        knots,
-        visible,
-    }
-}
+use crate::vocabulary::EffectId;
 
 /// All laws.
 fn laws() -> impl Iterator<Item = &'static Law> {
@@ -59,23 +22,6 @@ fn laws() -> impl Iterator<Item = &'static Law> {
         .chain(valves::LAWS)
         .chain(accumulators::LAWS)
         .chain(instruments::LAWS.iter().flatten())
-}
-
-impl Law {
-    /// At rest a law adds nothing and leaves everything as believed: displacement, speed, flow and drop zero, gas volume
-    /// the static one, smallest pressure.
-    fn grid(&self) -> Grid {
-        Grid {
-            knots: self.knots,
-            at_rest: match (self.place, self.depends_on) {
-                (_, LawArgument::RelativeVolume) => 1.0,
-                // A response may be longer at any pressure difference.
-                (LawPlace::ValveTiming, _) => EDGE_PA[0],
-                _ => 0.0,
-            },
-            visible: self.visible,
-        }
-    }
 }
 
 /// Candidates for every law.

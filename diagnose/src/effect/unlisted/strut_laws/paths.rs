@@ -3,7 +3,7 @@
 use oleo_plant_sim::strut::LawArgument::{Displacement, Flow, FlowRate, PressureDrop, Time};
 use oleo_plant_sim::strut::LawPlace;
 
-use super::{Law, law};
+use super::law::{Law, law};
 use crate::effect::unlisted::forms::{Bell, Factor, ProportionalAmount, Rising, SettlingFactor, SettlingLevel};
 use crate::effect::unlisted::knots::{FLOW_M3_S, FLOW_RATE_M3_S2, GROOVE_M, PACK_PA, STROKE_M, TIME_S};
 use crate::vocabulary::{Branch, Site};

@@ -3,7 +3,7 @@
 use oleo_plant_sim::strut::LawArgument::{Acceleration, Displacement, P1, Speed, Time};
 use oleo_plant_sim::strut::LawPlace;
 
-use super::{Law, law};
+use super::law::{Law, law};
 use crate::effect::unlisted::forms::{Added, Level, Proportional, Rising, SettlingAdded, SettlingLevel};
 use crate::effect::unlisted::knots::{ACCELERATION_M_S2, CHAMBER_PA, P1_PA, SPEED_M_S, TIME_S, TRAVEL_M};
 use crate::vocabulary::Site;

@@ -4,7 +4,7 @@ use oleo_interface::Valve;
 use oleo_plant_sim::strut::LawArgument::{PressureDrop, Time};
 use oleo_plant_sim::strut::LawPlace;
 
-use super::{Law, law};
+use super::law::{Law, law};
 use crate::effect::unlisted::forms::{Added, Choke, Level, SettlingLevel};
 use crate::effect::unlisted::knots::{EDGE_PA, FEW_EDGES_PA, TIME_S, VALVE_PA};
 use crate::vocabulary::Site;

@@ -24,6 +24,8 @@ pub(super) struct Event {
     at_s: f64,
     /// How long it lasted, s; `None` for a change.
     lasted_s: Option<f64>,
+    /// How often it began within that time.
+    times: usize,
     what: String,
     place: String,
     detail: String,
@@ -39,6 +41,7 @@ pub(super) fn of(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summ
             events.push(Event {
                 at_s: from_s,
                 lasted_s: Some(until_s.min(summary.simulated_s) - from_s),
+                times: 1,
                 what: "fault injected".into(),
                 place: String::new(),
                 detail: fault_label(fault).into(),
@@ -49,6 +52,7 @@ pub(super) fn of(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summ
         events.push(Event {
             at_s: f64::from(entry.tick) * TICK_S,
             lasted_s: None,
+            times: 1,
             what: format!("mode {}", entry.mode),
             place: "controller".into(),
             detail: match entry.fault {
@@ -62,6 +66,7 @@ pub(super) fn of(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, summ
         events.push(Event {
             at_s: found.from as f64 * TICK_S,
             lasted_s: Some(found.ticks as f64 * TICK_S),
+            times: found.times,
             what: "handling mode".into(),
             place: "controller".into(),
             detail: found.times_in_words(),
@@ -81,6 +86,7 @@ fn of_struts(samples: &[Sample], assembly: &Assembly) -> Vec<Event> {
                 events.push(Event {
                     at_s: found.from as f64 * TICK_S,
                     lasted_s: Some(found.ticks as f64 * TICK_S),
+                    times: found.times,
                     what: what.into(),
                     place: corner.name().replace('-', " "),
                     detail: details
@@ -212,8 +218,8 @@ pub(super) fn section(page: &mut Page, events: &[Event]) {
             .iter_mut()
             .find(|(what, place, ..)| (*what, *place) == (&event.what, &event.place))
         {
-            Some((_, _, times, sum_s)) => (*times, *sum_s) = (*times + 1, *sum_s + lasted_s),
-            None => kinds.push((&event.what, &event.place, 1, lasted_s)),
+            Some((_, _, times, sum_s)) => (*times, *sum_s) = (*times + event.times, *sum_s + lasted_s),
+            None => kinds.push((&event.what, &event.place, event.times, lasted_s)),
         }
     }
     let mut counted = Table::new([

@@ -3,8 +3,8 @@
 //! It trusts the command no more than the controller trusts its sensors. A command opens valves only if it is the only one in its
 //! tick, right and in sequence, from a message that is trusted, an answer to readings that are at most 2 ticks old, and if the
 //! mode that it names permits those valves. A right command of which anything else is doubtful may still close valves, because a
-//! closing is never delayed; of several in a tick each closes what it wants closed. How often a valve opens again is limited as in the controller. Without a command to obey for the
-//! contract's `timeout_ticks` all valves close.
+//! closing is never delayed; of several in a tick each closes what it wants closed. How often a valve opens again is limited as in
+//! the controller. Without a command to obey for the contract's `timeout_ticks` all valves close.
 //!
 //! The plant's tick has 8 bits, so that a recording of commands that is played again and again answers a fresh tick now and then.
 //! After an answer that was older than readings can be in any mode but a closed one, the stage therefore opens nothing until a

@@ -1,8 +1,9 @@
 //! A run as a recording of one strut: what a test rig would have recorded of the strut while the vehicle drove, with the model that
 //! the plant has of it. `oleo diagnose` takes both as a campaign.
 //!
-//! The recording has a row for each integration step of the vehicle, because pressures change within a tick. The displacement and the switching signals are the inputs, force and pressures the readings. Each gets the white noise that the
-//! model states for its channel. A second at rest before the start shows the offsets of the sensors.
+//! The recording has a row for each integration step of the vehicle, because pressures change within a tick. The displacement and
+//! the switching signals are the inputs, force and pressures the readings. Each gets the white noise that the model states for its
+//! channel. A second at rest before the start shows the offsets of the sensors.
 
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Corner, PressurePoint, Valve};

@@ -10,8 +10,8 @@
 //! which holds for any valve position and any load, also with oil trapped behind valve 3. The charge pressure `k` is not
 //! configured. It is learnt from the same equation while the controller starts, and then follows the gas temperature slowly
 //! (60 s). The residual, lagged by 1 s, is expected to stay within 25 mm (gas that is 30 K warmer: 10 % of 0.255 m). At 40 mm for
-//! 0.2 s the displacement reading is called wrong (until it is below 25 mm again; the charge is not learnt meanwhile), and so it is if the charge is outside 0.75 to 1.3 of what it was at the start,
-//! or outside 0.3 to 15 MPa, which no suspension has.
+//! 0.2 s the displacement reading is called wrong (until it is below 25 mm again; the charge is not learnt meanwhile), and so it is
+//! if the charge is outside 0.75 to 1.3 of what it was at the start, or outside 0.3 to 15 MPa, which no suspension has.
 
 use oleo_interface::{Absolute, Gauge, StrutPressures};
 

@@ -46,6 +46,8 @@ pub struct Scenario {
     pub name: String,
     /// One sentence that says what the scenario shows.
     pub description: String,
+    /// The file as it was written, TOML.
+    pub text: String,
     /// What a command line changed, in words such as `road iso-c`; the description is then that of another run.
     pub changes: Vec<String>,
     /// Built-in road or path of a `.crg` or `.csv` file.

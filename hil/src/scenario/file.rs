@@ -87,12 +87,13 @@ impl Checked for ScenarioFile {
 /// Unknown, missing or impossible entries, with file and line.
 pub fn parse(text: &str, file: &str, folder: &Path) -> Result<Scenario, ModelFileError> {
     let raw: ScenarioFile = read(text, file)?;
-    raw.scenario(folder).map_err(|invalid| invalid.in_file(text, file))
+    raw.scenario(text, folder)
+        .map_err(|invalid| invalid.in_file(text, file))
 }
 
 impl ScenarioFile {
     /// The scenario, its names looked up.
-    fn scenario(self, folder: &Path) -> Result<Scenario, InvalidValue> {
+    fn scenario(self, text: &str, folder: &Path) -> Result<Scenario, InvalidValue> {
         let ticks = (self.duration_s / TICK_S).round() as u32;
         let course = self.course()?;
         let speed_m_s = self.speed_km_h / 3.6;
@@ -103,6 +104,7 @@ impl ScenarioFile {
         Ok(Scenario {
             name: self.name,
             description: self.description,
+            text: text.to_owned(),
             changes: Vec::new(),
             road: located(&self.road, folder, &oleo_plant_sim::road::NAMES),
             course,

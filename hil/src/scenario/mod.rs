@@ -4,10 +4,13 @@
 //!   TOML --> file --> fault_entry, check_entry --> definition: a Scenario of checked values
 //!             ^                                        ^
 //!         built_in (by name)                  fault, check
+//!                                                      |
+//!                                                   as_file: TOML again
 //! ```
 //!
 //! `docs/hil.md` is the reference for people.
 
+mod as_file;
 mod built_in;
 mod changes;
 pub mod check;

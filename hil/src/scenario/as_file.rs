@@ -1,0 +1,135 @@
+//! A scenario as a file again, so that a run can be repeated: what was written, with what a command line changed.
+
+use oleo_interface::tick::TICK_S;
+use oleo_plant_sim::road;
+use toml::{Table, Value};
+
+use super::definition::Scenario;
+use super::file::DEFENDER;
+
+/// Keys that describe the manoeuvre; those of the written one go where another is driven.
+const MANOEUVRE: [&str; 8] = [
+    "manoeuvre",
+    "driver",
+    "entry_m",
+    "radius_m",
+    "steer_deg",
+    "change_m_s2",
+    "begin_s",
+    "side_slope_percent",
+];
+
+impl Scenario {
+    /// The text of a file that is this scenario. Files that it names have absolute paths; the vehicle, its handling and its strut
+    /// are `vehicle.toml`, `handling.toml` and `strut.toml` beside the file where they are not built in.
+    pub fn to_toml(&self) -> String {
+        let mut table: Table = self.text.parse().unwrap_or_default();
+        let mut set = |key: &str, value: Value| {
+            table.insert(key.to_owned(), value);
+        };
+        let built_in = road::NAMES.contains(&self.road.as_str());
+        let road = match std::path::absolute(&self.road) {
+            Ok(path) if !built_in => path.display().to_string(),
+            _ => self.road.clone(),
+        };
+        set("road", road.into());
+        // Rounded, because the conversion to m/s and back changes the last digit.
+        set("speed_km_h", ((self.speed_m_s * 3.6 * 1e6).round() / 1e6).into());
+        set("duration_s", self.duration_s().into());
+        set("strategy", self.strategy.name().into());
+        set("damper_policy", self.damper_policy.name().into());
+        for (key, given) in [
+            ("strut", &self.strut),
+            ("vehicle", &self.vehicle),
+            ("handling", &self.handling),
+        ] {
+            let name = if given == DEFENDER {
+                DEFENDER.to_owned()
+            } else {
+                format!("{key}.toml")
+            };
+            set(key, name.into());
+        }
+        set("load", self.load.key().into());
+        set("seed", Value::Integer(self.seed.cast_signed()));
+        set("bus", self.bus.to_string().into());
+        set("clock", self.clock.name().into());
+        table.retain(|key, _| !MANOEUVRE.contains(&key));
+        if let Some(course) = &self.course {
+            table.insert("manoeuvre".to_owned(), course.kind.key().into());
+            if let Some(driver) = course.driver {
+                table.insert("driver".to_owned(), driver.key().into());
+            }
+            let numbers = [
+                ("entry_m", course.entry_m),
+                ("radius_m", course.radius_m),
+                ("steer_deg", course.steer_deg),
+                ("change_m_s2", course.change_m_s2),
+                ("begin_s", course.begin_s),
+                ("side_slope_percent", course.side_slope_percent),
+            ];
+            let given = numbers
+                .into_iter()
+                .filter_map(|(key, number)| Some((key.to_owned(), number?.into())));
+            table.extend(given);
+        }
+        // A fault after the end of a shortened run does not happen, and a file may not name it.
+        if let Some(Value::Array(faults)) = table.get_mut("fault") {
+            let begin_s = |fault: &Value| match fault.get("at_s") {
+                Some(Value::Integer(at_s)) => *at_s as f64,
+                Some(Value::Float(at_s)) => *at_s,
+                _ => 0.0,
+            };
+            faults.retain(|fault| begin_s(fault) < self.duration_s() - 0.5 * TICK_S);
+        }
+        toml::to_string(&table).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use oleo_plant_sim::course::{CourseSettings, ManoeuvreKind};
+
+    use super::super::file::parse;
+    use super::super::{BUILT_IN, named};
+    use super::*;
+
+    fn read_back(scenario: &Scenario) -> Scenario {
+        let text = scenario.to_toml();
+        let read = parse(&text, "scenario.toml", Path::new("")).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        Scenario {
+            text: scenario.text.clone(),
+            ..read
+        }
+    }
+
+    #[test]
+    fn every_built_in_scenario_is_read_back() {
+        for (name, _) in BUILT_IN {
+            let scenario = named(name).expect("built in");
+            assert_eq!(read_back(&scenario), scenario, "{name}");
+        }
+    }
+
+    #[test]
+    fn what_was_changed_is_in_the_file() {
+        let written = named("lane-change-on-belgian").expect("built in");
+        let changed = Scenario {
+            speed_m_s: 47.3 / 3.6,
+            seed: u64::from(u32::MAX),
+            course: Some(CourseSettings {
+                steer_deg: Some(3.0),
+                ..CourseSettings::new(ManoeuvreKind::StepSteer)
+            }),
+            ..written
+        };
+        assert_eq!(read_back(&changed), changed);
+        let shortened = Scenario {
+            ticks: 100,
+            ..named("bus-silence").expect("built in")
+        };
+        assert!(read_back(&shortened).faults.is_empty());
+    }
+}

@@ -41,6 +41,7 @@ enum Command {
     Rig(commands::rig::Args),
     Diagnose(commands::diagnose::Args),
     Predict(commands::predict::Args),
+    Compare(commands::compare::Args),
     Seal(commands::seal::Args),
     Show(commands::show::Args),
 }
@@ -54,6 +55,7 @@ fn main() -> ExitCode {
             Command::Rig(args) => commands::rig::run(args),
             Command::Diagnose(args) => commands::diagnose::run(args),
             Command::Predict(args) => commands::predict::run(args),
+            Command::Compare(args) => commands::compare::run(&args),
             Command::Seal(args) => commands::seal::run(args),
             Command::Show(args) => commands::show::run(args, CommandLine::command()),
         },

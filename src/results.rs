@@ -68,24 +68,19 @@ impl ResultsArgs {
         )?))
     }
 
-    /// As [`Self::stage`], with the path of a file of finished runs.
+    /// As [`Self::stage`], with the path of a file of finished runs where there is a folder to keep it in.
     pub fn stage_with_ledger(
         &self,
         command: &str,
         name: &str,
         inputs: Vec<PathBuf>,
         ledger: &str,
-    ) -> Result<Option<(OutputDirectory, PathBuf)>, Failure> {
+    ) -> Result<(Option<OutputDirectory>, Option<PathBuf>), Failure> {
         let Some(folder) = self.folder(name)? else {
-            if self.format == Format::Json {
-                return Err(Failure::new(
-                    "--format json: this command keeps its finished runs in a folder; leave out --no-out",
-                ));
-            }
-            return Ok(None);
+            return Ok((self.stage(command, name, inputs)?, None));
         };
-        let staged = OutputDirectory::stage_with_ledger(folder, origin(command, inputs), self.force, ledger)?;
-        Ok(Some(staged))
+        let (out, ledger) = OutputDirectory::stage_with_ledger(folder, origin(command, inputs), self.force, ledger)?;
+        Ok((Some(out), Some(ledger)))
     }
 
     /// The folder of the results; `None` where none are wanted. The folder that holds those without `--out` is made.

@@ -208,10 +208,15 @@ fn the_default_run_leaves_what_it_promises() {
         [
             ".oleo",
             "candump.log",
+            "handling.toml",
             "junit.xml",
+            "oleo.dbc",
             "report.html",
+            "scenario.toml",
+            "strut.toml",
             "summary.json",
-            "timeseries.csv"
+            "timeseries.csv",
+            "vehicle.toml",
         ]
     );
 }
@@ -438,4 +443,66 @@ fn help_has_examples_and_units() {
         "{text}"
     );
     assert!(run(&["hil", "--list"]).status.success());
+}
+
+/// The folder of a run holds what repeats it, whatever the command line changed.
+#[test]
+fn a_run_is_repeated_from_its_own_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let [given, first, again] = ["given.toml", "first", "again"].map(|name| folder.path().join(name));
+    let strut = run(&["show", "strut"]);
+    let heavy = String::from_utf8(strut.stdout)
+        .unwrap()
+        .replacen("bore_m = 0.05", "bore_m = 0.051", 1);
+    fs::write(&given, heavy).unwrap();
+    let text = |path: &Path| path.to_str().unwrap().to_owned();
+    let changed = [
+        "--manoeuvre",
+        "step-steer",
+        "--speed-km-h",
+        "47.3",
+        "--load",
+        "laden",
+        "--seed",
+        "7",
+        "--duration-s",
+        "2",
+    ];
+    let (strut, out) = (text(&given), text(&first));
+    let output = run(&[
+        &[
+            "hil",
+            "--scenario",
+            "apg",
+            "--road",
+            "iso-c",
+            "--strut",
+            &strut,
+            "--out",
+            &out,
+        ][..],
+        &changed,
+    ]
+    .concat());
+    assert!(
+        output.status.code() < Some(2),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let scenario = text(&first.join("scenario.toml"));
+    let output = run(&["hil", "--scenario", &scenario, "--out", &text(&again)]);
+    assert!(
+        output.status.code() < Some(2),
+        "{}",
+        String::from_utf8_lossy(&output.stderr)
+    );
+    let bytes = |folder: &Path, name: &str| fs::read(folder.join(name)).unwrap();
+    for name in ["timeseries.csv", "candump.log", "strut.toml", "scenario.toml"] {
+        assert_eq!(bytes(&first, name), bytes(&again, name), "{name}");
+    }
+    assert!(
+        String::from_utf8(bytes(&first, "strut.toml"))
+            .unwrap()
+            .contains("bore_m = 0.051")
+    );
 }

@@ -27,6 +27,7 @@ COMMANDS = [
         (f"rig-{name}", ["rig", name])
         for name in ["spring", "damping", "bulk-modulus", "valve-response", "replay", "limits"]
     ),
+    ("drive", ["drive", "--manoeuvre", "step-steer", "--setting", "soft,stiff,controlled,baseline"]),
     ("study-sweep", ["study", "sweep", "--duration-s", "2"]),
     ("study-optimise", ["study", "optimise", "--iterations", "2", "--duration-s", "2", "--roll", "1"]),
     ("study-control", ["study", "control", "--quick", "--seeds", "1", "--duration-s", "5"]),
@@ -60,6 +61,8 @@ def main():
     subprocess.run([oleo, *saved], cwd=folder, check=True, capture_output=True)
     campaign = next(path.parent for path in (folder / "campaigns").glob("*/model.toml"))
     commands.append(("diagnose", ["diagnose", str(campaign.relative_to(folder))]))
+    # The first two commands are runs of hil, whose results lie in these folders.
+    commands.append(("compare", ["compare", "out-0", "out-1", "--tolerance", "roll_rad=1%"]))
     for number, (schema, arguments) in enumerate(commands):
         for error in errors(oleo, folder, schema, arguments, f"out-{number}"):
             failed = True

@@ -142,9 +142,14 @@ impl Variation {
         }
     }
 
-    /// This variation of a nominal vehicle on the preset's struts.
+    /// This variation of a nominal vehicle on four nominal struts, whatever load those are charged for.
     #[must_use]
-    pub fn of(&self, nominal: &VehicleParameters, nominal_handling: &HandlingParameters) -> VariedVehicle {
+    pub fn of(
+        &self,
+        nominal: &VehicleParameters,
+        nominal_handling: &HandlingParameters,
+        nominal_strut: &StrutModel,
+    ) -> VariedVehicle {
         let mut vehicle = nominal.clone();
         let mass_kg = self.mass_change * vehicle.body.sprung_mass_kg;
         // A point mass: the inertia of its own is in the factors.
@@ -166,7 +171,8 @@ impl Variation {
         handling.tyre.pky1 *= self.cornering_stiffness;
         let load_n = vehicle.static_strut_load_n();
         let tempered = Corners::from_fn(|corner| {
-            TemperedStrut::new(&self.strut_as_charged(corner, load_n[corner]), self.gas_temperature_k)
+            let charged = nominal_strut.clone().charged_for(load_n[corner]);
+            TemperedStrut::new(&self.strut_as_charged(corner, charged), self.gas_temperature_k)
         });
         let rise_m = tempered.each_ref().map(|strut| strut.rise_m);
         let vehicle = vehicle.raised(rise_m.by_axle().map(|(left, right)| 0.5 * (left + right)));
@@ -178,8 +184,7 @@ impl Variation {
         }
     }
 
-    fn strut_as_charged(&self, corner: Corner, load_n: f64) -> StrutModel {
-        let mut model = StrutModel::defender110(load_n);
+    fn strut_as_charged(&self, corner: Corner, mut model: StrutModel) -> StrutModel {
         let own = self.strut[corner];
         for (accumulator, factor) in model.accumulator.iter_mut().zip(own.gas_volume) {
             accumulator.static_gas_volume_m3 *= factor;
@@ -188,12 +193,19 @@ impl Variation {
             seal.coulomb_force_n *= own.friction;
             seal.breakaway_force_n *= own.friction;
         }
-        model.valve_timing.response_polynomial_s = vec![self.valve_response_s];
+        match &mut model.effects.valve_delay {
+            Some(delay) => delay.response_polynomial_s = [self.valve_response_s, 0.0, 0.0],
+            None => model.valve_timing.response_polynomial_s = vec![self.valve_response_s],
+        }
         if corner == self.weak {
             model.damper = model.damper.map(|pack| pack.scaled(self.weak_damping));
+            let [sound_1, sound_2] = match &model.effects.damper_leakage {
+                Some(leakage) => [leakage.flow_coefficient_1, leakage.flow_coefficient_2],
+                None => [0.0; 2],
+            };
             model.effects.damper_leakage = Some(DamperLeakage {
-                flow_coefficient_1: self.weak_leak,
-                flow_coefficient_2: self.weak_leak,
+                flow_coefficient_1: sound_1 + self.weak_leak,
+                flow_coefficient_2: sound_2 + self.weak_leak,
             });
         }
         model
@@ -211,7 +223,11 @@ mod tests {
     use std::sync::Arc;
 
     fn varied(case: u64) -> VariedVehicle {
-        Variation::draw(5, case).of(&VehicleParameters::defender110(), &HandlingParameters::defender110())
+        Variation::draw(5, case).of(
+            &VehicleParameters::defender110(),
+            &HandlingParameters::defender110(),
+            &StrutModel::defender110(1.0),
+        )
     }
 
     /// Every case is a vehicle: its files would be read, its struts carry it, its mass is what was drawn.

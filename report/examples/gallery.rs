@@ -96,7 +96,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         })
         .collect();
     page.section("Fields");
-    for style in [FieldStyle::HeatMap, FieldStyle::Contour, FieldStyle::Surface] {
+    for style in [FieldStyle::HeatMap, FieldStyle::Contour] {
         let axes = [
             Axis::new("Static gas volume", "l").logarithmic(),
             Axis::new("Damper factor", ""),
@@ -104,7 +104,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ];
         let mut field = Field::new("Roll", style, axes, &volumes, &factors, &roll);
         field
-            .path("optimiser", &[1.0, 0.3, 0.01], &[2.0, 1.0, 0.8], &[6.2, 5.0, 2.1])
+            .path("optimiser", &[1.0, 0.3, 0.01], &[2.0, 1.0, 0.8])
             .caption("Gaps: rolled over.");
         page.figure(field);
     }

@@ -1,14 +1,17 @@
-//! A quantity over two others: the surfaces of a design study, a map of a deviation over speed and pressure. Missing
+//! A quantity over two others: the contours of a design study, a map of a deviation over speed and pressure. Missing
 //! values (NaN) are gaps, as where a vehicle rolled over.
 
 use plotly::common::{ColorBar, ColorScale, ColorScalePalette, Line, Marker, MarkerSymbol, Mode, Title};
 use plotly::contour::Contours;
-use plotly::{Contour, HeatMap, Scatter, Scatter3D, Surface, Trace};
+use plotly::{Contour, HeatMap, Scatter, Trace};
 use serde_json::json;
 
 use crate::axis::{Axis, escape_plotly};
 use crate::decimate::rounded;
 use crate::figure::{Drawing, Figure, colour};
+
+/// Height of a field.
+const HEIGHT_PX: usize = 460;
 
 /// How a field is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,8 +20,6 @@ pub enum FieldStyle {
     HeatMap,
     /// Filled contours with labels.
     Contour,
-    /// A surface that can be turned.
-    Surface,
 }
 
 /// A field `z` over a grid of `x` (columns) and `y` (rows).
@@ -39,7 +40,6 @@ struct Path {
     name: String,
     x: Vec<f64>,
     y: Vec<f64>,
-    z: Vec<f64>,
 }
 
 impl Field {
@@ -64,14 +64,12 @@ impl Field {
         self
     }
 
-    /// Draws points joined in their order upon the field: the path of an optimiser, or a single chosen point. `z` is used by
-    /// surfaces only.
-    pub fn path(&mut self, name: &str, x: &[f64], y: &[f64], z: &[f64]) -> &mut Self {
+    /// Draws points joined in their order upon the field: the path of an optimiser, or a single chosen point.
+    pub fn path(&mut self, name: &str, x: &[f64], y: &[f64]) -> &mut Self {
         self.paths.push(Path {
             name: name.into(),
             x: rounded(x),
             y: rounded(y),
-            z: rounded(z),
         });
         self
     }
@@ -92,31 +90,16 @@ impl Field {
                 .color_scale(scale)
                 .connect_gaps(false)
                 .contours(Contours::new().show_labels(true)),
-            FieldStyle::Surface => Surface::new(z)
-                .x(x)
-                .y(y)
-                .color_bar(bar)
-                .color_scale(scale)
-                .connect_gaps(false),
         };
-        let flat = self.style != FieldStyle::Surface;
         let mut traces = vec![field];
         for (index, path) in self.paths.into_iter().enumerate() {
-            traces.push(path.into_trace(flat, colour(index + 1)));
+            traces.push(path.into_trace(colour(index + 1)));
         }
-        let layout = if flat {
-            json!({ "xaxis": x_axis.to_json(), "yaxis": y_axis.to_json(), "legend": { "orientation": "h", "y": -0.2 } })
-        } else {
-            json!({ "scene": {
-                "xaxis": x_axis.to_json(), "yaxis": y_axis.to_json(), "zaxis": z_axis.to_json(),
-                "aspectmode": "manual", "aspectratio": { "x": 1.2, "y": 1.2, "z": 0.8 },
-                "camera": { "eye": { "x": -1.3, "y": -1.6, "z": 1.2 } },
-            }, "legend": { "orientation": "h", "y": -0.1 } })
-        };
+        let layout = json!({ "xaxis": x_axis.to_json(), "yaxis": y_axis.to_json(), "legend": { "orientation": "h", "y": -0.2 } });
         Figure {
             title: self.title,
             caption: self.caption,
-            height_px: if flat { 460 } else { 560 },
+            height_px: HEIGHT_PX,
             link: None,
             drawing: Drawing { traces, layout },
         }
@@ -124,26 +107,12 @@ impl Field {
 }
 
 impl Path {
-    fn into_trace(self, flat: bool, colour: &'static str) -> Box<dyn Trace> {
-        let name = escape_plotly(&self.name);
-        let marker = Marker::new()
-            .size(if flat { 8 } else { 5 })
-            .color(colour)
-            .symbol(MarkerSymbol::Circle);
-        let line = Line::new().color(colour).width(2.0);
-        if flat {
-            Scatter::new(self.x, self.y)
-                .name(&name)
-                .mode(Mode::LinesMarkers)
-                .marker(marker)
-                .line(line)
-        } else {
-            Scatter3D::new(self.x, self.y, self.z)
-                .name(&name)
-                .mode(Mode::LinesMarkers)
-                .marker(marker)
-                .line(line)
-        }
+    fn into_trace(self, colour: &'static str) -> Box<dyn Trace> {
+        Scatter::new(self.x, self.y)
+            .name(escape_plotly(&self.name))
+            .mode(Mode::LinesMarkers)
+            .marker(Marker::new().size(8).color(colour).symbol(MarkerSymbol::Circle))
+            .line(Line::new().color(colour).width(2.0))
     }
 }
 
@@ -166,21 +135,17 @@ mod tests {
         ];
         let z = vec![vec![1.0, f64::NAN], vec![2.0, 3.0], vec![4.0, 5.0]];
         let mut field = Field::new("Roll", style, axes, &[0.1, 1.0], &[0.8, 1.0, 3.0], &z);
-        field.path("optimum", &[0.1], &[0.8], &[1.0]);
+        field.path("optimum", &[0.1], &[0.8]);
         serde_json::to_value(field.into_figure().drawing).expect("plain data")
     }
 
     #[test]
     fn every_style_has_the_grid_the_gap_and_the_path() {
-        for (style, kind, path) in [
-            (FieldStyle::HeatMap, "heatmap", "scatter"),
-            (FieldStyle::Contour, "contour", "scatter"),
-            (FieldStyle::Surface, "surface", "scatter3d"),
-        ] {
+        for (style, kind) in [(FieldStyle::HeatMap, "heatmap"), (FieldStyle::Contour, "contour")] {
             let drawing = drawn(style);
             assert_eq!(drawing["data"][0]["type"], kind);
             assert_eq!(drawing["data"][0]["z"][0][1], Value::Null);
-            assert_eq!(drawing["data"][1]["type"], path);
+            assert_eq!(drawing["data"][1]["type"], "scatter");
         }
     }
 
@@ -189,10 +154,6 @@ mod tests {
         assert_eq!(
             drawn(FieldStyle::Contour)["layout"]["xaxis"]["title"]["text"],
             "Gas volume, l"
-        );
-        assert_eq!(
-            drawn(FieldStyle::Surface)["layout"]["scene"]["zaxis"]["title"]["text"],
-            "Roll, deg"
         );
     }
 }

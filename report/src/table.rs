@@ -192,7 +192,15 @@ impl Table {
                     Tone::Warning => format!("<span class=\"warning\">{text}</span>"),
                     Tone::Bad => format!("<span class=\"bad\">{text}</span>"),
                 };
-                html += &format!("<td{}>{text}</td>", align(column));
+                // A figure and what stands behind it stay on one line; words in a column of figures may wrap.
+                let is_figure = cell
+                    .text
+                    .starts_with(|first: char| first.is_ascii_digit() || "+-<>".contains(first));
+                let class = match (column.numeric, is_figure) {
+                    (true, true) => " class=\"number figure\"",
+                    _ => align(column),
+                };
+                html += &format!("<td{class}>{text}</td>");
             }
             html += "</tr>";
         }

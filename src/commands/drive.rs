@@ -1,7 +1,8 @@
-//! `oleo drive`: drives a vehicle through a manoeuvre with the ride model, the handling model or both.
+//! `oleo drive`: drives a vehicle through a manoeuvre with one model or both, with one suspension or several.
 
 mod arguments;
 mod columns;
+mod driven;
 mod measures;
 mod page;
 mod plan;
@@ -17,14 +18,14 @@ pub use arguments::Args;
 
 use super::parameter_files::parameters;
 use crate::failure::Failure;
-use arguments::Model;
 use plan::Plan;
 
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
     plan::refuse_unused(&args)?;
     let road = args.road.as_ref().filter(|road| !road::NAMES.contains(&road.as_str()));
-    let files = [&args.vehicle, &args.handling].into_iter().flatten().cloned();
+    let files = [&args.vehicle, &args.handling, &args.strut];
+    let files = files.into_iter().flatten().cloned();
     let inputs = files.chain(road.map(PathBuf::from)).collect();
     let name = format!("drive-{}", args.manoeuvre.name());
     let out = args.results.stage("oleo drive", &name, inputs)?;
@@ -36,13 +37,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
             args.score_from_s
         )));
     }
-    let mut runs = Vec::new();
-    if args.model != Model::Handling {
-        runs.push(("ride model", plan.ride(args.setting)?));
-    }
-    if args.model != Model::Ride {
-        runs.push(("handling model", plan.handling(args.setting)?));
-    }
-    sheet::publish(&plan, &args, &runs, out)?;
+    let drives = driven::drive(&plan, &args)?;
+    sheet::publish(&plan, &args, &drives, out)?;
     Ok(ExitCode::SUCCESS)
 }

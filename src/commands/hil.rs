@@ -14,6 +14,7 @@ use oleo_hil::metrics::Metrics;
 use oleo_hil::output::{self, Summary};
 use oleo_hil::record::command_hash;
 use oleo_hil::run::{self, ControllerOutcome, Outcome};
+use oleo_hil::scenario::file::DEFENDER;
 use oleo_hil::scenario::{self, Clock, FaultKind, Scenario};
 use oleo_hil::{page, sync::Role};
 use oleo_interface::tick::TICK_S;
@@ -25,6 +26,8 @@ use strum::VariantNames;
 
 use self::record::{Recorded, record, recorded};
 use super::course_arguments::{CourseArgs, option_failure};
+use super::parameter_files::keep;
+use super::show::{DBC, scenarios};
 use crate::failure::Failure;
 use crate::results::{ResultsArgs, command_line, say};
 
@@ -117,13 +120,11 @@ pub struct Args {
     results: ResultsArgs,
 }
 
-/// Name of the built-in vehicle, its handling parameters and its strut.
-const BUILT_IN_VEHICLE: &str = "defender110";
-
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
     if args.list {
-        return list();
+        say(&scenarios()?)?;
+        return Ok(ExitCode::SUCCESS);
     }
     let scenario = chosen(&args)?;
     if args.firmware.is_some() {
@@ -171,7 +172,7 @@ fn inputs(args: &Args, scenario: &Scenario) -> Vec<PathBuf> {
     let file = (!built_in).then_some(&args.scenario);
     let road = Some(&scenario.road).filter(|road| !road::NAMES.contains(&road.as_str()));
     let parts = [&scenario.strut, &scenario.vehicle, &scenario.handling];
-    let parts = parts.into_iter().filter(|part| *part != BUILT_IN_VEHICLE);
+    let parts = parts.into_iter().filter(|part| *part != DEFENDER);
     let mut inputs: Vec<PathBuf> = (file.into_iter().chain(road).chain(parts)).map(PathBuf::from).collect();
     inputs.extend(args.firmware.clone());
     inputs
@@ -191,7 +192,7 @@ fn suits_image(scenario: &Scenario) -> Result<(), Failure> {
     }
     let differs = if scenario.strategy != Strategy::default() {
         "strategy"
-    } else if [&scenario.vehicle, &scenario.handling, &scenario.strut].map(String::as_str) != [BUILT_IN_VEHICLE; 3] {
+    } else if [&scenario.vehicle, &scenario.handling, &scenario.strut].map(String::as_str) != [DEFENDER; 3] {
         "vehicle, handling or strut"
     } else if scenario.clock != Clock::Lockstep {
         "clock"
@@ -204,15 +205,6 @@ fn suits_image(scenario: &Scenario) -> Result<(), Failure> {
         "--firmware: the scenario {} sets {differs}, which an image has of its own: leave it out of the scenario",
         scenario.name
     )))
-}
-
-fn list() -> Result<ExitCode, Failure> {
-    let mut table = Table::new([Column::text("Scenario"), Column::text("What it shows")]);
-    for (name, _) in scenario::BUILT_IN {
-        table.row([name.to_string(), scenario::named(name)?.description]);
-    }
-    say(&table.to_string())?;
-    Ok(ExitCode::SUCCESS)
 }
 
 /// The scenario, with the changes of the command line.
@@ -315,6 +307,11 @@ fn report(
     }
     if let Some(out) = &mut staged {
         output::write(out, scenario, outcome, &metrics, &summary)?;
+        let given = |name: &'_ String| (name != DEFENDER).then(|| PathBuf::from(name));
+        let [vehicle, handling, strut] = [&scenario.vehicle, &scenario.handling, &scenario.strut].map(given);
+        keep(out, vehicle.as_deref(), handling.as_deref(), strut.as_deref())?;
+        out.write("scenario.toml", scenario.to_toml())?;
+        out.write("oleo.dbc", DBC)?;
         out.page(&page::page(scenario, outcome, &metrics, &summary, &command_line()))?;
         for corner in args.record.iter().flat_map(|recorded| &recorded.0) {
             text += &record(out, scenario, outcome, *corner)?;

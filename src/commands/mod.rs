@@ -2,12 +2,14 @@
 //! `pub fn run(args: Args) -> Result<ExitCode, Failure>`.
 
 mod column_map;
+pub mod compare;
 mod course_arguments;
 pub mod diagnose;
 pub mod drive;
 pub mod hil;
 mod parameter_files;
 pub mod predict;
+mod prediction;
 pub mod rig;
 pub mod seal;
 pub mod show;

@@ -1,22 +1,12 @@
-//! `oleo predict`: the readings that a model predicts from the inputs of a recording alone.
-//!
-//! The inputs of a strut are its displacement and its switching signals. A gas spring also takes its first recorded
-//! pressure, which says how much gas there is. A cylinder also takes its recorded pressures, because its model has no
-//! accumulator from which they would follow. The input of a damper is its displacement. The input of a drive is its force, with
-//! the recorded position and speed at the start of each window.
+//! `oleo predict`: the readings that a model predicts from the inputs of a recording alone (see [`super::prediction`]).
 
-use std::fs::File;
-use std::io::{Cursor, Read};
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use oleo_interface::Valve;
-use oleo_plant_sim::rig::{Columns, RecordedStrut};
-use oleo_plant_sim::specimen::{CylinderModel, DamperModel, DriveModel, GasSpringModel, smooth_motion, specimen_name};
-use oleo_plant_sim::strut::{StrutModel, replay};
 use oleo_report::{Column, OutputDirectory, OutputFile, Table};
 
 use super::column_map::column_map;
+use super::prediction::{Channel, Prediction, predict};
 use crate::failure::Failure;
 use crate::results::{default_path, origin, say};
 
@@ -45,55 +35,11 @@ pub struct Args {
     force: bool,
 }
 
-/// The text of a recording.
-type Source = Box<dyn Read>;
-
-/// Opens the recording; one of another program is translated by the map of its columns.
-fn source(args: &Args) -> Result<Source, Failure> {
-    let file = args.recording.display();
-    let unreadable = |error| Failure::new(format!("{file}: cannot read the recording: {error}; check the path"));
-    let Some(path) = &args.columns else {
-        return Ok(Box::new(File::open(&args.recording).map_err(unreadable)?));
-    };
-    let map = column_map(path)?;
-    let bytes = std::fs::read(&args.recording).map_err(unreadable)?;
-    let text = map.translate(&bytes, &file.to_string())?;
-    Ok(Box::new(Cursor::new(text)))
-}
-
-/// A channel: its name, recorded and predicted values, and the standard deviation of its noise.
-struct Channel {
-    name: String,
-    recorded: Option<Vec<f64>>,
-    predicted: Vec<f64>,
-    noise: Option<f64>,
-}
-
-/// Half-width in samples of the window over which a cylinder's motion is smoothed, as in its diagnosis.
-const CYLINDER_WINDOW: f64 = 5.0;
-
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
-    let (model_file, file) = (args.model.display().to_string(), args.recording.display().to_string());
-    let text = std::fs::read_to_string(&args.model)
-        .map_err(|error| Failure::new(format!("{model_file}: cannot read the model: {error}; check the path")))?;
-    let source = source(&args)?;
+    let map = args.columns.as_deref().map(column_map).transpose()?;
     let target = Target::of(&args)?;
-
-    let kind = specimen_name(&text, &model_file)?.kind;
-    let (inputs, channels) = match kind.as_str() {
-        "gas spring" => gas_spring(&text, &model_file, source, &file)?,
-        "cylinder" => cylinder(&text, &model_file, source, &file)?,
-        "damper" => damper(&text, &model_file, source, &file)?,
-        "drive" => drive(&text, &model_file, source, &file)?,
-        oleo_diagnose::vehicle::VEHICLE => {
-            return Err(Failure::new(format!(
-                "{model_file}: is the model of a vehicle, and logs cannot be predicted; give the model file of one of its struts and a \
-                 recording of it as CSV"
-            )));
-        }
-        _ => strut(&text, &model_file, source, &file)?,
-    };
+    let Prediction { inputs, channels } = predict(&args.model, &args.recording, map.as_ref())?;
 
     // The columns are in the order of a recording: time and displacement, predicted channels, other inputs.
     let (before, after) = inputs.split_at(2.min(inputs.len()));
@@ -115,149 +61,8 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Inputs by name, in the order of a recording, and predicted channels.
-type Predicted = (Vec<(String, Vec<f64>)>, Vec<Channel>);
-
-fn strut(text: &str, model_file: &str, source: Source, file: &str) -> Result<Predicted, Failure> {
-    let model = StrutModel::from_toml(text, model_file)?;
-    let recording = RecordedStrut::read(source, file)?;
-    let noise = |name: &str| model.noise.get(name).copied();
-    let predicted = replay(&model, &recording.inputs(noise("displacement_m").unwrap_or(0.0)))?;
-    let signal = |valve: Valve| {
-        recording
-            .signals
-            .iter()
-            .map(|signals| f64::from(u8::from(signals[valve])))
-            .collect()
-    };
-    let inputs = vec![
-        ("time_s".to_owned(), recording.time_s.clone()),
-        ("displacement_m".to_owned(), recording.displacement_m.clone()),
-        ("valve1".to_owned(), signal(Valve::Bypass1)),
-        ("valve2".to_owned(), signal(Valve::Bypass2)),
-        ("valve3".to_owned(), signal(Valve::Spring)),
-    ];
-    let mut channels = vec![Channel {
-        name: "force_N".into(),
-        recorded: recording.force_n,
-        predicted: predicted.force_n,
-        noise: noise("force_N"),
-    }];
-    let names = ["p1_Pa", "p2_Pa", "p3_Pa", "p4_Pa"];
-    for ((name, recorded), predicted) in names.into_iter().zip(recording.pressure_pa).zip(predicted.pressure_pa) {
-        channels.push(Channel {
-            name: name.into(),
-            recorded,
-            predicted,
-            noise: noise(name),
-        });
-    }
-    Ok((inputs, channels))
-}
-
-fn gas_spring(text: &str, model_file: &str, source: Source, file: &str) -> Result<Predicted, Failure> {
-    let model = GasSpringModel::from_toml(text, model_file)?;
-    let recording = Columns::read(source, file, &["displacement_m", "p_Pa"], &[])?;
-    let (time, x) = (recording.time_s(), column(&recording, "displacement_m"));
-    let recorded = column(&recording, "p_Pa");
-    let pressure = model
-        .pressure_pa(time, x, recorded[0])
-        .map_err(|what| Failure::new(format!("{file}: {what}")))?;
-    let inputs = vec![
-        ("time_s".to_owned(), time.to_vec()),
-        ("displacement_m".to_owned(), x.to_vec()),
-    ];
-    let channel = Channel {
-        name: "p_Pa".into(),
-        recorded: Some(recorded.to_vec()),
-        predicted: model.shown(time, pressure),
-        noise: model.noise.get("p_Pa").copied(),
-    };
-    Ok((inputs, vec![channel]))
-}
-
-fn cylinder(text: &str, model_file: &str, source: Source, file: &str) -> Result<Predicted, Failure> {
-    let model = CylinderModel::from_toml(text, model_file)?;
-    let mut needed = vec!["displacement_m"];
-    needed.extend(model.chamber.iter().map(|chamber| chamber.column.as_str()));
-    let recording = Columns::read(source, file, &needed, &["force_N"])?;
-    let (time, x) = (recording.time_s(), column(&recording, "displacement_m"));
-    let interval = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-    let motion = smooth_motion(time, x, CYLINDER_WINDOW * interval);
-    let pressures: Vec<Vec<f64>> = model
-        .chamber
-        .iter()
-        .map(|chamber| column(&recording, &chamber.column).to_vec())
-        .collect();
-    let force = model.force_n(time, &motion, &pressures);
-    let mut inputs = vec![
-        ("time_s".to_owned(), time.to_vec()),
-        ("displacement_m".to_owned(), x.to_vec()),
-    ];
-    inputs.extend(
-        model
-            .chamber
-            .iter()
-            .map(|chamber| chamber.column.clone())
-            .zip(pressures),
-    );
-    let channel = Channel {
-        name: "force_N".into(),
-        recorded: recording.column("force_N").map(<[f64]>::to_vec),
-        predicted: model.shown(time, force),
-        noise: model.noise.get("force_N").copied(),
-    };
-    Ok((inputs, vec![channel]))
-}
-
-fn damper(text: &str, model_file: &str, source: Source, file: &str) -> Result<Predicted, Failure> {
-    let model = DamperModel::from_toml(text, model_file)?;
-    let recording = Columns::read(source, file, &["displacement_m"], &["force_N"])?;
-    let (time, x) = (recording.time_s(), column(&recording, "displacement_m"));
-    let force = model
-        .force_n(&DamperModel::motion(time, x))
-        .map_err(|what| Failure::new(format!("{file}: {what}")))?;
-    let inputs = vec![
-        ("time_s".to_owned(), time.to_vec()),
-        ("displacement_m".to_owned(), x.to_vec()),
-    ];
-    let channel = Channel {
-        name: "force_N".into(),
-        recorded: recording.column("force_N").map(<[f64]>::to_vec),
-        predicted: model.shown(time, force),
-        noise: model.noise.get("force_N").copied(),
-    };
-    Ok((inputs, vec![channel]))
-}
-
-fn drive(text: &str, model_file: &str, source: Source, file: &str) -> Result<Predicted, Failure> {
-    let model = DriveModel::from_toml(text, model_file)?;
-    let recording = Columns::read(source, file, &["force_N", "position_m"], &[])?;
-    let (time, force) = (recording.time_s(), column(&recording, "force_N"));
-    let recorded = column(&recording, "position_m");
-    let position = model
-        .position_m(time, force, &DriveModel::motion(time, recorded))
-        .map_err(|what| Failure::new(format!("{file}: {what}")))?;
-    let inputs = vec![
-        ("time_s".to_owned(), time.to_vec()),
-        ("force_N".to_owned(), force.to_vec()),
-    ];
-    let channel = Channel {
-        name: "position_m".into(),
-        recorded: Some(recorded.to_vec()),
-        predicted: model.shown(time, position),
-        noise: model.noise.get("position_m").copied(),
-    };
-    Ok((inputs, vec![channel]))
-}
-
 fn borrowed(column: &(String, Vec<f64>)) -> (&str, &[f64]) {
     (&column.0, &column.1)
-}
-
-/// A column that was asked for as needed.
-fn column<'a>(recording: &'a Columns, name: &str) -> &'a [f64] {
-    recording.column(name).unwrap_or_default()
 }
 
 /// Noise ratio of each channel that was recorded.

@@ -28,9 +28,9 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// A vehicle on the preset's struts, each charged for the load that its corner carries.
-    pub fn new(vehicle: VehicleParameters, handling: HandlingParameters) -> Self {
-        let struts = vehicle.static_strut_load_n().map(StrutModel::defender110);
+    /// A vehicle on four such struts, each charged for the load that its corner carries.
+    pub fn new(vehicle: VehicleParameters, handling: HandlingParameters, strut: &StrutModel) -> Self {
+        let struts = (vehicle.static_strut_load_n()).map(|load_n| strut.clone().charged_for(load_n));
         Self {
             vehicle,
             handling,
@@ -47,13 +47,17 @@ impl Bench {
 
     /// The built-in Land Rover Defender 110.
     pub fn defender110() -> Self {
-        Self::new(VehicleParameters::defender110(), HandlingParameters::defender110())
+        Self::new(
+            VehicleParameters::defender110(),
+            HandlingParameters::defender110(),
+            &StrutModel::defender110(1.0),
+        )
     }
 
     /// A random variation of this vehicle.
     #[must_use]
     pub fn varied(&self, variation: &Variation) -> Self {
-        let varied = variation.of(&self.vehicle, &self.handling);
+        let varied = variation.of(&self.vehicle, &self.handling, &self.struts[Corner::FrontLeft]);
         Self {
             vehicle: varied.vehicle,
             handling: varied.handling,

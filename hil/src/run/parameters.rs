@@ -65,11 +65,7 @@ impl Parameters {
 
     /// The models of the four struts, each charged for the load (N) that it carries, as in a workshop.
     pub fn charged(&self, load_n: Corners<f64>) -> Corners<StrutModel> {
-        Corners::from_fn(|corner| {
-            let mut model = self.struts[corner].clone();
-            model.cylinder.static_pressure_pa = load_n[corner] / model.piston_area_m2();
-            model
-        })
+        Corners::from_fn(|corner| self.struts[corner].clone().charged_for(load_n[corner]))
     }
 
     /// Four struts at rest; all valves closed.

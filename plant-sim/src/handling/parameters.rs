@@ -261,12 +261,14 @@ impl Drive {
     }
 }
 
-const PRESET: &str = include_str!("../../presets/defender110-handling.toml");
-
 impl HandlingParameters {
+    /// The file of the shipped Defender 110.
+    pub const DEFENDER110_TOML: &'static str = include_str!("../../presets/defender110-handling.toml");
+
     /// The shipped Defender 110.
     pub fn defender110() -> Self {
-        Self::from_toml(PRESET, "presets/defender110-handling.toml").expect("the shipped preset is parsed in the tests")
+        Self::from_toml(Self::DEFENDER110_TOML, "presets/defender110-handling.toml")
+            .expect("the shipped preset is parsed in the tests")
     }
 
     /// Parameters of an axle.
@@ -310,6 +312,8 @@ impl Checked for HandlingParameters {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    const PRESET: &str = HandlingParameters::DEFENDER110_TOML;
     use crate::model_file::limits::forgotten_keys;
 
     #[test]

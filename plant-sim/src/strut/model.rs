@@ -283,6 +283,9 @@ impl StrutModel {
         toml::to_string_pretty(self).unwrap_or_default()
     }
 
+    /// The model file of the Land Rover Defender 110 preset.
+    pub const DEFENDER110_TOML: &'static str = include_str!("../../presets/strut-defender110.toml");
+
     /// The strut of the Land Rover Defender 110 preset at a static load, N (4,000 unladen to 8,000 laden at the rear).
     ///
     /// Damper packs keep their characteristic; gas volumes are those at this load, as the design asks.
@@ -294,10 +297,21 @@ impl StrutModel {
     /// ```
     #[must_use]
     pub fn defender110(static_load_n: f64) -> Self {
-        let text = include_str!("../../presets/strut-defender110.toml");
-        let mut model = Self::from_toml(text, "presets/strut-defender110.toml").unwrap_or_else(|e| unreachable!("{e}"));
-        model.cylinder.static_pressure_pa = static_load_n / model.piston_area_m2();
-        model
+        let model = Self::from_toml(Self::DEFENDER110_TOML, "presets/strut-defender110.toml")
+            .unwrap_or_else(|e| unreachable!("{e}"));
+        model.charged_for(static_load_n)
+    }
+
+    /// The same strut charged for another static load, N, as in a workshop: its gas volumes are those at this load.
+    ///
+    /// ```
+    /// use oleo_plant_sim::strut::StrutModel;
+    /// assert_eq!(StrutModel::defender110(4000.0).charged_for(8000.0), StrutModel::defender110(8000.0));
+    /// ```
+    #[must_use]
+    pub fn charged_for(mut self, static_load_n: f64) -> Self {
+        self.cylinder.static_pressure_pa = static_load_n / self.piston_area_m2();
+        self
     }
 
     /// Area of the piston, m2.

@@ -36,6 +36,29 @@ pub struct Weights {
     pub roll: f64,
 }
 
+impl Weights {
+    /// The objective of a case, over its measures at the reference case. A measure that one of them lacks does not count.
+    #[must_use]
+    pub fn objective(
+        &self,
+        ride: Option<Ride>,
+        handling: Option<Handling>,
+        reference: (Option<Ride>, Option<Handling>),
+    ) -> f64 {
+        let mut value = 0.0;
+        if let (Some(ride), Some(reference)) = (ride, reference.0) {
+            value += self.ride * ride.mean_rms_m_s2() / reference.mean_rms_m_s2();
+            value += self.sickness * ride.mean_msdv_m_s1_5() / reference.mean_msdv_m_s1_5();
+            value += if ride.completed { 0.0 } else { FAILED };
+        }
+        if let (Some(handling), Some(reference)) = (handling, reference.1) {
+            value += self.roll * handling.max_roll_rad / reference.max_roll_rad;
+            value += if handling.completed { 0.0 } else { FAILED };
+        }
+        value
+    }
+}
+
 /// What the search minimises, and under which conditions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Objective {
@@ -176,19 +199,8 @@ impl Search<'_> {
     }
 
     fn value(&self, ride: Option<Ride>, handling: Option<Handling>) -> f64 {
-        let weights = self.objective.weights;
-        let (ride_reference, handling_reference) = self.reference.unwrap_or((ride, handling));
-        let mut value = 0.0;
-        if let (Some(ride), Some(reference)) = (ride, ride_reference) {
-            value += weights.ride * ride.mean_rms_m_s2() / reference.mean_rms_m_s2();
-            value += weights.sickness * ride.mean_msdv_m_s1_5() / reference.mean_msdv_m_s1_5();
-            value += if ride.completed { 0.0 } else { FAILED };
-        }
-        if let (Some(handling), Some(reference)) = (handling, handling_reference) {
-            value += weights.roll * handling.max_roll_rad / reference.max_roll_rad;
-            value += if handling.completed { 0.0 } else { FAILED };
-        }
-        value
+        let reference = self.reference.unwrap_or((ride, handling));
+        self.objective.weights.objective(ride, handling, reference)
     }
 }
 

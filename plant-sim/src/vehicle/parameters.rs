@@ -289,9 +289,12 @@ impl VehicleParameters {
         toml::to_string(self).unwrap_or_default()
     }
 
+    /// The file of the shipped Defender 110.
+    pub const DEFENDER110_TOML: &'static str = include_str!("../../presets/defender110.toml");
+
     /// The shipped Defender 110: kerb weight and driver, 2050 kg.
     pub fn defender110() -> Self {
-        Self::from_toml(DEFENDER110_TOML, "presets/defender110.toml")
+        Self::from_toml(Self::DEFENDER110_TOML, "presets/defender110.toml")
             .expect("the shipped preset is parsed in the tests")
     }
 
@@ -375,8 +378,6 @@ impl VehicleParameters {
     }
 }
 
-const DEFENDER110_TOML: &str = include_str!("../../presets/defender110.toml");
-
 /// The controller's tick, s, which the plant's step must divide.
 const TICK_S: f64 = oleo_interface::tick::TICK_S;
 
@@ -385,7 +386,7 @@ mod tests {
     use super::*;
     use crate::model_file::limits::forgotten_keys;
 
-    const PRESET: &str = DEFENDER110_TOML;
+    const PRESET: &str = VehicleParameters::DEFENDER110_TOML;
 
     /// Table 1 of the seed report counts one "anti-rollbar stiffness" between the two halves of one bar.
     #[test]

@@ -224,7 +224,7 @@ mod tests {
         page.section("Bars").figure(bars);
         let axes = [Axis::new("x", "m"), Axis::new("y", "m"), Axis::new("z", "m")];
         page.section("Field")
-            .figure(Field::new("f", FieldStyle::Surface, axes, &[0.0], &[0.0], &[vec![1.0]]));
+            .figure(Field::new("f", FieldStyle::Contour, axes, &[0.0], &[0.0], &[vec![1.0]]));
         page
     }
 

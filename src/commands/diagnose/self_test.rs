@@ -106,10 +106,10 @@ pub fn run_self_test(args: &Args, results: &ResultsArgs) -> Result<ExitCode, Fai
     if args.save {
         return save_campaigns(&cases, results);
     }
-    let staged = results.stage_with_ledger(COMMAND, "self-test", Vec::new(), "trials.jsonl")?;
-    let (ledger, mut staged) = match staged {
-        None => (Ledger::in_memory(), None),
-        Some((out, ledger)) => (Ledger::open(&ledger)?, Some(out)),
+    let (mut staged, ledger) = results.stage_with_ledger(COMMAND, "self-test", Vec::new(), "trials.jsonl")?;
+    let ledger = match ledger {
+        None => Ledger::in_memory(),
+        Some(path) => Ledger::open(&path)?,
     };
     let progress = Progress::new("self-test", cases.len() as u64);
     let trials = run(&cases, &ledger, threads, &AtomicBool::new(false), &|| progress.add(1))?;

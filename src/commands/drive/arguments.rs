@@ -9,10 +9,11 @@ use strum::IntoStaticStr;
 use crate::commands::course_arguments::CourseArgs;
 use crate::results::ResultsArgs;
 
-/// Drive the vehicle through a manoeuvre and report its motion, comfort and handling.
+/// Drive the vehicle through a manoeuvre and report its motion, comfort and handling, with one suspension or several.
 #[derive(clap::Args)]
 #[command(
     after_help = "Examples:\n  oleo drive --manoeuvre lane-change --speed-km-h 60 --setting controlled --out lane\n  \
+                  oleo drive --manoeuvre lane-change-2 --setting soft,stiff,controlled,baseline --out four\n  \
                   oleo drive --manoeuvre belgian --model both --setting baseline --out figures-2-to-5\n  \
                   oleo drive --manoeuvre lane-change --road iso-d --driver hard --load laden --setting baseline\n  \
                   oleo drive --manoeuvre straight --side-slope-percent 10 --setting soft\n  \
@@ -28,9 +29,9 @@ pub struct Args {
     /// Vehicle model; both runs the two models on the same road and compares them
     #[arg(long, value_enum, default_value_t = Model::Handling)]
     pub model: Model,
-    /// Suspension of the vehicle
-    #[arg(long, value_enum, default_value_t = Setting::Controlled)]
-    pub setting: Setting,
+    /// Suspension of the vehicle; several, separated by commas, are driven one by one and compared
+    #[arg(long, value_enum, value_delimiter = ',', default_value = "controlled")]
+    pub setting: Vec<Setting>,
     /// Speed, km/h; in constant-radius the speed at the end [default: 5 for bump, 40 for braking-in-bend and acceleration,
     /// otherwise 60]
     #[arg(long, value_name = "KM_H", allow_negative_numbers = true)]
@@ -59,6 +60,10 @@ pub struct Args {
     /// File of handling parameters [default: the built-in defender110]
     #[arg(long, value_name = "HANDLING.toml")]
     pub handling: Option<PathBuf>,
+    /// Strut model, such as the model.toml that oleo diagnose writes; it is charged for the load that it carries [default: the
+    /// built-in defender110]
+    #[arg(long, value_name = "MODEL.toml")]
+    pub strut: Option<PathBuf>,
     #[command(flatten)]
     pub results: ResultsArgs,
 }
@@ -163,5 +168,15 @@ impl Setting {
     /// As on the command line.
     pub fn name(self) -> &'static str {
         self.into()
+    }
+
+    /// What the vehicle drives with, in a sentence.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Soft => "all valves open",
+            Self::Stiff => "all valves closed",
+            Self::Controlled => "the controller",
+            Self::Baseline => "coil springs",
+        }
     }
 }

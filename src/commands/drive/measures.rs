@@ -1,10 +1,11 @@
 //! The measures of a drive: comfort at both seats, roll, clearance to the cones, and the measures of each standard.
 
 use oleo_interface::tick::TICK_S;
-use oleo_plant_sim::course::{Manoeuvre, Run, Sample};
+use oleo_plant_sim::course::{Manoeuvre, Sample};
 use oleo_plant_sim::measures::SeatMeter;
 use oleo_plant_sim::vehicle::Seats;
 
+use super::driven::Driven;
 use super::plan::Plan;
 
 /// Lateral acceleration between which the understeer gradient is fitted, m/s2 (ISO 4138: the linear range).
@@ -13,8 +14,9 @@ const LINEAR_RANGE_M_S2: (f64, f64) = (0.5, 3.0);
 /// Key in `summary.json`, words, value, unit.
 pub type Measure = (&'static str, &'static str, f64, &'static str);
 
-/// Measures of one run; comfort from `score_from_s` (s) on.
-pub fn measures(plan: &Plan, run: &Run, score_from_s: f64) -> Vec<Measure> {
+/// Measures of one drive; comfort from `score_from_s` (s) on.
+pub fn measures(plan: &Plan, driven: &Driven, score_from_s: f64) -> Vec<Measure> {
+    let run = &driven.run;
     let mut meters = Seats::from_fn(|_| SeatMeter::new(TICK_S, score_from_s));
     for sample in &run.history {
         meters.iter_mut().for_each(|(seat, meter)| meter.add(sample.seat[seat]));
@@ -110,7 +112,7 @@ pub fn measures(plan: &Plan, run: &Run, score_from_s: f64) -> Vec<Measure> {
             "degrees",
         ));
     }
-    let rise_m = plan.rise_m();
+    let rise_m = plan.rise_m(driven.setting);
     if rise_m != (0.0, 0.0) {
         list.push((
             "front_rise_m",

@@ -1,13 +1,13 @@
 //! `report.html` of a drive: the verdict of the manoeuvre first, then the plan, the response, the body, wheels and suspension. The
-//! colour of a line is the model, its panel the quantity or the corner.
+//! colour of a line is the drive (its model or its suspension), its panel the quantity or the corner.
 
 use oleo_hil::page::{Path, map, went};
 use oleo_interface::{Axle, Corner};
-use oleo_plant_sim::course::{Ending, Manoeuvre, Run, Sample};
+use oleo_plant_sim::course::{Ending, Manoeuvre, Sample};
 use oleo_report::{Axis, Curves, Page, Style, Table, Verdict, significant};
 
-use super::arguments::Args;
 use super::columns::{column, open_valves};
+use super::driven::Driven;
 use super::plan::Plan;
 use crate::results::command_line;
 
@@ -17,26 +17,26 @@ type Signal<'a> = &'a dyn Fn(&Sample) -> f64;
 /// Quantity, unit and value of one panel.
 type Panel<'a> = (&'a str, &'a str, Signal<'a>);
 
-/// The page of one or two runs.
-pub fn page(plan: &Plan, args: &Args, runs: &[(&str, Run)], table: &Table, comparison: Option<&Table>) -> Page {
+/// The page of one or several drives.
+pub fn page(plan: &Plan, drives: &[Driven], table: &Table, comparison: Option<&Table>) -> Page {
     let mut page = Page::new(&format!("Drive: {}", plan.title), &command_line());
-    page.fact("Vehicle", &plan.vehicle.name)
-        .fact("Suspension", args.setting.name())
+    page.fact("Vehicle", plan.vehicle_name())
+        .fact("Suspension", &settings(drives))
         .fact("Driver", plan.course.driver.key())
         .fact("Road", &plan.road_name)
         .fact("Speed", &speed(plan));
-    let (verdict, sentence) = verdict(plan, runs);
+    let (verdict, sentence) = verdict(plan, drives);
     page.verdict(verdict, &sentence).outcome(table.clone());
     if let Some(comparison) = comparison {
         page.section("Ride model against handling model")
             .table(comparison.clone());
     }
     if !matches!(plan.course.manoeuvre, Manoeuvre::Straight { .. }) {
-        course(&mut page, plan, runs);
+        course(&mut page, plan, drives);
     }
     page.section("Body").figure(over_time(
         "Motion of the body",
-        runs,
+        drives,
         &[
             ("Heave", "mm", &|s| 1e3 * s.heave_m),
             ("Roll", "degrees", &|s| s.roll_rad.to_degrees()),
@@ -52,7 +52,7 @@ pub fn page(plan: &Plan, args: &Args, runs: &[(&str, Run)], table: &Table, compa
         let panels: Vec<Panel> = (names.iter().zip(&signals))
             .map(|(name, signal)| (name.as_str(), unit, signal as Signal))
             .collect();
-        over_time(title, runs, &panels)
+        over_time(title, drives, &panels)
     };
     page.figure(corners("kN", &|s, corner| 1e-3 * s.wheel_load_n[corner], "Wheel loads"))
         .figure(corners(
@@ -62,12 +62,19 @@ pub fn page(plan: &Plan, args: &Args, runs: &[(&str, Run)], table: &Table, compa
         ))
         .figure(over_time(
             "Open valves",
-            runs,
+            drives,
             &[("Open", "of 12", &|s| {
                 open_valves(s, Axle::Front) + open_valves(s, Axle::Rear)
             })],
         ));
     page
+}
+
+/// The suspensions, each once.
+pub fn settings(drives: &[Driven]) -> String {
+    let mut names: Vec<&str> = drives.iter().map(|driven| driven.setting.name()).collect();
+    names.dedup();
+    names.join(", ")
 }
 
 /// Speed of the manoeuvre in words: that at the start, and in a circle that at the end too.
@@ -80,16 +87,18 @@ fn speed(plan: &Plan) -> String {
 }
 
 /// What happened in each run, and whether that is good: a vehicle that hits a cone or leaves its course has failed the manoeuvre.
-pub fn verdict(plan: &Plan, runs: &[(&str, Run)]) -> (Verdict, String) {
-    let failed = runs
-        .iter()
-        .any(|(_, run)| run.ending != Ending::Completed || run.cone_margin_m.is_some_and(|margin_m| margin_m < 0.0));
-    let sentences: Vec<String> = (runs.iter())
-        .map(|(name, run)| {
+pub fn verdict(plan: &Plan, drives: &[Driven]) -> (Verdict, String) {
+    let failed = (drives.iter()).any(|Driven { run, .. }| {
+        run.ending != Ending::Completed || run.cone_margin_m.is_some_and(|margin_m| margin_m < 0.0)
+    });
+    let one_setting = drives.windows(2).all(|pair| pair[0].setting == pair[1].setting);
+    let sentences: Vec<String> = (drives.iter())
+        .map(|Driven { name, setting, run }| {
             let roll = significant(run.max_roll_rad.to_degrees(), 2);
-            let vehicle = match runs {
+            let vehicle = match drives {
                 [_] => "the vehicle".to_owned(),
-                _ => format!("the {name}"),
+                _ if one_setting => format!("the {name}"),
+                _ => format!("With {} the vehicle", setting.words()),
             };
             let lifted = if run.wheel_lift_s > 0.0 {
                 format!(
@@ -105,32 +114,31 @@ pub fn verdict(plan: &Plan, runs: &[(&str, Run)]) -> (Verdict, String) {
             )
         })
         .collect();
-    let text = format!(
-        "{} at {}: {}",
-        plan.title,
-        speed(plan),
-        sentences.join(" With the same road and setting, ")
-    );
+    let (stop, join) = match one_setting {
+        true => (":", " With the same road and setting, "),
+        false => (".", " "),
+    };
+    let text = format!("{} at {}{stop} {}", plan.title, speed(plan), sentences.join(join));
     (if failed { Verdict::Fail } else { Verdict::Pass }, text)
 }
 
 /// Plan, steering and response.
-fn course(page: &mut Page, plan: &Plan, runs: &[(&str, Run)]) {
-    let path = |(name, run): &(&str, Run)| Path {
+fn course(page: &mut Page, plan: &Plan, drives: &[Driven]) {
+    let path = |Driven { name, run, .. }: &Driven| Path {
         name: (*name).to_owned(),
         ahead_m: column(run, |s| s.station_m),
         left_m: column(run, |s| s.lateral_m),
         yaw_rad: column(run, |s| s.yaw_rad),
     };
-    let paths: Vec<Path> = runs.iter().map(path).collect();
+    let paths: Vec<Path> = drives.iter().map(path).collect();
     page.section("Course")
         .figure(map(&plan.track, &paths, plan.outline_m()));
     if matches!(plan.course.manoeuvre, Manoeuvre::ConstantRadius { .. }) {
-        page.figure(over_lateral(runs));
+        page.figure(over_lateral(drives));
     }
     page.figure(over_time(
         "Steering and response",
-        runs,
+        drives,
         &[
             ("Steer angle", "degrees", &|s| s.steer_rad.to_degrees()),
             ("Lateral", "m/s2", &|s| s.lateral_acceleration_m_s2),
@@ -142,7 +150,7 @@ fn course(page: &mut Page, plan: &Plan, runs: &[(&str, Run)]) {
 }
 
 /// What ISO 4138 draws of a steady circle.
-fn over_lateral(runs: &[(&str, Run)]) -> Curves {
+fn over_lateral(drives: &[Driven]) -> Curves {
     let mut figure = Curves::new(
         "Roll and steer over lateral acceleration",
         Axis::new("Lateral acceleration", "m/s2"),
@@ -158,7 +166,7 @@ fn over_lateral(runs: &[(&str, Run)]) -> Curves {
     figure.height(560);
     for (quantity, unit, of) in panels {
         figure.panel(Axis::new(quantity, unit));
-        for (name, run) in runs {
+        for Driven { name, run, .. } in drives {
             let x = column(run, |s| s.lateral_acceleration_m_s2);
             figure.series(Style::Line, name, &x, &column(run, of));
         }
@@ -166,13 +174,13 @@ fn over_lateral(runs: &[(&str, Run)]) -> Curves {
     figure
 }
 
-/// Panels over time, with a line for each model.
-fn over_time(title: &str, runs: &[(&str, Run)], panels: &[Panel]) -> Curves {
+/// Panels over time, with a line for each drive.
+fn over_time(title: &str, drives: &[Driven], panels: &[Panel]) -> Curves {
     let mut figure = Curves::new(title, Axis::new("Time", "s"));
     figure.link("time");
     for (quantity, unit, of) in panels {
         figure.panel(Axis::new(quantity, unit));
-        for (name, run) in runs {
+        for Driven { name, run, .. } in drives {
             figure.line(name, &column(run, |s| s.time_s), &column(run, of));
         }
     }

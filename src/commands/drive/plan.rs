@@ -19,6 +19,7 @@ use oleo_report::significant;
 use super::arguments::{Args, Kind, Model, Setting};
 use super::suspension::{Valves, struts};
 use crate::commands::course_arguments::option_failure;
+use crate::commands::parameter_files;
 use crate::failure::Failure;
 
 /// Temperature at which the struts were charged, degrees Celsius.
@@ -28,7 +29,8 @@ pub struct Plan {
     pub title: &'static str,
     pub course: Course,
     pub track: Track,
-    pub vehicle: VehicleParameters,
+    on_struts: VehicleParameters,
+    on_coil_springs: VehicleParameters,
     handling: HandlingParameters,
     struts: Corners<TemperedStrut>,
     /// What the controller knows of the vehicle.
@@ -76,28 +78,24 @@ impl Plan {
             0.0 => {}
             percent => road_name += &format!(", side slope of {percent} %"),
         }
-        if args.setting == Setting::Baseline && args.gas_temperature_c.is_some() {
-            return Err(Failure::new(
-                "--gas-temperature-c: coil springs contain no gas; use another --setting or leave the option out",
-            ));
-        }
         let celsius = args.gas_temperature_c.unwrap_or(CHARGED_AT_C);
         within("--gas-temperature-c", celsius, -60.0, 120.0)?;
         let load = args.course.load.unwrap_or_default();
-        let described = describe(&vehicle, &handling, &StrutModel::defender110(1.0));
+        let strut = match &args.strut {
+            Some(path) => parameter_files::strut(path)?,
+            None => StrutModel::defender110(1.0),
+        };
+        let described = describe(&vehicle, &handling, &strut);
         let levelled = load.at_ride_height(&vehicle);
         let struts = levelled
             .static_strut_load_n()
-            .map(|load_n| TemperedStrut::new(&StrutModel::defender110(load_n), celsius + 273.15));
-        let vehicle = match args.setting {
-            Setting::Baseline => load.on_coil_springs(&vehicle),
-            _ => levelled.raised(struts.each_ref().by_axle().map(|(left, _)| left.rise_m)),
-        };
+            .map(|load_n| TemperedStrut::new(&strut.clone().charged_for(load_n), celsius + 273.15));
         Ok(Self {
             title: kind.title(),
             course,
             track,
-            vehicle,
+            on_struts: levelled.raised(struts.each_ref().by_axle().map(|(left, _)| left.rise_m)),
+            on_coil_springs: load.on_coil_springs(&vehicle),
             handling,
             struts,
             described,
@@ -105,15 +103,31 @@ impl Plan {
         })
     }
 
+    /// Name of the vehicle, whatever it stands on.
+    pub fn vehicle_name(&self) -> &str {
+        &self.on_struts.name
+    }
+
+    /// The vehicle with its load on one of its suspensions.
+    fn vehicle(&self, setting: Setting) -> &VehicleParameters {
+        match setting {
+            Setting::Baseline => &self.on_coil_springs,
+            _ => &self.on_struts,
+        }
+    }
+
     /// How much the gas's temperature raises the body in front and at the rear, m.
-    pub fn rise_m(&self) -> (f64, f64) {
+    pub fn rise_m(&self, setting: Setting) -> (f64, f64) {
+        if setting == Setting::Baseline {
+            return (0.0, 0.0);
+        }
         let rise = self.struts.each_ref().map(|strut| strut.rise_m);
         (rise[Corner::FrontLeft], rise[Corner::RearLeft])
     }
 
     /// Corners of the body seen from above, ahead and left of its centre of mass, m.
     pub fn outline_m(&self) -> [[f64; 2]; 4] {
-        self.handling.outline.corners_m(&self.vehicle)
+        self.handling.outline.corners_m(&self.on_struts)
     }
 
     /// Displacements as sensors say that were set to zero when the struts were charged.
@@ -123,7 +137,7 @@ impl Plan {
 
     /// With the handling model.
     pub fn handling(&self, setting: Setting) -> Result<Run, Failure> {
-        let (vehicle, handling) = (&self.vehicle, &self.handling);
+        let (vehicle, handling) = (self.vehicle(setting), &self.handling);
         if setting == Setting::Baseline {
             let drive = Drive::begin(&self.course, vehicle, handling, CoilElement::of_vehicle(vehicle))?;
             return Ok(drive.to_end(|_| Default::default(), |_| {})?);
@@ -142,25 +156,26 @@ impl Plan {
         let road = Arc::clone(&self.course.road);
         let speed_m_s = self.course.manoeuvre.initial_speed_m_s();
         if setting == Setting::Baseline {
-            let mut model = BaselineVehicle::baseline(&self.vehicle, road, speed_m_s)?;
-            return Ok(self.ride_out(&mut model, |_| Default::default()));
+            let mut model = BaselineVehicle::baseline(self.vehicle(setting), road, speed_m_s)?;
+            return Ok(self.ride_out(setting, &mut model, |_| Default::default()));
         }
         let mut valves = Valves::new(setting, self.described)?;
         let struts = struts(&self.struts, valves.at_start())?;
-        let mut model = RideVehicle::new(&self.vehicle, struts, road, speed_m_s)?;
+        let mut model = RideVehicle::new(self.vehicle(setting), struts, road, speed_m_s)?;
         let decide = |model: &RideVehicle| {
             let signals = valves.decide(self.sensed_m(model.strut_displacement_m()), model.strut_output());
             (signals, signals)
         };
-        Ok(self.ride_out(&mut model, decide))
+        Ok(self.ride_out(setting, &mut model, decide))
     }
 
     fn ride_out<E: SuspensionElement>(
         &self,
+        setting: Setting,
         model: &mut RideModel<E>,
         mut decide: impl FnMut(&RideModel<E>) -> (Corners<E::Signal>, Signals),
     ) -> Run {
-        let vehicle = &self.vehicle;
+        let vehicle = self.vehicle(setting);
         let seats = Seats::from_fn(|seat| vehicle.seat_place_m(seat));
         let steps_a_tick = (TICK_S / model.step_s()).round().max(1.0) as usize;
         let ticks = (self.course.manoeuvre.duration_s(&self.track) / TICK_S).round() as usize;
@@ -201,13 +216,37 @@ impl Plan {
     }
 }
 
-/// Refuses an option that the model has no use for, before its file is read.
+/// Refuses an option that nothing has a use for, before its file is read.
 pub fn refuse_unused(args: &Args) -> Result<(), Failure> {
+    if args.model == Model::Both && args.setting.len() > 1 {
+        return Err(Failure::new(
+            "--model both: two models are compared with one setting; give one --setting, or one model",
+        ));
+    }
+    if let Some(twice) = (args.setting.iter().enumerate()).find_map(|(i, s)| args.setting[..i].contains(s).then_some(s))
+    {
+        return Err(Failure::new(format!(
+            "--setting: {} is there twice; name each setting once",
+            twice.name()
+        )));
+    }
     // The controller knows some of the handling parameters, whatever drives.
-    if args.model == Model::Ride && args.handling.is_some() && args.setting != Setting::Controlled {
+    if args.model == Model::Ride && args.handling.is_some() && !args.setting.contains(&Setting::Controlled) {
         return Err(Failure::new(
             "--handling: the ride model does not use handling parameters: take --model handling, or leave it out",
         ));
+    }
+    if args.setting == [Setting::Baseline] {
+        if args.gas_temperature_c.is_some() {
+            return Err(Failure::new(
+                "--gas-temperature-c: coil springs contain no gas; use another --setting or leave the option out",
+            ));
+        }
+        if args.strut.is_some() {
+            return Err(Failure::new(
+                "--strut: the vehicle as sold stands on coil springs; use another --setting or leave the option out",
+            ));
+        }
     }
     Ok(())
 }

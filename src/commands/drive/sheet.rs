@@ -1,15 +1,17 @@
 //! Writes the results of a drive: tables, CSV files and the page.
 
 use oleo_hil::page::ending_in_words;
-use oleo_plant_sim::course::{Run, Sample};
+use oleo_plant_sim::course::Sample;
 use oleo_report::{Column, OutputDirectory, Table, significant};
 use serde_json::{Map, Value, json};
 
-use super::arguments::Args;
+use super::arguments::{Args, Model};
 use super::columns::{COLUMNS, Signal, column};
+use super::driven::Driven;
 use super::measures::{Measure, measures};
-use super::page::{page, verdict};
+use super::page::{page, settings, verdict};
 use super::plan::Plan;
+use crate::commands::parameter_files::keep;
 use crate::failure::Failure;
 
 /// RMS of the difference over RMS of the first, at the same places of the road: the handling model's speed gives way on
@@ -49,27 +51,18 @@ const COMPARED: [(&str, &str, Signal); 5] = [
 ];
 
 /// Prints the table and writes the folder.
-pub fn publish(
-    plan: &Plan,
-    args: &Args,
-    runs: &[(&str, Run)],
-    mut out: Option<OutputDirectory>,
-) -> Result<(), Failure> {
+pub fn publish(plan: &Plan, args: &Args, drives: &[Driven], mut out: Option<OutputDirectory>) -> Result<(), Failure> {
     let mut columns = vec![Column::text("Measure")];
-    columns.extend(runs.iter().map(|(name, _)| Column::number(name)));
+    columns.extend(drives.iter().map(|driven| Column::number(driven.name)));
     columns.push(Column::text("Unit"));
     let mut table = Table::new(columns);
     let mut summary = Map::new();
     let mut row = vec!["end of the run".to_owned()];
-    row.extend(
-        runs.iter()
-            .map(|(_, run)| ending_in_words(Some(run.ending), run.cone_margin_m)),
-    );
+    row.extend((drives.iter()).map(|Driven { run, .. }| ending_in_words(Some(run.ending), run.cone_margin_m)));
     row.push(String::new());
     table.row(row);
-    let all: Vec<Vec<Measure>> = runs
-        .iter()
-        .map(|(_, run)| measures(plan, run, args.score_from_s))
+    let all: Vec<Vec<Measure>> = (drives.iter())
+        .map(|driven| measures(plan, driven, args.score_from_s))
         .collect();
     let longest = all.iter().max_by_key(|list| list.len()).cloned().unwrap_or_default();
     for (key, words, _, unit) in longest {
@@ -82,7 +75,7 @@ pub fn publish(
         row.push(unit.to_owned());
         table.row(row);
     }
-    for ((name, run), list) in runs.iter().zip(&all) {
+    for (Driven { name, run, .. }, list) in drives.iter().zip(&all) {
         let mut entry: Map<String, Value> = list.iter().map(|m| (m.0.to_owned(), json!(m.2))).collect();
         entry.insert("ending".into(), json!(run.ending.word()));
         if let Some(margin_m) = run.cone_margin_m {
@@ -92,21 +85,21 @@ pub fn publish(
         summary.insert(name.replace(' ', "_"), Value::Object(entry));
     }
     let mut comparison = None;
-    if let [(_, one), (_, other)] = runs {
+    if let (Model::Both, [ride, handling]) = (args.model, drives) {
         let mut rows = Table::new([
             Column::text("Signal"),
             Column::number("RMS difference at the same place on the road / RMS of the ride model"),
         ]);
         for (key, words, of) in COMPARED {
-            let ratio = difference(&one.history, &other.history, of);
+            let ratio = difference(&ride.run.history, &handling.run.history, of);
             rows.row([words.to_owned(), format!("{:.1} %", 100.0 * ratio)]);
             summary.insert(format!("difference_{key}"), json!(ratio));
         }
         comparison = Some(rows);
     }
     if let Some(out) = &mut out {
-        let page = page(plan, args, runs, &table, comparison.as_ref());
-        for (name, run) in runs {
+        let page = page(plan, drives, &table, comparison.as_ref());
+        for Driven { name, run, .. } in drives {
             let columns: Vec<(&str, Vec<f64>)> = COLUMNS.iter().map(|(name, of)| (*name, column(run, *of))).collect();
             let columns: Vec<(&str, &[f64])> = columns
                 .iter()
@@ -114,6 +107,12 @@ pub fn publish(
                 .collect();
             out.csv(&format!("{}.csv", name.replace(' ', "-")), &columns)?;
         }
+        keep(
+            out,
+            args.vehicle.as_deref(),
+            args.handling.as_deref(),
+            args.strut.as_deref(),
+        )?;
         out.summary("summary.json", Some(args.seed), &summary)?;
         out.page(&page)?;
     }
@@ -121,8 +120,8 @@ pub fn publish(
         "{}: road {}, {}\n{}\n{table}{}",
         plan.title,
         plan.road_name,
-        args.setting.name(),
-        verdict(plan, runs).1,
+        settings(drives),
+        verdict(plan, drives).1,
         comparison.map_or(String::new(), |table| table.to_string())
     );
     args.results.publish(out, &text)

@@ -6,6 +6,7 @@ use oleo_plant_sim::strut::StrutModel;
 use oleo_report::{OutputDirectory, Page};
 use serde_json::{Map, Value};
 
+use crate::commands::parameter_files::strut;
 use crate::failure::Failure;
 use crate::results::{ResultsArgs, command_line};
 
@@ -32,12 +33,7 @@ impl Specimen {
     /// Reads the strut's model from its file, or takes the built-in one.
     pub fn model(&self) -> Result<StrutModel, Failure> {
         match &self.strut {
-            Some(path) => {
-                let name = path.display().to_string();
-                let text = std::fs::read_to_string(path)
-                    .map_err(|error| Failure::new(format!("{name}: cannot read the model: {error}; check the path")))?;
-                Ok(StrutModel::from_toml(&text, &name)?)
-            }
+            Some(path) => strut(path),
             None if self.static_load_n.is_finite() && (500.0..=40_000.0).contains(&self.static_load_n) => {
                 Ok(StrutModel::defender110(self.static_load_n))
             }

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use oleo_plant_sim::course::DriverStyle;
-use oleo_plant_sim::study::{Bench, Conditions, Ledger};
+use oleo_plant_sim::study::{Bench, Conditions, DAMPER_FACTORS, GAS_VOLUMES_M3, Ledger, Surface, sweep};
 use oleo_plant_sim::vehicle::Load;
-use oleo_report::OutputDirectory;
+use oleo_report::interrupt::Graceful;
+use oleo_report::{OutputDirectory, Progress};
 
 use crate::commands::parameter_files::parameters;
 use crate::commands::word::word;
@@ -79,13 +80,26 @@ impl Drive {
         Ok(pool.install(work))
     }
 
+    /// Runs what the ledger does not know of the 70 combinations, with a bar of this name.
+    pub fn surface(&self, name: &str, bench: &Bench, ledger: &Ledger) -> Result<Surface, Failure> {
+        let (volumes, factors) = (&GAS_VOLUMES_M3, &DAMPER_FACTORS);
+        let progress = Progress::new(name, 2 * (volumes.len() * factors.len()) as u64);
+        // After the first Ctrl-C the running simulations are completed and stored.
+        let graceful = Graceful::begin();
+        let (progress, graceful) = (&progress, &graceful);
+        let done = move || progress.add(1);
+        let stop = move || graceful.requested();
+        Ok(self.on_threads(move || sweep(bench, ledger, volumes, factors, done, stop))??)
+    }
+
     /// The finished runs and the staged results of `study`. Finished runs are kept in the folder itself, as they end.
     pub fn stage(&self, study: &str, bench: &Bench) -> Result<(Ledger, Option<OutputDirectory>), Failure> {
         let inputs = self.vehicle.iter().chain(&self.handling).cloned().collect();
         let (command, name) = (format!("oleo study {study}"), format!("study-{study}"));
-        match self.results.stage_with_ledger(&command, &name, inputs, "runs.csv")? {
-            Some((out, ledger)) => Ok((Ledger::open(&ledger, bench)?, Some(out))),
-            None => Ok((Ledger::in_memory(bench), None)),
-        }
+        let (out, ledger) = self.results.stage_with_ledger(&command, &name, inputs, "runs.csv")?;
+        Ok(match ledger {
+            Some(path) => (Ledger::open(&path, bench)?, out),
+            None => (Ledger::in_memory(bench), out),
+        })
     }
 }

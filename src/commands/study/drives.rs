@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use oleo_controller::{DamperPolicy, Strategy};
 use oleo_hil::comparison::{Bench, Setting};
+use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::study::Records;
 use oleo_report::OutputDirectory;
 
-use crate::commands::parameter_files::parameters;
+use crate::commands::parameter_files::{parameters, strut};
 use crate::failure::Failure;
 use crate::results::ResultsArgs;
 
@@ -20,6 +21,10 @@ pub struct Drives {
     /// File of handling parameters [default: the built-in defender110]
     #[arg(long, value_name = "HANDLING.toml")]
     handling: Option<PathBuf>,
+    /// Strut model, such as the model.toml that oleo diagnose writes; it is charged for the load that it carries [default: the
+    /// built-in defender110]
+    #[arg(long, value_name = "MODEL.toml")]
+    strut: Option<PathBuf>,
     /// Number of threads [default: all cores]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
@@ -28,10 +33,14 @@ pub struct Drives {
 }
 
 impl Drives {
-    /// The vehicle on the built-in struts.
+    /// The vehicle on its struts.
     pub fn bench(&self) -> Result<Bench, Failure> {
         let (vehicle, handling) = parameters(self.vehicle.as_ref(), self.handling.as_ref())?;
-        Ok(Bench::new(vehicle, handling))
+        let strut = match &self.strut {
+            Some(path) => strut(path)?,
+            None => StrutModel::defender110(1.0),
+        };
+        Ok(Bench::new(vehicle, handling, &strut))
     }
 
     /// Runs `work` on the threads asked for.
@@ -46,12 +55,14 @@ impl Drives {
 
     /// The finished drives and the staged results of `study`. Finished drives are kept in the folder itself, as they end.
     pub fn stage(&self, study: &str) -> Result<(Records, Option<OutputDirectory>), Failure> {
-        let inputs = self.vehicle.iter().chain(&self.handling).cloned().collect();
+        let files = [&self.vehicle, &self.handling, &self.strut];
+        let inputs = files.into_iter().flatten().cloned().collect();
         let (command, name) = (format!("oleo study {study}"), format!("study-{study}"));
-        match self.results.stage_with_ledger(&command, &name, inputs, "drives.csv")? {
-            Some((out, ledger)) => Ok((Records::open(&ledger)?, Some(out))),
-            None => Ok((Records::in_memory(), None)),
-        }
+        let (out, records) = self.results.stage_with_ledger(&command, &name, inputs, "drives.csv")?;
+        Ok(match records {
+            Some(path) => (Records::open(&path)?, out),
+            None => (Records::in_memory(), out),
+        })
     }
 }
 

@@ -3,8 +3,10 @@
 use std::process::ExitCode;
 
 use oleo_interface::{Axle, Axles};
-use oleo_plant_sim::study::{DAMPER_FACTORS, GAS_VOLUMES_M3, Objective, Optimum, Visit, Weights, optimise};
-use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Progress, Style, Table, significant};
+use oleo_plant_sim::study::{DAMPER_FACTORS, GAS_VOLUMES_M3, Objective, Optimum, Surface, Visit, Weights, optimise};
+use oleo_report::{
+    Axis, Column, Curves, Field, FieldStyle, OutputDirectory, Page, Progress, Style, Table, significant,
+};
 use serde_json::json;
 
 use super::drive::Drive;
@@ -28,6 +30,9 @@ pub struct Args {
     /// Optimise front and rear axle separately
     #[arg(long)]
     per_axle: bool,
+    /// Also run the 70 combinations of the sweep, and draw the objective as contours under the path
+    #[arg(long, conflicts_with_all = ["per_axle", "no_out"])]
+    map: bool,
     /// Largest number of iterations
     #[arg(long, value_name = "N", default_value_t = 60)]
     iterations: u64,
@@ -59,10 +64,15 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         .drive
         .on_threads(|| optimise(&bench, &ledger, objective, &done))??;
     drop(progress);
+    let surface = match args.map {
+        true => Some(args.drive.surface("map", &bench, &ledger)?),
+        false => None,
+    };
 
     let table = outcome(&optimum);
     if let Some(out) = &mut out {
-        write(out, args.drive.seed, &optimum, &table)?;
+        let map = surface.map(|surface| map(&weights, &optimum, &surface));
+        write(out, args.drive.seed, &optimum, &table, map)?;
     }
     args.drive.results.publish(out, &table.to_string())?;
     Ok(ExitCode::SUCCESS)
@@ -104,7 +114,53 @@ fn outcome(optimum: &Optimum) -> Table {
     table
 }
 
-fn write(out: &mut OutputDirectory, seed: u64, optimum: &Optimum, table: &Table) -> Result<(), Failure> {
+/// The objective over the sweep's combinations, under the path of the search.
+fn map(weights: &Weights, optimum: &Optimum, surface: &Surface) -> Field {
+    let reference = &optimum.path[0];
+    let value = |i: usize, j: usize| {
+        let (ride, handling) = (surface.ride[i][j], surface.handling[i][j]);
+        let ended_well =
+            (reference.ride.is_none() || ride.completed) && (reference.handling.is_none() || handling.completed);
+        match ended_well {
+            true => weights.objective(Some(ride), Some(handling), (reference.ride, reference.handling)),
+            false => f64::NAN,
+        }
+    };
+    let litres: Vec<f64> = surface.gas_volumes_m3.iter().map(|volume| 1e3 * volume).collect();
+    let rows: Vec<Vec<f64>> = (0..surface.damper_factors.len())
+        .map(|j| (0..litres.len()).map(|i| value(i, j)).collect())
+        .collect();
+    let axes = [
+        Axis::new("Static gas volume", "l").logarithmic(),
+        Axis::new("Damper factor", ""),
+        Axis::new("Objective", ""),
+    ];
+    let title = "Objective and path of the search";
+    let mut field = Field::new(
+        title,
+        FieldStyle::Contour,
+        axes,
+        &litres,
+        &surface.damper_factors,
+        &rows,
+    );
+    let volume = |visit: &Visit| 1e3 * visit.case.gas_volume_m3.front;
+    let factor = |visit: &Visit| visit.case.damper_factor.front;
+    let path = |of: &dyn Fn(&Visit) -> f64| optimum.path.iter().map(of).collect::<Vec<f64>>();
+    field
+        .path("search", &path(&volume), &path(&factor))
+        .path("best", &[volume(&optimum.best)], &[factor(&optimum.best)])
+        .caption("In a gap the vehicle did not end a drive well.");
+    field
+}
+
+fn write(
+    out: &mut OutputDirectory,
+    seed: u64,
+    optimum: &Optimum,
+    table: &Table,
+    map: Option<Field>,
+) -> Result<(), Failure> {
     let column = |of: &dyn Fn(&Visit) -> f64| optimum.path.iter().map(of).collect::<Vec<f64>>();
     let volume = Axles::from_fn(|axle| column(&|v| 1e3 * v.case.gas_volume_m3[axle]));
     let factor = Axles::from_fn(|axle| column(&|v| v.case.damper_factor[axle]));
@@ -161,7 +217,12 @@ fn write(out: &mut OutputDirectory, seed: u64, optimum: &Optimum, table: &Table)
     let panel = progress.panel(Axis::new("Objective", ""));
     panel.series(Style::Points, "evaluated", &number, &objective);
     panel.series(Style::Step, "best so far", &number, &best);
-    page.section("Path").figure(path).figure(progress);
+    page.section("Path");
+    match map {
+        Some(map) => page.figure(map),
+        None => page.figure(path),
+    };
+    page.figure(progress);
     out.summary(
         "summary.json",
         Some(seed),

@@ -2,9 +2,8 @@
 
 use std::process::ExitCode;
 
-use oleo_plant_sim::study::{DAMPER_FACTORS, Finding, GAS_VOLUMES_M3, Surface, findings, sweep};
-use oleo_report::interrupt::Graceful;
-use oleo_report::{Axis, Cell, Column, Field, FieldStyle, OutputDirectory, Page, Progress, Table, Verdict};
+use oleo_plant_sim::study::{Finding, Surface, findings};
+use oleo_report::{Axis, Cell, Column, Curves, Field, FieldStyle, OutputDirectory, Page, Style, Table, Verdict};
 use serde_json::json;
 
 use super::drive::Drive;
@@ -25,24 +24,7 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let bench = args.drive.bench()?;
     let (ledger, mut out) = args.drive.stage("sweep", &bench)?;
-    let progress = Progress::new("sweep", 2 * (GAS_VOLUMES_M3.len() * DAMPER_FACTORS.len()) as u64);
-    let surface = {
-        // After the first Ctrl-C the running simulations are completed and stored.
-        let graceful = Graceful::begin();
-        let (bench, ledger, progress, graceful) = (&bench, &ledger, &progress, &graceful);
-        args.drive.on_threads(move || {
-            let stop = || graceful.requested();
-            sweep(
-                bench,
-                ledger,
-                &GAS_VOLUMES_M3,
-                &DAMPER_FACTORS,
-                || progress.add(1),
-                stop,
-            )
-        })??
-    };
-    drop(progress);
+    let surface = args.drive.surface("sweep", &bench, &ledger)?;
     let conclusions = findings(&surface);
     let met = conclusions.iter().all(|finding| finding.met || !finding.conclusion);
 
@@ -122,6 +104,91 @@ fn grid_table(surface: &Surface) -> Table {
     table
 }
 
+/// A measure as contours, with a mark at its lowest value.
+fn contour(measure: &str, unit: &str, litres: &[f64], factors: &[f64], values: &[Vec<f64>]) -> Field {
+    let axes = [
+        Axis::new("Static gas volume", "l").logarithmic(),
+        Axis::new("Damper factor", ""),
+        Axis::new(measure, unit),
+    ];
+    let mut field = Field::new(measure, FieldStyle::Contour, axes, litres, factors, values);
+    let lowest = cells(values)
+        .filter(|(j, i)| values[*j][*i].is_finite())
+        .min_by(|a, b| values[a.0][a.1].total_cmp(&values[b.0][b.1]));
+    if let Some((j, i)) = lowest {
+        field.path("lowest", &[litres[i]], &[factors[j]]);
+    }
+    field
+}
+
+/// Rows and columns of a field.
+fn cells(values: &[Vec<f64>]) -> impl Iterator<Item = (usize, usize)> {
+    (values.iter().enumerate()).flat_map(|(j, row)| (0..row.len()).map(move |i| (j, i)))
+}
+
+/// The cells than which no other has both a lower RMS and a lower roll, by rising RMS.
+fn front(rms: &[Vec<f64>], roll: &[Vec<f64>]) -> Vec<(usize, usize)> {
+    let mut all: Vec<(usize, usize)> = cells(rms)
+        .filter(|&(j, i)| rms[j][i].is_finite() && roll[j][i].is_finite())
+        .collect();
+    all.sort_by(|a, b| (rms[a.0][a.1].total_cmp(&rms[b.0][b.1])).then(roll[a.0][a.1].total_cmp(&roll[b.0][b.1])));
+    let mut least = f64::INFINITY;
+    all.retain(|&(j, i)| {
+        let better = roll[j][i] < least;
+        least = least.min(roll[j][i]);
+        better
+    });
+    all
+}
+
+fn ride_against_roll(rms: &[Vec<f64>], roll: &[Vec<f64>], front: &[(usize, usize)]) -> Curves {
+    let mut figure = Curves::new(
+        "Ride against roll",
+        Axis::new("Weighted RMS, mean of both seats", "m/s2"),
+    );
+    figure.caption(
+        "A point for each combination. No combination is better in both than those on the line, which the table lists.",
+    );
+    let of = |values: &[Vec<f64>], places: &[(usize, usize)]| {
+        places.iter().map(|&(j, i)| values[j][i]).collect::<Vec<f64>>()
+    };
+    let all: Vec<(usize, usize)> = cells(rms).collect();
+    figure
+        .panel(Axis::new("Largest body roll", "degrees"))
+        .series(Style::Points, "all combinations", &of(rms, &all), &of(roll, &all))
+        .series(
+            Style::LineAndPoints,
+            "best compromises",
+            &of(rms, front),
+            &of(roll, front),
+        );
+    figure
+}
+
+fn front_table(
+    litres: &[f64],
+    factors: &[f64],
+    rms: &[Vec<f64>],
+    roll: &[Vec<f64>],
+    front: &[(usize, usize)],
+) -> Table {
+    let mut table = Table::new([
+        Column::number("Gas volume, l"),
+        Column::number("Damper factor"),
+        Column::number("Weighted RMS, m/s2"),
+        Column::number("Largest roll, degrees"),
+    ]);
+    for &(j, i) in front {
+        table.row([
+            format!("{:.2}", litres[i]),
+            format!("{}", factors[j]),
+            format!("{:.2}", rms[j][i]),
+            format!("{:.2}", roll[j][i]),
+        ]);
+    }
+    table
+}
+
 /// The field's rows are damper factors, its columns gas volumes.
 fn field(surface: &Surface, value: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
     let columns = 0..surface.gas_volumes_m3.len();
@@ -153,50 +220,44 @@ fn write(
         true => surface.handling[i][j].max_roll_rad.to_degrees(),
         false => f64::NAN,
     });
-    let axes = |quantity: &str, unit: &str| {
-        [
-            Axis::new("Static gas volume", "l").logarithmic(),
-            Axis::new("Damper factor", ""),
-            Axis::new(quantity, unit),
-        ]
-    };
-    let both = |title: &str, quantity: &str, unit: &str, values: &[Vec<f64>]| {
-        [FieldStyle::Surface, FieldStyle::Contour]
-            .map(|style| Field::new(title, style, axes(quantity, unit), &litres, factors, values))
-    };
     let mut page = Page::new("Design study: gas volume and damping", &command_line());
     let verdict = if met { Verdict::Pass } else { Verdict::Fail };
     page.verdict(verdict, &verdict_sentence(conclusions));
     page.outcome(table.clone());
-    page.section("Ride comfort (figure 8)").text(
-        "The figures show the vertical acceleration at the seats on Belgian block, frequency-weighted according to BS 6841. \
-         In a gap the vehicle did not stay on the road.",
+    page.section("Measures over gas volume and damping (figures 8 and 9)").text(
+        "The vertical acceleration at the seats on Belgian block is frequency-weighted according to BS 6841. The roll is that of the \
+         severe double lane change of ISO 3888-1. In a gap the vehicle rolled over, spun or left the track. The mark is the lowest value \
+         of the 70 combinations.",
     );
-    for (title, values) in [
-        ("Weighted RMS at the driver", ride(|r| r.driver_rms_m_s2)),
+    let measures = [
+        ("Weighted RMS, mean of both seats", "m/s2", ride(|r| r.mean_rms_m_s2())),
+        ("Weighted RMS at the driver", "m/s2", ride(|r| r.driver_rms_m_s2)),
         (
             "Weighted RMS at the left rear passenger",
+            "m/s2",
             ride(|r| r.passenger_rms_m_s2),
         ),
-    ] {
-        for figure in both(title, "Weighted RMS", "m/s2", &values) {
-            page.figure(figure);
-        }
-    }
-    page.section("Motion sickness");
-    for figure in both(
-        "Motion sickness dose, mean of both seats",
-        "Dose",
-        "m/s^1.5",
-        &ride(|r| r.mean_msdv_m_s1_5()),
-    ) {
-        page.figure(figure);
-    }
-    page.section("Handling (figure 9)")
-        .text("The figures show the severe double lane change of ISO 3888-1. In a gap the vehicle rolled over, spun or left the track.");
-    for figure in both("Largest body roll angle", "Roll", "degrees", &roll) {
-        page.figure(figure);
-    }
+        (
+            "Motion sickness dose, mean of both seats",
+            "m/s^1.5",
+            ride(|r| r.mean_msdv_m_s1_5()),
+        ),
+        ("Largest body roll", "degrees", roll.clone()),
+    ];
+    page.choice(
+        "Measure",
+        measures.map(|(measure, unit, values)| {
+            (
+                measure.to_owned(),
+                contour(measure, unit, &litres, factors, &values).into(),
+            )
+        }),
+    );
+    let rms = ride(|r| r.mean_rms_m_s2());
+    let front = front(&rms, &roll);
+    page.section("Ride against roll")
+        .figure(ride_against_roll(&rms, &roll, &front))
+        .table(front_table(&litres, factors, &rms, &roll, &front));
     page.details("All figures", grid_table(surface));
 
     let cells: Vec<(usize, usize)> = (0..litres.len())
@@ -264,6 +325,14 @@ mod tests {
             met,
             conclusion,
         }
+    }
+
+    #[test]
+    fn nothing_is_better_in_both_than_the_front() {
+        let nan = f64::NAN;
+        let rms = [vec![1.0, 2.0, 3.0], vec![2.0, 4.0, nan]];
+        let roll = [vec![9.0, 5.0, 5.0], vec![6.0, 1.0, 0.0]];
+        assert_eq!(front(&rms, &roll), [(0, 0), (0, 1), (1, 1)]);
     }
 
     #[test]

@@ -174,7 +174,10 @@ fn nothing_of_another_command_stays_beside_a_report() {
     let line = refused(&run(folder.path(), &oil));
     assert!(line.contains("has results of oleo hil"), "{line}");
     assert!(run(folder.path(), &[&oil[..], &["--force"]].concat()).status.success());
-    assert_eq!(names(&out), [".oleo", "oil.csv", "report.html", "summary.json"]);
+    assert_eq!(
+        names(&out),
+        [".oleo", "oil.csv", "report.html", "strut.toml", "summary.json"]
+    );
     fs::write(out.join("summary.json"), "{}").expect("edited");
     let line = refused(&run(folder.path(), &oil));
     assert!(line.contains("summary.json: is not as oleo wrote it"), "{line}");

@@ -252,9 +252,10 @@ impl Curves {
             layout[axis_key("yaxis", index)] = y_axis;
             shapes.extend(panel.shapes.into_iter().map(|shape| in_panel(shape, &y_name)));
             annotations.extend(panel.annotations.into_iter().map(|note| in_panel(note, &y_name)));
+            let middle = middle(&panel.series);
             for series in panel.series {
                 let first = !named.contains(&series.name);
-                traces.push(series.into_trace(&y_name, first, &mut named));
+                traces.push(series.into_trace(&y_name, first, middle, &mut named));
             }
         }
         layout["shapes"] = json!(shapes);
@@ -271,7 +272,8 @@ impl Curves {
 }
 
 impl Series {
-    fn into_trace(self, y_axis: &str, in_legend: bool, named: &mut Vec<String>) -> Box<dyn Trace> {
+    /// `middle` is the middle of the panel's horizontal axis: a name stands on the side of its point where there is more room.
+    fn into_trace(self, y_axis: &str, in_legend: bool, middle: f64, named: &mut Vec<String>) -> Box<dyn Trace> {
         let colour = colour(self.colour);
         let line = match self.style {
             Style::Dashed => Line::new().dash(DashType::Dash),
@@ -285,6 +287,7 @@ impl Series {
             _ => Mode::Lines,
         };
         let name = escape_plotly(&self.name);
+        let at_first = self.x.first().copied();
         let mut trace = Scatter::new(self.x, self.y)
             .name(&name)
             .legend_group(&name)
@@ -300,9 +303,13 @@ impl Series {
             trace = trace.hover_info(HoverInfo::Skip);
         }
         if self.style == Style::NamedPoints {
+            let position = match at_first {
+                Some(x) if x > middle => Position::TopLeft,
+                _ => Position::TopRight,
+            };
             trace = trace
                 .text_array(vec![name.as_str()])
-                .text_position(Position::TopCenter)
+                .text_position(position)
                 .clip_on_axis(false);
         }
         if let Some((above, below)) = self.interval {
@@ -347,6 +354,12 @@ fn in_panel(mut item: Value, y_name: &str) -> Value {
         json!("x")
     };
     item
+}
+
+/// Half-way between the least and the greatest place of all series.
+fn middle(series: &[Series]) -> f64 {
+    let places = || series.iter().flat_map(|series| series.x.iter().copied());
+    0.5 * (places().fold(f64::INFINITY, f64::min) + places().fold(f64::NEG_INFINITY, f64::max))
 }
 
 fn turns_back(x: &[f64]) -> bool {

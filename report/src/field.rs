@@ -76,9 +76,9 @@ impl Field {
 
     fn into_figure(self) -> Figure {
         let [x_axis, y_axis, z_axis] = &self.axes;
-        // On the side, where a long title does not squeeze the field.
+        // A long title would squeeze the field or be cut off beside it.
         let bar = ColorBar::new()
-            .title(Title::with_text(escape_plotly(&z_axis.label())))
+            .title(Title::with_text(escape_plotly(z_axis.unit())))
             .thickness(14)
             .outline_width(0);
         let scale = ColorScale::Palette(ColorScalePalette::Viridis);
@@ -98,7 +98,10 @@ impl Field {
         let layout = json!({ "xaxis": x_axis.to_json(), "yaxis": y_axis.to_json(), "legend": { "orientation": "h", "y": -0.2 } });
         Figure {
             title: self.title,
-            caption: self.caption,
+            caption: [format!("The colour is: {}.", z_axis.label()), self.caption]
+                .join(" ")
+                .trim_end()
+                .to_owned(),
             height_px: HEIGHT_PX,
             link: None,
             drawing: Drawing { traces, layout },

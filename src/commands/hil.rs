@@ -26,7 +26,7 @@ use strum::VariantNames;
 
 use self::record::{Recorded, record, recorded};
 use super::course_arguments::{CourseArgs, option_failure};
-use super::parameter_files::keep;
+use super::parameter_files::{HANDLING, STRUT, VEHICLE, keep};
 use super::show::{DBC, scenarios};
 use crate::failure::Failure;
 use crate::results::{ResultsArgs, command_line, say};
@@ -307,9 +307,13 @@ fn report(
     }
     if let Some(out) = &mut staged {
         output::write(out, scenario, outcome, &metrics, &summary)?;
-        let given = |name: &'_ String| (name != DEFENDER).then(|| PathBuf::from(name));
-        let [vehicle, handling, strut] = [&scenario.vehicle, &scenario.handling, &scenario.strut].map(given);
-        keep(out, vehicle.as_deref(), handling.as_deref(), strut.as_deref())?;
+        for (kept, name) in [
+            (VEHICLE, &scenario.vehicle),
+            (HANDLING, &scenario.handling),
+            (STRUT, &scenario.strut),
+        ] {
+            keep(out, kept, Some(name).filter(|name| *name != DEFENDER))?;
+        }
         out.write("scenario.toml", scenario.to_toml())?;
         out.write("oleo.dbc", DBC)?;
         out.page(&page::page(scenario, outcome, &metrics, &summary, &command_line()))?;

@@ -38,24 +38,22 @@ pub fn strut(path: &Path) -> Result<StrutModel, Failure> {
     Ok(StrutModel::from_toml(&text, &name)?)
 }
 
-/// Puts the parameters that were used into the results, so that they can be given back: each given file, or what is built in.
+/// Name in the results, and text of what is built in.
+pub const VEHICLE: (&str, &str) = ("vehicle.toml", VehicleParameters::DEFENDER110_TOML);
+pub const HANDLING: (&str, &str) = ("handling.toml", HandlingParameters::DEFENDER110_TOML);
+pub const STRUT: (&str, &str) = ("strut.toml", StrutModel::DEFENDER110_TOML);
+
+/// Puts parameters that were used into the results, so that they can be given back: the given file, or what is built in.
 pub fn keep(
     out: &mut OutputDirectory,
-    vehicle: Option<&Path>,
-    handling: Option<&Path>,
-    strut: Option<&Path>,
+    (name, built_in): (&str, &str),
+    given: Option<impl AsRef<Path>>,
 ) -> Result<(), Failure> {
-    for (name, given, built_in) in [
-        ("vehicle.toml", vehicle, VehicleParameters::DEFENDER110_TOML),
-        ("handling.toml", handling, HandlingParameters::DEFENDER110_TOML),
-        ("strut.toml", strut, StrutModel::DEFENDER110_TOML),
-    ] {
-        match given {
-            Some(path) => out.write(name, read(path, "parameters")?.0)?,
-            None => out.write(name, built_in)?,
-        }
-    }
-    Ok(())
+    let text = match given {
+        Some(path) => read(path.as_ref(), "parameters")?.0,
+        None => built_in.to_owned(),
+    };
+    Ok(out.write(name, text)?)
 }
 
 /// Text and name of a file of `what`.

@@ -233,7 +233,12 @@ pub(super) fn section(page: &mut Page, events: &[Event]) {
             what.to_owned(),
             place.to_owned(),
             times.to_string(),
-            format!("{sum_s:.2}"),
+            // A change of mode is an instant.
+            if sum_s > 0.0 {
+                format!("{sum_s:.2}")
+            } else {
+                "-".to_owned()
+            },
         ]);
     }
     page.table(counted)

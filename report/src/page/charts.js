@@ -6,10 +6,9 @@
     const ink = night ? "#e3e8ee" : "#1c2430", grid = night ? "#313a46" : "#dfe4ea", clear = "rgba(0,0,0,0)";
     const axis = { gridcolor: grid, zerolinecolor: night ? "#4a5666" : "#b9c2cc", linecolor: grid, ticks: "outside", tickcolor: grid,
                    showspikes: true, spikemode: "across", spikethickness: 1, spikecolor: "#888888", spikedash: "dot" };
-    const plain = { ...axis, showspikes: false, backgroundcolor: clear };
     return { layout: {
       font: { color: ink, size: 12, family: "system-ui, sans-serif" }, paper_bgcolor: clear, plot_bgcolor: clear,
-      margin: { l: 64, r: 16, t: 34, b: 46 }, xaxis: axis, yaxis: axis, scene: { xaxis: plain, yaxis: plain, zaxis: plain },
+      margin: { l: 64, r: 16, t: 34, b: 46 }, xaxis: axis, yaxis: axis,
       legend: { orientation: "h", x: 0, y: 1, yanchor: "bottom", xanchor: "left" }, hoverlabel: { namelength: -1, bgcolor: night ? "#232a33" : "#ffffff", font: { color: ink } },
       modebar: { bgcolor: clear, color: "#98a4b3", activecolor: "#2b7bbd" }, annotationdefaults: { font: { color: ink } },
     } };

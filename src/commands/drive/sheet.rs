@@ -11,7 +11,7 @@ use super::driven::Driven;
 use super::measures::{Measure, measures};
 use super::page::{page, settings, verdict};
 use super::plan::Plan;
-use crate::commands::parameter_files::keep;
+use crate::commands::parameter_files::{HANDLING, STRUT, VEHICLE, keep};
 use crate::failure::Failure;
 
 /// RMS of the difference over RMS of the first, at the same places of the road: the handling model's speed gives way on
@@ -107,12 +107,9 @@ pub fn publish(plan: &Plan, args: &Args, drives: &[Driven], mut out: Option<Outp
                 .collect();
             out.csv(&format!("{}.csv", name.replace(' ', "-")), &columns)?;
         }
-        keep(
-            out,
-            args.vehicle.as_deref(),
-            args.handling.as_deref(),
-            args.strut.as_deref(),
-        )?;
+        keep(out, VEHICLE, args.vehicle.as_ref())?;
+        keep(out, HANDLING, args.handling.as_ref())?;
+        keep(out, STRUT, args.strut.as_ref())?;
         out.summary("summary.json", Some(args.seed), &summary)?;
         out.page(&page)?;
     }

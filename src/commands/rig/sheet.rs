@@ -55,7 +55,10 @@ impl Specimen {
     ) -> Result<Sheet<'_>, Failure> {
         let inputs = self.strut.iter().chain(recording).cloned().collect();
         let (command, name) = (format!("oleo rig {measurement}"), format!("rig-{measurement}"));
-        let out = self.results.stage(&command, &name, inputs)?;
+        let mut out = self.results.stage(&command, &name, inputs)?;
+        if let Some(out) = &mut out {
+            out.write("strut.toml", model.to_toml())?;
+        }
         let mut page = Page::new(title, &command_line());
         let static_kn = 1e-3 * model.cylinder.static_pressure_pa * model.piston_area_m2();
         page.fact(

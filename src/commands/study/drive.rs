@@ -8,7 +8,7 @@ use oleo_plant_sim::vehicle::Load;
 use oleo_report::interrupt::Graceful;
 use oleo_report::{OutputDirectory, Progress};
 
-use crate::commands::parameter_files::parameters;
+use crate::commands::parameter_files::{HANDLING, VEHICLE, keep, parameters};
 use crate::commands::word::word;
 use crate::failure::Failure;
 use crate::results::ResultsArgs;
@@ -68,6 +68,12 @@ impl Drive {
         };
         // The study's gas springs are charged for what they carry.
         Ok(Bench::new(self.load.at_ride_height(&vehicle), handling, conditions)?)
+    }
+
+    /// Puts the parameters into the results.
+    pub fn keep(&self, out: &mut OutputDirectory) -> Result<(), Failure> {
+        keep(out, VEHICLE, self.vehicle.as_ref())?;
+        keep(out, HANDLING, self.handling.as_ref())
     }
 
     /// Runs `work` on the threads asked for.

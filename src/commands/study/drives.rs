@@ -8,7 +8,7 @@ use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::study::Records;
 use oleo_report::OutputDirectory;
 
-use crate::commands::parameter_files::{parameters, strut};
+use crate::commands::parameter_files::{HANDLING, STRUT, VEHICLE, keep, parameters, strut};
 use crate::failure::Failure;
 use crate::results::ResultsArgs;
 
@@ -41,6 +41,13 @@ impl Drives {
             None => StrutModel::defender110(1.0),
         };
         Ok(Bench::new(vehicle, handling, &strut))
+    }
+
+    /// Puts the parameters into the results.
+    pub fn keep(&self, out: &mut OutputDirectory) -> Result<(), Failure> {
+        keep(out, VEHICLE, self.vehicle.as_ref())?;
+        keep(out, HANDLING, self.handling.as_ref())?;
+        keep(out, STRUT, self.strut.as_ref())
     }
 
     /// Runs `work` on the threads asked for.

@@ -71,6 +71,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
 
     let table = outcome(&optimum);
     if let Some(out) = &mut out {
+        args.drive.keep(out)?;
         let map = surface.map(|surface| map(&weights, &optimum, &surface));
         write(out, args.drive.seed, &optimum, &table, map)?;
     }

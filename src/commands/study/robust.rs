@@ -94,6 +94,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         .collect();
     let table = table(&results);
     if let Some(out) = &mut out {
+        args.drives.keep(out)?;
         write(out, args.first, &results, &over, &table)?;
     }
     let text = format!("{table}{}\n", verdict(results.len(), &over));

@@ -30,6 +30,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
 
     let table = conclusions_table(&conclusions);
     if let Some(out) = &mut out {
+        args.drive.keep(out)?;
         write(out, args.drive.seed, &surface, &conclusions, &table, met)?;
     }
     let text = format!("{}{table}", grid_table(&surface));

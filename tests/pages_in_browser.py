@@ -1,0 +1,178 @@
+"""Opens every kind of page in Chromium, at three widths, light and dark, and lists what a reader would stumble over.
+
+    pages_in_browser.py OLEO CHROMIUM FOLDER
+
+OLEO is the binary, FOLDER an empty folder in which the commands run. A page is judged by itself: a script at its end looks for errors of
+other scripts, text that is cut off or leaves its drawing, axes without a title, figures and drawings without a name, and text too faint
+to read. It reports to a page that shows it in three frames.
+"""
+
+import html
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+WIDTHS = (400, 1000, 1600)
+# Chromium's number for the preferred colour scheme.
+THEMES = {"dark": 0, "light": 1}
+# Contrast of text, by the Web Content Accessibility Guidelines 2.2, level AA.
+CONTRAST = 4.5
+
+# Page, arguments.
+COMMANDS = {
+    "hil": ["hil", "--scenario", "bus-silence", "--duration-s", "6"],
+    "hil in a manoeuvre": ["hil", "--scenario", "step-steer"],
+    "drive": ["drive", "--manoeuvre", "lane-change-2", "--driver", "hard", "--setting", "soft,stiff,controlled,baseline"],
+    "drive with both models": ["drive", "--manoeuvre", "belgian", "--model", "both", "--duration-s", "3"],
+    "rig spring": ["rig", "spring"],
+    "rig damping": ["rig", "damping"],
+    "rig valve-response": ["rig", "valve-response"],
+    "study sweep": ["study", "sweep", "--duration-s", "2"],
+    "study optimise": ["study", "optimise", "--duration-s", "2", "--iterations", "10", "--roll", "1", "--map"],
+    "study control": ["study", "control", "--quick", "--seeds", "1", "--duration-s", "5"],
+    "study robust": ["study", "robust", "--vehicles", "2"],
+    "self-test": ["diagnose", "--self-test", "--campaigns", "2"],
+}
+
+# What runs in the head of a page: errors are collected from the first line on.
+COLLECT = """<script>
+const found = [];
+addEventListener("error", (event) => found.push("error: " + event.message));
+addEventListener("unhandledrejection", (event) => found.push("rejection: " + event.reason));
+for (const level of ["error", "warn"]) console[level] = (...words) => found.push("console: " + words.join(" "));
+</script>"""
+
+# What runs at its end, when everything is drawn.
+JUDGE = """<script>
+(() => {
+  const name = (node) => {
+    const figure = node.closest("figure, section");
+    const heading = figure && figure.querySelector("h3, h2");
+    return heading ? heading.textContent : "the page";
+  };
+  const rgb = (colour) => (colour.match(/[\\d.]+/g) || []).map(Number);
+  const luminance = ([r, g, b]) => {
+    const part = (v) => { v /= 255; return v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; };
+    return 0.2126 * part(r) + 0.7152 * part(g) + 0.0722 * part(b);
+  };
+  const contrast = (node) => {
+    let ground = node;
+    while (ground && rgb(getComputedStyle(ground).backgroundColor)[3] === 0) ground = ground.parentElement;
+    const at = [getComputedStyle(node).color, ground ? getComputedStyle(ground).backgroundColor : "rgb(255, 255, 255)"];
+    const [high, low] = at.map((colour) => luminance(rgb(colour))).sort((a, b) => b - a);
+    return (high + 0.05) / (low + 0.05);
+  };
+  const seen = (node) => node.getClientRects().length > 0;
+  const judge = () => {
+    const page = document.documentElement;
+    if (page.scrollWidth > innerWidth + 1) found.push(`the page is ${page.scrollWidth} px wide`);
+    if (!document.title || !document.querySelector("h1").textContent) found.push("no title");
+    for (const node of document.querySelectorAll("h1, h2, h3, p, td, th, dt, dd, .verdict, figcaption, summary, label, button")) {
+      if (!seen(node) || !node.textContent.trim()) continue;
+      const inside = node.closest(".scroll, pre");
+      if (!inside && node.scrollWidth > node.clientWidth + 1 && node.clientWidth > 0 && getComputedStyle(node).display !== "inline")
+        found.push(`cut off: ${node.textContent.slice(0, 60)}`);
+      if (contrast(node) < CONTRAST) found.push(`faint, ${contrast(node).toFixed(1)}: ${node.textContent.slice(0, 60)}`);
+    }
+    for (const figure of document.querySelectorAll("figure")) {
+      if (!seen(figure)) continue;
+      if (!name(figure)) found.push("a figure without a heading");
+      for (const drawing of figure.querySelectorAll("svg"))
+        if (!figure.querySelector("h3") && !drawing.getAttribute("aria-label") && !drawing.querySelector("title"))
+          found.push("a drawing without a name");
+    }
+    for (const chart of document.querySelectorAll(".chart")) {
+      if (!seen(chart)) continue;
+      const plot = chart.querySelector("svg.main-svg");
+      if (!plot) { found.push(`not drawn: ${name(chart)}`); continue; }
+      const frame = plot.getBoundingClientRect();
+      // An axis whose ticks are names says what it is by them.
+      const named = [...chart.querySelectorAll(".ytick text")].some((tick) => /[a-z]{2}/i.test(tick.textContent));
+      const titles = chart.querySelectorAll(".g-xtitle text, .g-ytitle text, .g-y2title text");
+      if (titles.length < (named ? 1 : 2)) found.push(`axes without a title: ${name(chart)}`);
+      for (const text of chart.querySelectorAll("svg text")) {
+        const box = text.getBoundingClientRect();
+        if (box.width === 0 || !text.textContent.trim() || text.closest(".hoverlayer, .modebar, .scrollbox")) continue;
+        if (box.left < frame.left - 2 || box.right > frame.right + 2 || box.top < frame.top - 2 || box.bottom > frame.bottom + 2)
+          found.push(`outside of its drawing: "${text.textContent}" in ${name(chart)}`);
+      }
+    }
+    parent.postMessage({ found: [...new Set(found)], charts: document.querySelectorAll(".chart .main-svg").length }, "*");
+  };
+  addEventListener("load", () => setTimeout(judge, 6000));
+})();
+</script>"""
+
+FRAMES = """<!doctype html><body><script>
+const answers = {};
+addEventListener("message", (event) => {
+  const frame = [...document.querySelectorAll("iframe")].find((frame) => frame.contentWindow === event.source);
+  answers[frame.width] = event.data;
+  if (Object.keys(answers).length === 3) {
+    const text = document.createElement("pre");
+    text.id = "answers";
+    text.textContent = JSON.stringify(answers);
+    document.body.replaceChildren(text);
+  }
+});
+</script>FRAMES</body>"""
+
+
+def judged(chromium, page, theme):
+    """What is wrong with a page, and how many charts it shows, by width."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        text = page.read_text(encoding="utf-8").replace("<head>", "<head>" + COLLECT, 1)
+        judge = JUDGE.replace("CONTRAST", str(CONTRAST))
+        (folder / "page.html").write_text(text.replace("</body>", judge + "</body>", 1), encoding="utf-8")
+        frames = "".join(f'<iframe src="page.html" width="{width}" height="1200"></iframe>' for width in WIDTHS)
+        (folder / "frames.html").write_text(FRAMES.replace("FRAMES", frames), encoding="utf-8")
+        run = subprocess.run(
+            [
+                chromium, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+                "--disable-background-networking", "--disable-component-update", "--disable-sync",
+                f"--blink-settings=preferredColorScheme={theme}", f"--user-data-dir={folder / 'profile'}",
+                "--window-size=1700,1300", "--virtual-time-budget=60000", "--dump-dom", (folder / "frames.html").as_uri(),
+            ],
+            capture_output=True, text=True, check=False, timeout=300,
+        )  # fmt: skip
+        answers = run.stdout.partition('<pre id="answers">')[2].partition("</pre>")[0]
+        if not answers:
+            return {0: {"found": ["Chromium gave no answer: " + run.stderr.strip()[-300:]], "charts": 0}}
+        return json.loads(html.unescape(answers))
+
+
+def pages(oleo, folder):
+    """The page of each command."""
+    commands = dict(COMMANDS)
+    saved = ["diagnose", "--self-test", "--save", "--campaigns", "1", "--terms", "seal_friction", "--out", "campaigns"]
+    subprocess.run([oleo, *saved], cwd=folder, check=True, capture_output=True)
+    campaign = next(path.parent for path in (folder / "campaigns").glob("*/model.toml"))
+    commands["diagnose"] = ["diagnose", str(campaign.relative_to(folder))]
+    commands["compare"] = ["compare", "drive", "--tolerance", "max_roll_deg=5%"]
+    for name, arguments in commands.items():
+        out = name.replace(" ", "-")
+        run = subprocess.run([oleo, *arguments, "--out", out], cwd=folder, capture_output=True, text=True, check=False)
+        if run.returncode > 1:
+            sys.exit(f"oleo {' '.join(arguments)}: {run.stderr.strip()}")
+        yield name, folder / out / "report.html"
+
+
+def main():
+    oleo, chromium, folder = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2], pathlib.Path(sys.argv[3])
+    wrong, charts, count = [], 0, 0
+    for name, page in pages(oleo, folder):
+        count += 1
+        for theme, number in THEMES.items():
+            for width, answer in judged(chromium, page, number).items():
+                charts += answer["charts"]
+                wrong += [f"{name}, {theme}, {width} px: {what}" for what in answer["found"]]
+    print("\n".join(wrong))
+    print(f"{count} pages at {len(WIDTHS)} widths in 2 themes, {charts} charts drawn, {len(wrong)} complaints")
+    sys.exit(1 if wrong or charts == 0 else 0)
+
+
+if __name__ == "__main__":
+    main()

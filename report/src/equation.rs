@@ -3,7 +3,8 @@
 //!
 //! The text is what the code's documentation uses: a product is a space, a fraction is `a / b` of the two neighbouring factors,
 //! `_` begins an index, `^` an exponent, `dx/dt` is a derivative, and `dp` outside of one is a difference. Greek letters have
-//! their names. A text that does not follow this is shown as it is.
+//! their names. A text that does not follow this is shown as it is. (AsciiMath is another language: it reads `p1` as a product, and
+//! its parsers for Rust have had no release since 2021 and 2023.)
 
 mod parse;
 

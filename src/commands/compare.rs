@@ -5,14 +5,17 @@
 //!        figures, traces                              |
 //!             \---------------------- differences <---+--- tolerance
 //!                                          |
-//!                                        sheet: tables, CSV, summary, page (quantity: units)
+//!                         sheet: summary, CSV <--+--> page, tables (quantity: units; drawn: which)
 //! ```
 
 mod differences;
+mod drawn;
 mod figures;
+mod page;
 mod quantity;
 mod run;
 mod sheet;
+mod tables;
 mod tolerance;
 mod traces;
 
@@ -127,7 +130,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let sheet = sheet::Sheet {
         axis,
         equal: args.equal,
-        drawn: sheet::Drawn::of(&args.trace),
+        drawn: drawn::Drawn::of(&args.trace),
         compared: groups.iter().zip(&found).collect(),
     };
     let passed = sheet.publish(&args.results, out)?;

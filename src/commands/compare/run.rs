@@ -9,7 +9,7 @@ use oleo_plant_sim::rig::ColumnMap;
 use serde_json::Value;
 
 use super::figures::{Figure, figures};
-use super::traces::Traces;
+use super::traces::{Trace, Traces, at_places};
 use crate::commands::prediction::{Prediction, predict};
 use crate::failure::Failure;
 
@@ -24,6 +24,15 @@ impl Run {
     /// A figure.
     pub fn figure(&self, name: &str) -> Option<&Figure> {
         (self.figures.iter().find(|(known, _)| known == name)).map(|(_, figure)| figure)
+    }
+
+    /// The values of a quantity at some places of an axis; `None` if the run does not have it.
+    pub fn quantity_at(&self, name: &str, axis: &str, places: &[f64]) -> Result<Option<Vec<f64>>, Failure> {
+        let Some(Trace::Quantity(values)) = self.traces.trace(name) else {
+            return Ok(None);
+        };
+        let own = self.traces.axis(axis, &self.name)?;
+        Ok(Some(at_places(places, own, values)))
     }
 }
 

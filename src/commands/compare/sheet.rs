@@ -1,71 +1,17 @@
-//! Writes a comparison: tables, the traces on one axis, the summary and the page.
+//! Writes a comparison: what is printed, the traces on one axis, the summary and the page.
 
-use oleo_report::{
-    Axis, Cell, Column, Curves, Figure as Drawing, OutputDirectory, Page, Style, Table, Verdict, significant,
-};
+use oleo_report::{OutputDirectory, Verdict};
 use serde_json::{Value, json};
 
 use super::differences::{Check, ComparedFigure, ComparedTrace, Differences};
+use super::drawn::Drawn;
 use super::figures::Figure;
-use super::quantity::{axis, quantity};
-use super::run::{Group, Run};
-use super::tolerance::Allowed;
-use super::traces::{Difference, Trace, at_places};
+use super::page::page;
+use super::run::Group;
+use super::tables::{check_table, figure_table, trace_table};
+use super::traces::Difference;
 use crate::failure::Failure;
-use crate::results::{ResultsArgs, command_line};
-
-/// Traces of a vehicle that are drawn unless others are asked for.
-const USUAL: [&str; 20] = [
-    "roll_rad",
-    "lateral_acceleration_m_s2",
-    "driver_acceleration_m_s2",
-    "rear_left_acceleration_m_s2",
-    "heave_m",
-    "pitch_rad",
-    "yaw_rate_rad_s",
-    "steer_rad",
-    "lateral_m",
-    "speed_m_s",
-    "displacement_front_left_m",
-    "displacement_front_right_m",
-    "displacement_rear_left_m",
-    "displacement_rear_right_m",
-    "force_front_left_N",
-    "force_rear_left_N",
-    "wheel_load_front_left_N",
-    "wheel_load_rear_left_N",
-    "front_valves_open",
-    "rear_valves_open",
-];
-
-/// The traces that are drawn.
-pub enum Drawn {
-    /// Those of [`USUAL`] that there are, or all if there are none of these.
-    Usual,
-    /// The named ones.
-    Named(Vec<String>),
-}
-
-impl Drawn {
-    /// The named ones, if there are any.
-    pub fn of(names: &[String]) -> Self {
-        match names {
-            [] => Self::Usual,
-            names => Self::Named(names.to_vec()),
-        }
-    }
-
-    fn among<'a>(&self, traces: &'a [ComparedTrace]) -> Vec<&'a ComparedTrace> {
-        let of = |names: &dyn Fn(&str) -> bool| traces.iter().filter(|trace| names(&trace.name)).collect::<Vec<_>>();
-        match self {
-            Self::Named(names) => of(&|name| names.iter().any(|named| named == name)),
-            Self::Usual => {
-                let usual: Vec<&ComparedTrace> = USUAL.iter().flat_map(|usual| of(&|name| name == *usual)).collect();
-                if usual.is_empty() { of(&|_| true) } else { usual }
-            }
-        }
-    }
-}
+use crate::results::ResultsArgs;
 
 /// Those that are not the same in all runs.
 fn changed<'a>(traces: &[&'a ComparedTrace]) -> Vec<&'a ComparedTrace> {
@@ -105,7 +51,7 @@ impl Sheet<'_> {
                 self.write_traces(out, group, found)?;
             }
             out.summary("summary.json", None, &self.summary(verdict))?;
-            out.page(&self.page(verdict, &sentence))?;
+            out.page(&page(self.axis, &self.drawn, &self.compared, verdict, &sentence))?;
         }
         results.publish(out, &text)?;
         Ok(verdict != Some(Verdict::Fail))
@@ -150,7 +96,7 @@ impl Sheet<'_> {
         let mut columns = vec![(self.axis.to_owned(), places.to_vec())];
         for trace in &found.traces {
             for run in &group.runs {
-                if let Some(values) = quantity_at(run, &trace.name, self.axis, places)? {
+                if let Some(values) = run.quantity_at(&trace.name, self.axis, places)? {
                     columns.push((format!("{}.{}", plain(&run.name), trace.name), values));
                 }
             }
@@ -180,89 +126,6 @@ impl Sheet<'_> {
             "groups": groups.collect::<Vec<_>>(),
         })
     }
-
-    fn page(&self, verdict: Option<Verdict>, sentence: &str) -> Page {
-        let mut page = Page::new("Comparison", &command_line());
-        let over = quantity(self.axis);
-        page.fact("Compared over", &format!("{}, {}", over.0.to_lowercase(), over.1));
-        match verdict {
-            Some(verdict) => page.verdict(verdict, sentence),
-            None => page.text(sentence),
-        };
-        for (group, found) in &self.compared {
-            let runs: Vec<&str> = group.runs.iter().map(|run| run.name.as_str()).collect();
-            page.section(if group.name.is_empty() { "Runs" } else { &group.name });
-            page.text(&format!("{} compared with {}.", runs[1..].join(", "), runs[0]));
-            if !found.checks.is_empty() {
-                page.outcome(check_table(&found.checks));
-            }
-            if !found.figures.is_empty() {
-                let changed = figure_table(group, found.figures.iter().filter(|figure| !figure.is_same()));
-                if !changed.is_empty() {
-                    page.table(changed);
-                }
-                page.details("All figures", figure_table(group, found.figures.iter()));
-            }
-            let drawn = self.drawn.among(&found.traces);
-            page.choice(
-                "Trace",
-                drawn
-                    .iter()
-                    .filter_map(|trace| Some((quantity(&trace.name).0, self.overlaid(group, trace)?))),
-            );
-            page.table(trace_table(group, self.axis, &drawn));
-            page.details(
-                "All traces",
-                trace_table(group, self.axis, &found.traces.iter().collect::<Vec<_>>()),
-            );
-        }
-        page
-    }
-
-    /// A trace of all runs, and below it what the others are apart from the first.
-    fn overlaid(&self, group: &Group, trace: &ComparedTrace) -> Option<Drawing> {
-        let (words, unit, factor) = quantity(&trace.name);
-        let scaled = |values: &[f64]| values.iter().map(|value| factor * value).collect::<Vec<f64>>();
-        let mut curves = Curves::new(&words, axis(self.axis));
-        curves.height(560).panel(axis(&trace.name));
-        for run in &group.runs {
-            let own = run.traces.axis(self.axis, &run.name).ok()?;
-            let (style, values) = match run.traces.trace(&trace.name) {
-                None => continue,
-                Some(Trace::Quantity(values)) => (Style::Line, scaled(values)),
-                // Words have no height.
-                Some(Trace::State(words)) => (
-                    Style::Step,
-                    words.iter().map(|word| word.parse().ok()).collect::<Option<_>>()?,
-                ),
-            };
-            curves.series(style, &run.name, own, &values);
-        }
-        let first = &group.runs[0];
-        let places = first.traces.axis(self.axis, &first.name).ok()?;
-        if let Some(Trace::Quantity(reference)) = first.traces.trace(&trace.name) {
-            curves.panel(Axis::new(&format!("Less {}", first.name), unit));
-            for run in &group.runs[1..] {
-                if let Ok(Some(values)) = quantity_at(run, &trace.name, self.axis, places) {
-                    let apart: Vec<f64> = values
-                        .iter()
-                        .zip(reference)
-                        .map(|(own, first)| factor * (own - first))
-                        .collect();
-                    curves.series(Style::Line, &run.name, places, &apart);
-                }
-            }
-        }
-        Some(curves.into())
-    }
-}
-
-/// The values of a quantity of a run at some places of the axis; `None` if the run has none.
-fn quantity_at(run: &Run, name: &str, axis: &str, places: &[f64]) -> Result<Option<Vec<f64>>, Failure> {
-    let Some(Trace::Quantity(values)) = run.traces.trace(name) else {
-        return Ok(None);
-    };
-    Ok(Some(at_places(places, run.traces.axis(axis, &run.name)?, values)))
 }
 
 /// A name that needs no quotes in a header or as the name of a file.
@@ -275,115 +138,6 @@ fn plain(name: &str) -> String {
         }
     };
     name.replace(": ", "-").chars().map(kept).collect()
-}
-
-fn check_table(checks: &[Check]) -> Table {
-    let mut table = Table::new([
-        Column::text("Tolerance"),
-        Column::text("Run"),
-        Column::number("Allowed"),
-        Column::number("Found"),
-        Column::text("Met"),
-    ]);
-    for check in checks {
-        let found = match (check.judged.found, check.allowed) {
-            (found, _) if found.is_nan() => "cannot be compared".to_owned(),
-            (found, Allowed::Percent(_)) => format!("{} %", significant(found, 3)),
-            (found, Allowed::Noise(_)) => format!("{} x noise", significant(found, 3)),
-            (found, Allowed::Absolute(_)) => significant(found, 4),
-        };
-        table.row::<Cell>([
-            check.name.as_str().into(),
-            check.run.as_str().into(),
-            check.allowed.to_string().into(),
-            found.into(),
-            Cell::check(check.judged.passed),
-        ]);
-    }
-    table
-}
-
-/// A row for each figure, a column for each run. Behind a number stands how much larger it is than that of the first run.
-fn figure_table<'a>(group: &Group, figures: impl Iterator<Item = &'a ComparedFigure>) -> Table {
-    let mut columns = vec![Column::text("Figure")];
-    columns.extend(group.runs.iter().map(|run| Column::number(&run.name)));
-    let mut table = Table::new(columns);
-    for figure in figures {
-        let first = figure.values.first().and_then(Option::as_ref);
-        let cell = |value: &Option<Figure>| match (value, first) {
-            (None, _) => "-".to_owned(),
-            (Some(Figure::Word(word)), _) => word.clone(),
-            (Some(own @ Figure::Number(number)), Some(Figure::Number(of))) if Some(own) != first && *of != 0.0 => {
-                format!("{} ({:+.1} %)", significant(*number, 4), 100.0 * (number / of - 1.0))
-            }
-            (Some(Figure::Number(number)), _) => significant(*number, 4),
-        };
-        let mut row = vec![figure.name.clone()];
-        row.extend(figure.values.iter().map(cell));
-        table.row(row);
-    }
-    table
-}
-
-/// A row for each trace and run.
-fn trace_table(group: &Group, axis: &str, traces: &[&ComparedTrace]) -> Table {
-    let (over, over_unit, _) = quantity(axis);
-    let noisy = !group.noise.is_empty();
-    let mut columns = vec![
-        Column::text("Trace"),
-        Column::text("Run"),
-        Column::number("RMS of the difference"),
-        Column::number("Of the first's RMS"),
-        Column::number("Largest difference"),
-        Column::number(&format!("At {}, {over_unit}", over.to_lowercase())),
-        Column::text("Unit"),
-    ];
-    if noisy {
-        columns.push(Column::number("RMS / noise"));
-    }
-    let mut table = Table::new(columns);
-    for trace in traces {
-        let (words, unit, factor) = quantity(&trace.name);
-        for (run, difference) in group.runs[1..].iter().zip(&trace.differences) {
-            let mut row = vec![words.clone(), run.name.clone()];
-            let noise = group.noise.get(&trace.name);
-            match difference {
-                None => row.extend(["-", "-", "-", "-", unit].map(str::to_owned)),
-                Some(Difference::State(share)) => {
-                    row.extend([
-                        format!("{} %", significant(100.0 * share, 3)),
-                        "-".into(),
-                        "-".into(),
-                        "-".into(),
-                        "of the samples".into(),
-                    ]);
-                }
-                Some(Difference::Quantity {
-                    rms,
-                    reference_rms,
-                    largest,
-                    at,
-                }) => row.extend([
-                    significant(factor * rms, 4),
-                    match *reference_rms {
-                        0.0 => "-".to_owned(),
-                        of => format!("{} %", significant(100.0 * rms / of, 3)),
-                    },
-                    significant(factor * largest, 4),
-                    significant(*at, 5),
-                    unit.to_owned(),
-                ]),
-            }
-            if noisy {
-                row.push(match (difference, noise) {
-                    (Some(Difference::Quantity { rms, .. }), Some(noise)) => significant(rms / noise, 3),
-                    _ => "-".to_owned(),
-                });
-            }
-            table.row(row);
-        }
-    }
-    table
 }
 
 fn figure_json(figure: &ComparedFigure) -> Value {

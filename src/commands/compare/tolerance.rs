@@ -78,6 +78,7 @@ impl FromStr for Tolerance {
 
 /// A file of tolerances: names with numbers or texts such as "5 %".
 #[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
 struct File {
     tolerance: BTreeMap<String, Entry>,
 }

@@ -97,6 +97,7 @@ impl Broken {
                     SensorFault::NotANumber => f32::NAN,
                     SensorFault::Value(says) => says,
                     SensorFault::Offset(more) => *value + more,
+                    SensorFault::Gain(factor) => *value * factor,
                     SensorFault::Noise(deviation) => {
                         let standard: f32 = StandardNormal.sample(&mut self.random);
                         *value + deviation * standard
@@ -183,6 +184,10 @@ mod tests {
         assert!(inputs.pressure[PLACE].p2.is_valid() && inputs.pressure[Corner::FrontLeft].p3.is_valid());
         assert!(read(&mut broken, 4).pressure[PLACE].p3.is_valid());
 
+        assert_eq!(
+            read(&mut sensor(SensorFault::Gain(2.0), Sensor::Displacement), 2).displacement[PLACE].value(),
+            Some(0.04)
+        );
         assert_eq!(
             read(&mut sensor(SensorFault::Offset(0.5), Sensor::Displacement), 2).displacement[PLACE].value(),
             Some(0.52)

@@ -95,6 +95,8 @@ pub enum SensorFault {
     Value(f32),
     /// The truth and this much more; SI.
     Offset(f32),
+    /// The truth times this factor.
+    Gain(f32),
     /// The truth and normally distributed noise of this standard deviation; SI.
     Noise(f32),
     /// The truth and an offset that grows by this much a second; SI.

@@ -32,6 +32,7 @@ enum Kind {
     SensorNan,
     SensorOutOfRange,
     SensorOffset,
+    SensorGain,
     SensorNoise,
     SensorDrift,
     SensorSwap,
@@ -162,6 +163,10 @@ impl FaultEntry {
             Kind::SensorOffset => {
                 let value = self.value.take().ok_or_else(|| self.needs("value (SI)", "0.05"))?;
                 self.sensor(SensorFault::Offset(value as f32))?
+            }
+            Kind::SensorGain => {
+                let value = self.value.take().ok_or_else(|| self.needs("value (a factor)", "1.2"))?;
+                self.sensor(SensorFault::Gain(value as f32))?
             }
             Kind::SensorNoise => {
                 let value = self.value.take().ok_or_else(|| self.needs("value (SI)", "0.002"))?;

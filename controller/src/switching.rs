@@ -9,10 +9,8 @@
 //! - If the last is a closing, the tenth is an opening. The first was 199 ticks before that, and the closing comes at least one
 //!   tick after it.
 
-use oleo_interface::{Corner, Corners, StrutValves, Valve};
-
 use crate::timing::ticks;
-use crate::valves::ValveCommand;
+use crate::valves::{VALVES, ValveCommand, bits};
 
 /// Most switchings of a valve within a second.
 const MOST_A_SECOND: usize = 10;
@@ -25,7 +23,8 @@ pub struct SwitchingLimit {
     command: ValveCommand,
     /// Number of ticks so far. It wraps after 248 days; a valve that last moved exactly then may have to wait a second.
     now: u32,
-    history: Corners<StrutValves<History>>,
+    /// Of each valve, in the order of the bits of the command.
+    history: [History; VALVES],
 }
 
 /// Times of the last switchings of a valve.
@@ -57,7 +56,7 @@ impl Default for SwitchingLimit {
             command: ValveCommand::SAFE,
             // Nothing has moved before the first tick.
             now: SPAN_TICKS,
-            history: Corners::splat(StrutValves::splat(History::default())),
+            history: [History::default(); VALVES],
         }
     }
 }
@@ -80,22 +79,17 @@ impl SwitchingLimit {
     /// Called in ticks in which some valve is to be elsewhere; most ticks have none.
     #[inline(never)]
     fn change(&mut self, permitted: ValveCommand) {
-        let now = self.now;
-        for corner in Corner::ALL {
-            for valve in Valve::ALL {
-                let open = permitted.is_open(corner, valve);
-                if open == self.command.is_open(corner, valve) {
-                    continue;
-                }
-                let history = &mut self.history[corner][valve];
-                let rested = history
-                    .oldest()
-                    .is_some_and(|time| now.wrapping_sub(*time) >= SPAN_TICKS);
-                if open && !rested {
-                    continue;
-                }
+        for (place, bit) in bits(permitted.word() ^ self.command.word()) {
+            let Some(history) = self.history.get_mut(place) else {
+                continue;
+            };
+            let now = self.now;
+            let rested = history
+                .oldest()
+                .is_some_and(|time| now.wrapping_sub(*time) >= SPAN_TICKS);
+            if rested || permitted.word() & bit == 0 {
                 history.add(now);
-                self.command = self.command.with(corner, valve, open);
+                self.command = ValveCommand::from_word(self.command.word() ^ bit);
             }
         }
     }

@@ -26,6 +26,7 @@ use crate::valves::ValveCommand;
 /// assert_eq!(outputs.mode, Mode::StartUp); // no reading is valid yet
 /// ```
 #[derive(Clone, Debug, Default)]
+#[repr(C)]
 pub struct State {
     plausibility: plausibility::State,
     estimate: estimate::State,
@@ -130,8 +131,7 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     let mode = state.failsafe.step(&health);
     let demand = state.strategy.step(&c.strategy, &estimate, trusted);
     if mode == Mode::Normal {
-        let wanted = Corners::from_fn(|corner| demand.valves.is_open(corner, Valve::Spring));
-        let load_n = &estimate.static_load_n;
+        let (load_n, wanted) = (state.estimate.static_load_n(), demand.valves);
         state.springs.step(&c.spring, trusted, load_n, wanted, demand.urgency);
     } else {
         state.springs.forced_closed(&c.spring, trusted);

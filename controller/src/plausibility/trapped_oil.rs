@@ -109,7 +109,7 @@ mod tests {
             };
             let mut verdict = Verdicts::GOOD;
             check.step(&pressure, closed, &mut verdict);
-            verdict.gravest() == FaultCode::ValveStuck
+            Verdicts::gravest(&[verdict]) == FaultCode::ValveStuck
         })
     }
 
@@ -156,7 +156,7 @@ mod tests {
             };
             check.step(&pressure, true, &mut verdict);
         }
-        verdict.gravest() == FaultCode::ValveStuck
+        Verdicts::gravest(&[verdict]) == FaultCode::ValveStuck
     }
 
     /// A check whose valve has been closed for long enough, at the beginning of a window.

@@ -27,14 +27,9 @@ pub struct Trusted {
 impl Trusted {
     /// Sums up the verdicts for the mode machine.
     pub(super) fn judge(&mut self, verdicts: &Corners<Verdicts>, inputs: &Inputs) {
-        self.health = Health::default();
-        self.invalid_readings = 0;
-        let mut cause = FaultCode::None;
-        for (corner, verdict) in verdicts.iter().filter(|(_, verdict)| **verdict != Verdicts::GOOD) {
-            self.health.affected[corner] = true;
-            self.invalid_readings = self.invalid_readings.saturating_add(verdict.count());
-            cause = cause.max(verdict.gravest());
-        }
+        self.health.affected = verdicts.map(|verdict| verdict != Verdicts::GOOD);
+        self.invalid_readings = Verdicts::count(verdicts.as_array());
+        let mut cause = Verdicts::gravest(verdicts.as_array());
         if inputs.lost_messages == MessageSet::ALL {
             cause = FaultCode::BusSilent;
         }

@@ -82,6 +82,19 @@ impl Vote {
         if self.outvoted == StrutPressures::splat(0) && !(healthy && wrong != StrutPressures::splat(false)) {
             return;
         }
+        *verdict = self.judge(healthy, p4_follows, wrong, *verdict);
+    }
+
+    /// Counts for and against each pressure, where one is or was outvoted; returns the verdict with what that leads to.
+    #[inline(never)]
+    fn judge(
+        &mut self,
+        healthy: bool,
+        p4_follows: bool,
+        wrong: StrutPressures<bool>,
+        mut verdict: Verdicts,
+    ) -> Verdicts {
+        let StrutPressures { p1, p2, p3, p4 } = self.lagged;
         let near = |a: Gauge<f32>, b: Gauge<f32>| (a - b).abs() < AGREE_PA;
         let agrees = StrutPressures {
             p1: near(p1, p2) || near(p1, p3),
@@ -109,6 +122,7 @@ impl Vote {
                 verdict.blame(Place::of(point), FaultCode::SensorVote);
             }
         }
+        verdict
     }
 }
 
@@ -124,7 +138,7 @@ mod tests {
     use super::*;
 
     fn outvoted(verdict: &Verdicts) -> bool {
-        verdict.gravest() == FaultCode::SensorVote
+        Verdicts::gravest(&[*verdict]) == FaultCode::SensorVote
     }
 
     /// The first turn in which a pressure is outvoted, on a strut that is shaken through closed dampers: p1 swings by 2 MPa
@@ -387,7 +401,11 @@ mod tests {
             .last()
             .unwrap_or_default();
         assert_eq!(
-            (said.count(), said.is_good(Place::P1), said.is_good(Place::P4)),
+            (
+                Verdicts::count(&[said]),
+                said.is_good(Place::P1),
+                said.is_good(Place::P4)
+            ),
             (2, false, false)
         );
         // Where p3 is the one that stands alone, p4 is not.

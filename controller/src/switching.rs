@@ -51,6 +51,7 @@ impl History {
 }
 
 impl Default for SwitchingLimit {
+    #[inline]
     fn default() -> Self {
         Self {
             command: ValveCommand::SAFE,

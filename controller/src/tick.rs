@@ -39,6 +39,7 @@ pub struct State {
 
 impl State {
     /// Before the first tick: valves closed, mode start-up.
+    #[inline]
     pub fn new() -> Self {
         Self::default()
     }
@@ -53,6 +54,7 @@ impl State {
     /// let outputs = tick(&Configuration::defender110(), &mut state, &Inputs::default());
     /// assert_eq!((outputs.mode, outputs.fault), (Mode::Latched, FaultCode::Solenoid));
     /// ```
+    #[inline]
     pub fn latch(&mut self, cause: FaultCode) {
         self.failsafe = failsafe::State::latched(cause);
     }

@@ -81,6 +81,7 @@ struct Judgement {
 }
 
 impl Default for Judgement {
+    #[inline]
     fn default() -> Self {
         Self {
             best: DELAYS,
@@ -198,6 +199,7 @@ fn count(places: &mut [Place; PLACES], tick: u16, both: [u128; 2]) {
 }
 
 /// The turn of a place, from 2 on, in a tick: adds the carries that wait there. None of the highest place is carried further.
+#[inline(never)]
 fn add_waiting(places: &mut [Place; PLACES], place: usize, tick: u16) {
     let Some(here) = places.get_mut(place) else { return };
     let carry = here.add(here.waiting);

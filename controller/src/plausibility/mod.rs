@@ -93,7 +93,6 @@ const ALL: u8 = (1 << Corner::ALL.len()) - 1;
 /// assert_eq!(trusted.displacement_m[Corner::FrontLeft], 0.01);
 /// ```
 #[derive(Clone, Copy, Debug)]
-#[repr(C)]
 pub struct State {
     /// The last good readings. Nothing is wrong in its `health`.
     measured: Trusted,
@@ -112,6 +111,7 @@ pub struct State {
 }
 
 impl Default for State {
+    #[inline]
     fn default() -> Self {
         Self {
             readings: Corners::default(),

@@ -30,6 +30,7 @@ pub struct ReadingCheck {
 }
 
 impl Default for ReadingCheck {
+    #[inline]
     fn default() -> Self {
         Self {
             bad: LIMIT,

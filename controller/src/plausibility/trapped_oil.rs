@@ -36,6 +36,7 @@ pub struct TrappedOil {
 }
 
 impl Default for TrappedOil {
+    #[inline]
     fn default() -> Self {
         Self {
             closed: 0,

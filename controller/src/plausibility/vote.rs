@@ -105,24 +105,30 @@ impl Vote {
         for point in PressurePoint::ALL {
             let (count, flagged) = (&mut self.outvoted[point], &mut self.flagged[point]);
             if healthy {
-                *count = if wrong[point] {
-                    count.saturating_add(1).min(CONFIRM_TURNS)
-                } else if !*flagged || agrees[point] {
-                    count.saturating_sub(1)
-                } else {
-                    *count
-                };
-                if *count == CONFIRM_TURNS {
-                    *flagged = true;
-                } else if *count == 0 {
-                    *flagged = false;
-                }
+                count_votes(count, flagged, wrong[point], agrees[point]);
             }
             if *flagged {
                 verdict.blame(Place::of(point), FaultCode::SensorVote);
             }
         }
         verdict
+    }
+}
+
+/// Counts the turns in which a pressure was outvoted, and those in which it was not, until it is called wrong or believed again.
+#[inline(never)]
+fn count_votes(count: &mut u8, flagged: &mut bool, wrong: bool, agrees: bool) {
+    *count = if wrong {
+        count.saturating_add(1).min(CONFIRM_TURNS)
+    } else if !*flagged || agrees {
+        count.saturating_sub(1)
+    } else {
+        *count
+    };
+    if *count == CONFIRM_TURNS {
+        *flagged = true;
+    } else if *count == 0 {
+        *flagged = false;
     }
 }
 

@@ -168,7 +168,7 @@ impl State {
         }
         self.compare(parameters, context);
         // In most ticks nothing is wrong.
-        let right = self.restless | self.disagreeing == 0 && inputs.lost_messages == MessageSet::EMPTY;
+        let right = self.restless == 0 && self.disagreeing == 0 && inputs.lost_messages == MessageSet::EMPTY;
         if right && !inputs.foreign_sender && !inputs.solenoid_failed {
             return &self.measured;
         }

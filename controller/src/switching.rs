@@ -36,17 +36,20 @@ struct History {
 }
 
 impl History {
-    /// The oldest of the times.
-    fn oldest(&mut self) -> Option<&mut u32> {
-        self.times.get_mut(usize::from(self.oldest))
-    }
-
-    /// Records a switching of the valve at tick `now`.
-    fn add(&mut self, now: u32) {
-        if let Some(time) = self.oldest() {
-            *time = now;
+    /// Records a switching of the valve at tick `now`, unless it is an opening that comes too soon; returns whether the valve may move.
+    fn add(&mut self, now: u32, opens: bool) -> bool {
+        if let Some(oldest) = self.times.get_mut(usize::from(self.oldest)) {
+            if opens && now.wrapping_sub(*oldest) < SPAN_TICKS {
+                return false;
+            }
+            *oldest = now;
         }
-        self.oldest = self.oldest.wrapping_add(1) % (MOST_A_SECOND as u8 - 1);
+        self.oldest = if self.oldest < MOST_A_SECOND as u8 - 2 {
+            self.oldest + 1
+        } else {
+            0
+        };
+        true
     }
 }
 
@@ -81,15 +84,9 @@ impl SwitchingLimit {
     #[inline(never)]
     fn change(&mut self, permitted: ValveCommand) {
         for (place, bit) in bits(permitted.word() ^ self.command.word()) {
-            let Some(history) = self.history.get_mut(place) else {
-                continue;
-            };
-            let now = self.now;
-            let rested = history
-                .oldest()
-                .is_some_and(|time| now.wrapping_sub(*time) >= SPAN_TICKS);
-            if rested || permitted.word() & bit == 0 {
-                history.add(now);
+            let opens = permitted.word() & bit != 0;
+            let moves = (self.history.get_mut(place)).is_some_and(|history| history.add(self.now, opens));
+            if moves {
                 self.command = ValveCommand::from_word(self.command.word() ^ bit);
             }
         }

@@ -26,6 +26,7 @@ use crate::valves::ValveCommand;
 /// assert_eq!(outputs.mode, Mode::StartUp); // no reading is valid yet
 /// ```
 #[derive(Clone, Debug, Default)]
+// In the order of the declaration: the checks of the readings come first, where one instruction of a Cortex-M4F reaches them.
 #[repr(C)]
 pub struct State {
     plausibility: plausibility::State,

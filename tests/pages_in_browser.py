@@ -89,7 +89,7 @@ JUDGE = """<script>
       if (!plot) { found.push(`not drawn: ${name(chart)}`); continue; }
       const frame = plot.getBoundingClientRect();
       // An axis whose ticks are names says what it is by them.
-      const named = [...chart.querySelectorAll(".ytick text")].some((tick) => /[a-z]{2}/i.test(tick.textContent));
+      const named = [...chart.querySelectorAll(".xtick text, .ytick text")].some((tick) => /[a-z]{2}/i.test(tick.textContent));
       const titles = chart.querySelectorAll(".g-xtitle text, .g-ytitle text, .g-y2title text");
       if (titles.length < (named ? 1 : 2)) found.push(`axes without a title: ${name(chart)}`);
       for (const text of chart.querySelectorAll("svg text")) {

@@ -4,16 +4,11 @@
 //! valve rests for 100 ms. A closing that safety requires does not come through here: the mode machine acts on the
 //! command itself.
 
-use oleo_interface::{Corner, Corners, StrutValves, Valve};
-
 use crate::timing::ticks;
-use crate::valves::{BYPASS_BITS, ValveCommand};
+use crate::valves::{BYPASS_BITS, VALVES, ValveCommand, bits};
 
 /// Shortest time between two changes of one valve, ticks.
 const BYPASS_DWELL_TICKS: u32 = ticks(100) as u32;
-
-/// The valves that rest: 1 and 2 of every strut.
-const BYPASS_VALVES: [Valve; 2] = [Valve::Bypass1, Valve::Bypass2];
 
 /// State of the eight bypass signals.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,8 +16,8 @@ pub struct Dwell {
     open: ValveCommand,
     /// Number of ticks so far. It wraps after 248 days; a valve that last moved exactly then rests once more.
     now: u32,
-    /// Value of `now` at the last change of each valve.
-    changed_at: Corners<StrutValves<u32>>,
+    /// Value of `now` at the last change of each valve, in the order of the bits of the command.
+    changed_at: [u32; VALVES],
 }
 
 impl Dwell {
@@ -39,15 +34,14 @@ impl Dwell {
     /// Called in ticks in which some bypass valve is wanted elsewhere; most ticks have none.
     #[inline(never)]
     fn change(&mut self, wanted: ValveCommand, at_once: bool) {
-        for corner in Corner::ALL {
-            for valve in BYPASS_VALVES {
-                let open = wanted.is_open(corner, valve);
-                let changed_at = &mut self.changed_at[corner][valve];
-                let rested = self.now.wrapping_sub(*changed_at) >= BYPASS_DWELL_TICKS;
-                if open != self.open.is_open(corner, valve) && (rested || (at_once && !open)) {
-                    self.open = self.open.with(corner, valve, open);
-                    *changed_at = self.now;
-                }
+        for (place, bit) in bits((wanted.word() ^ self.open.word()) & BYPASS_BITS) {
+            let Some(changed_at) = self.changed_at.get_mut(place) else {
+                continue;
+            };
+            let rested = self.now.wrapping_sub(*changed_at) >= BYPASS_DWELL_TICKS;
+            if rested || (at_once && wanted.word() & bit == 0) {
+                *changed_at = self.now;
+                self.open = ValveCommand::from_word(self.open.word() ^ bit);
             }
         }
     }
@@ -56,6 +50,7 @@ impl Dwell {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oleo_interface::{Corner, Valve};
 
     const BYPASS: ValveCommand = ValveCommand::from_word(BYPASS_BITS);
 

@@ -210,6 +210,11 @@ pub struct State {
 }
 
 impl State {
+    /// The static load on each strut, N: that of the last [`Estimate`], where it is kept anyway.
+    pub(crate) fn static_load_n(&self) -> &Corners<f32> {
+        &self.static_load_n
+    }
+
     /// One tick; returns the motion that follows from readings that may be used.
     pub fn step(&mut self, c: &Parameters, trusted: &Trusted) -> Estimate {
         let force = trusted.pressure.map(|pressure| pressure.p1.pa() * c.piston_area_m2);

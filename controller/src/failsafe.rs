@@ -236,6 +236,7 @@ struct AxleState {
 
 impl AxleState {
     /// One tick; returns whether the axle is restricted.
+    #[inline(never)]
     fn step(&mut self, affected: bool) -> bool {
         if affected {
             self.healthy = 0;

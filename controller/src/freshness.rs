@@ -26,6 +26,7 @@ const MOST_LATE_TICKS: u8 = 2;
 const CHALLENGES: usize = 1 + MOST_LATE_TICKS as usize;
 
 /// The counter in the header of a frame.
+#[inline]
 pub fn counter(data: &[u8; crate::can::FRAME_BYTES]) -> u8 {
     let [_, header, ..] = *data;
     header & COUNTER_MASK
@@ -55,6 +56,7 @@ pub struct Freshness {
 }
 
 impl Default for Freshness {
+    #[inline]
     fn default() -> Self {
         Self {
             random: 0x9E37_79B9,
@@ -68,6 +70,7 @@ impl Default for Freshness {
 
 impl Freshness {
     /// The next challenge, which ends a tick.
+    #[inline]
     pub fn challenge(&mut self) -> u8 {
         self.now = self.now.wrapping_add(1);
         // Xorshift (Marsaglia 2003), of which the highest byte is sent. Three instructions; a crate of generators would
@@ -82,6 +85,7 @@ impl Freshness {
     }
 
     /// Whether the displacement messages of a tick, with their counters, are fresh.
+    #[inline]
     pub fn displacements(&mut self, messages: Axles<Option<(DisplacementMessage, u8)>>) -> Axles<bool> {
         let ours = (messages.zip(self.seen)).map(|(message, seen)| {
             message.is_some_and(|(message, counter)| self.is_recent(&message) && advances(seen, &message, counter))
@@ -108,18 +112,21 @@ impl Freshness {
     }
 
     /// Whether a pressure message with this counter is in step with the displacements.
+    #[inline]
     pub fn is_in_step(&self, counter: u8) -> bool {
         let Some(ahead) = self.counter_ahead else { return false };
         let late = self.now.wrapping_add(ahead).wrapping_sub(counter) & COUNTER_MASK;
         late <= MOST_LATE_TICKS || late >= 16 - MOST_LATE_TICKS
     }
 
+    #[inline]
     fn is_recent(&self, message: &DisplacementMessage) -> bool {
         self.challenges.contains(&message.answer)
     }
 }
 
 /// Whether the plant's tick has advanced as often as the counter has.
+#[inline]
 fn advances(seen: Option<Seen>, message: &DisplacementMessage, counter: u8) -> bool {
     seen.is_none_or(|seen| {
         let ticks = message.plant_tick.wrapping_sub(seen.plant_tick);
@@ -128,6 +135,7 @@ fn advances(seen: Option<Seen>, message: &DisplacementMessage, counter: u8) -> b
 }
 
 /// Number of ticks between two, in whichever order.
+#[inline]
 fn distance(a: u8, b: u8) -> u8 {
     a.wrapping_sub(b).min(b.wrapping_sub(a))
 }

@@ -137,6 +137,7 @@ pub(crate) struct State {
 }
 
 impl Default for State {
+    #[inline]
     fn default() -> Self {
         Self {
             body: Bessel::default(),

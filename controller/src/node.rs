@@ -9,6 +9,9 @@
 //!
 //! A frame with one of the controller's own identifiers comes from somebody else. That is a fault
 //! of its own in the tick in which it is heard (after opendbc's check of relays).
+//!
+//! The functions here, in `freshness` and those that make a first state are `#[inline]`: so the crate that calls them compiles them,
+//! the firmware for size, while this crate is compiled for the speed of the tick.
 
 use heapless::Vec;
 use oleo_interface::tick::TICK_MS;
@@ -98,6 +101,7 @@ pub struct Node {
 
 impl Node {
     /// A node that has received nothing: all valves are closed, and the mode is [`Mode::StartUp`](crate::Mode::StartUp).
+    #[inline]
     pub fn new(configuration: Configuration) -> Self {
         Self {
             state: State::new(),
@@ -127,12 +131,14 @@ impl Node {
     /// node.latch(FaultCode::Solenoid);
     /// assert_eq!(node.tick().0.mode, Mode::Latched);
     /// ```
+    #[inline]
     pub fn latch(&mut self, cause: FaultCode) {
         self.state.latch(cause);
     }
 
     /// Takes a frame from the bus: its standard identifier, 0 to 0x7FF, and its data. Call it any number of times between
     /// ticks; frames with other identifiers are counted and ignored.
+    #[inline]
     pub fn receive(&mut self, id: u16, data: &[u8]) {
         let Some(message) = sensor_message(id) else {
             if [COMMAND.id, STATUS.id, BOARD.id].contains(&id) {
@@ -165,16 +171,19 @@ impl Node {
     }
 
     /// Reports that the output stage could not switch a solenoid. The next tick latches.
+    #[inline]
     pub fn report_solenoid_failure(&mut self) {
         self.inputs.solenoid_failed = true;
     }
 
     /// Says what the board knows of itself. Once this was called, the node sends the latest of it every second.
+    #[inline]
     pub fn report_board(&mut self, state: BoardMessage) {
         self.board_state = Some(state);
     }
 
     /// One period: decides, and returns the frames to send. Call it every [`TICK_MS`].
+    #[inline]
     pub fn tick(&mut self) -> (Outputs, Vec<Frame, MAX_SENT>) {
         self.end_of_reception();
         let outputs = tick(&self.configuration, &mut self.state, &self.inputs);
@@ -211,6 +220,7 @@ impl Node {
     }
 
     /// Takes over what the messages of this tick say, and makes the readings of lost messages invalid.
+    #[inline]
     fn end_of_reception(&mut self) {
         let inputs = &mut self.inputs;
         let displacement = &mut self.receivers.displacement;
@@ -256,12 +266,14 @@ impl Node {
     }
 
     /// Bus statistics since the start.
+    #[inline]
     pub fn counters(&self) -> BusCounters {
         self.counters
     }
 }
 
 /// Content of the status message after a tick.
+#[inline]
 fn status(outputs: &Outputs, lost_messages: MessageSet) -> StatusMessage {
     StatusMessage {
         mode: outputs.mode,

@@ -98,24 +98,26 @@ impl<P: OutputPin> Solenoids<P> {
         for strut in self.pins.values_mut() {
             for pin in strut.each_mut().into_array() {
                 // Nothing more can be done for a pin that does not go low.
-                let _ = pin.set_low();
+                let _ = fails(pin, false);
             }
         }
     }
 
     fn write(&mut self, command: ValveCommand) -> Result<(), SolenoidError> {
         let pins = self.pins.each_mut().zip(command.corners());
-        let failed = pins.map(|(pins, open)| {
-            pins.each_mut()
-                .zip(open)
-                .map(|(pin, open)| if open { pin.set_high() } else { pin.set_low() }.is_err())
-        });
+        let failed = pins.map(|(pins, open)| pins.each_mut().zip(open).map(|(pin, open)| fails(pin, open)));
         if failed == Corners::default() {
             Ok(())
         } else {
             Err(SolenoidError { failed })
         }
     }
+}
+
+/// Switches a pin; returns whether it fails. There are twelve, and one copy of the driver's code is enough.
+#[inline(never)]
+fn fails<P: OutputPin>(pin: &mut P, high: bool) -> bool {
+    if high { pin.set_high() } else { pin.set_low() }.is_err()
 }
 
 impl<P: OutputPin> Drop for Solenoids<P> {

@@ -9,7 +9,7 @@
 //!   closing   gas left behind        V4 = V2 k / p4
 //!             shift of ride height   x_t = (V2 - V4) / A = V2 (1 - k / p4) / A          (+ lower)
 //!   opening   common pressure        p = (V1' p1 + V4 p4) / (V1' + V4),  V1' = V1 k / p1
-//!             force step             dF = A (p - p1) = A (p4 - p1) V4 / (V1' + V4)
+//!             force step             dF = A (p - p1) = A (p4 - p1) V4 / (V1' + V4) = A (p4 - p1) V2 p1 / (V1 p4 + V2 p1)
 //! ```
 //!
 //! The rules for each strut use the pressures extrapolated by 60 ms, to the time at which the valve acts. The pressures of the front
@@ -26,28 +26,28 @@
 //! releases it.
 
 use oleo_interface::tick::TICK_S_F32;
-use oleo_interface::{Absolute, Axle, Corner, Corners, Gauge, Side, StrutPressures, Valve};
+use oleo_interface::{Absolute, Axle, Axles, Corner, Corners, Gauge, Side, StrutPressures, Valve};
 
 use crate::filter::{Derivative, DerivativeState, at_least};
 use crate::plausibility::Trusted;
 use crate::range::{ConfigurationError, within};
 use crate::strategy::Urgency;
 use crate::timing::ticks;
-use crate::valves::ValveCommand;
+use crate::valves::{BYPASS2_BITS, SPRING_BITS, ValveCommand};
 use crate::vehicle::VehicleDescription;
 
 /// Time over which pressures are extrapolated, s: the middle of the valves' response times of 40 to 90 ms.
 const AHEAD_S: f32 = 0.06;
-const HANDLING_PATIENCE_TICKS: u16 = ticks(150);
-const COMFORT_PATIENCE_TICKS: u16 = ticks(1_000);
-const DWELL_TICKS: u16 = ticks(500);
+const HANDLING_PATIENCE_TICKS: u32 = ticks(150) as u32;
+const COMFORT_PATIENCE_TICKS: u32 = ticks(1_000) as u32;
+const DWELL_TICKS: u32 = ticks(500) as u32;
 /// Time from one look at an axle's pressures to the next, s.
 const OBSERVATION_S: f32 = 2.0 * TICK_S_F32;
 /// Time after which p4 follows p1 through an opened valve.
-const SETTLE_TICKS: u16 = ticks(200);
+const SETTLE_TICKS: u32 = ticks(200) as u32;
 /// Time after which a throttled opening ends even where the pressures stay apart: a sensor's offset must not keep the damper
 /// hard for ever.
-const LONGEST_THROTTLE_TICKS: u16 = ticks(1_000);
+const LONGEST_THROTTLE_TICKS: u32 = ticks(1_000) as u32;
 /// Pressures closer than this count as equal, Pa.
 const EQUAL_PA: f32 = 0.2e6;
 /// Absolute pressure below which an accumulator counts as empty, Pa.
@@ -117,17 +117,14 @@ impl Parameters {
 /// State of one spring valve.
 #[derive(Clone, Copy, Debug, Default)]
 struct SpringValve {
-    open: bool,
-    throttled: bool,
-    /// Number of ticks since the last change; it saturates.
-    since: u16,
-    /// Number of ticks for which a change has been wanted; it saturates.
-    waiting: u16,
+    /// Value of [`Springs::now`] at the last change.
+    changed_at: u32,
+    /// Value of [`Springs::now`] in the last tick before a change was wanted, while one is.
+    wanted_since: u32,
     /// Whether the filters have seen a pressure.
     observed: bool,
     p1_rate: DerivativeState,
     p4_rate: DerivativeState,
-    trapped_shift_m: f32,
     opening_step_n: f32,
 }
 
@@ -137,7 +134,7 @@ struct SpringValve {
 /// use oleo_controller::plausibility::Trusted;
 /// use oleo_controller::spring::Springs;
 /// use oleo_controller::strategy::Urgency;
-/// use oleo_controller::{Absolute, Configuration, Corners, Gauge, StrutPressures};
+/// use oleo_controller::{Absolute, Configuration, Corners, Gauge, StrutPressures, ValveCommand};
 /// let parameters = Configuration::defender110().spring;
 /// // Struts at rest under 2 MPa, charged for exactly that.
 /// let trusted = Trusted {
@@ -145,123 +142,198 @@ struct SpringValve {
 ///     charge: Corners::splat(Absolute(2_101_325.0)),
 ///     ..Trusted::default()
 /// };
-/// let (load_n, wanted) = (Corners::splat(3927.0), Corners::splat(true));
+/// let (load_n, wanted) = (Corners::splat(3927.0), ValveCommand::SOFT);
 /// let mut springs = Springs::default();
 /// // The pressures are equal, so all valves open as soon as they have rested for 0.5 s.
 /// let mut tick = || springs.step(&parameters, &trusted, &load_n, wanted, Urgency::Comfort);
-/// assert_eq!((0..99).map(|_| tick()).last(), Some(Corners::splat(false)));
-/// assert_eq!(tick(), Corners::splat(true));
+/// assert_eq!((0..99).map(|_| tick()).last(), Some(ValveCommand::SAFE));
+/// assert_eq!(tick(), ValveCommand::from_word(0b100_100_100_100));
 /// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Springs {
-    valves: Corners<SpringValve>,
+    /// Number of ticks so far. It wraps after 248 days; a valve that last moved exactly then rests once more.
+    now: u32,
+    /// The bits of valve 3 alone, here and in the next two: valves that are open.
+    open: u16,
+    /// Valves that open throttled through damper 2.
+    throttled: u16,
+    /// Valves that were wanted elsewhere at the end of the last tick.
+    waiting: u16,
     /// Whether the pressures of the rear axle are the next to be looked at.
     rear_is_next: bool,
+    trapped_shift_m: Corners<f32>,
+    valves: Corners<SpringValve>,
+}
+
+/// The bit of a corner's valve 3 in a command.
+const fn bit(corner: Corner) -> u16 {
+    1 << ValveCommand::bit(corner, Valve::Spring)
 }
 
 impl Springs {
-    /// One tick: returns whether valve 3 is to be open at each corner; `wanted` says where the strategy wants it open. While
-    /// the mode machine keeps all valves closed, call [`Springs::forced_closed`] instead.
+    /// One tick: returns where valve 3 is to be open; `wanted` says where the strategy wants it open. In both, the bits of the bypass
+    /// valves say nothing. While the mode machine keeps all valves closed, call [`Springs::forced_closed`] instead.
     pub fn step(
         &mut self,
         c: &Parameters,
         trusted: &Trusted,
         static_load_n: &Corners<f32>,
-        wanted: Corners<bool>,
+        wanted: ValveCommand,
         urgency: Urgency,
-    ) -> Corners<bool> {
-        self.observe(c, trusted, wanted);
-        let axles = self.valves.each_mut().zip(wanted).zip(*static_load_n).by_axle();
-        for (((left, left_wanted), left_load_n), ((right, right_wanted), right_load_n)) in axles.into_array() {
-            // The valves of an axle that are to open do so together.
-            let smooth = (!left_wanted || left.opens_smoothly(c, left_load_n))
-                && (!right_wanted || right.opens_smoothly(c, right_load_n));
-            for (valve, wanted) in [(left, left_wanted), (right, right_wanted)] {
-                if wanted {
-                    valve.open_if_due(smooth);
-                } else {
-                    valve.close_if_due(c, urgency);
-                }
-            }
+    ) -> ValveCommand {
+        self.observe(c, trusted);
+        let wanted = wanted.word() & SPRING_BITS;
+        if wanted == self.open {
+            self.waiting = 0;
+        } else {
+            self.change(c, static_load_n, wanted, urgency);
         }
-        self.valves.map(|valve| valve.open)
+        ValveCommand::from_word(self.open)
     }
 
     /// One tick in which the mode machine keeps all valves closed. Their next opening obeys the rules above.
     pub fn forced_closed(&mut self, c: &Parameters, trusted: &Trusted) {
-        self.observe(c, trusted, Corners::splat(false));
-        for valve in self.valves.values_mut() {
-            if valve.open {
-                valve.change(false);
+        self.observe(c, trusted);
+        self.waiting = 0;
+        if self.open != 0 {
+            for corner in Corner::ALL {
+                if self.is_open(corner) {
+                    self.set(corner, false);
+                }
             }
         }
     }
 
-    fn observe(&mut self, c: &Parameters, trusted: &Trusted, wanted: Corners<bool>) {
-        for (valve, wanted) in self.valves.each_mut().zip(wanted).into_array() {
-            valve.wait(wanted);
+    /// Called in ticks in which some valve is wanted elsewhere; most ticks have none.
+    #[inline(never)]
+    fn change(&mut self, c: &Parameters, static_load_n: &Corners<f32>, wanted: u16, urgency: Urgency) {
+        for corner in Corner::ALL {
+            if self.waiting & bit(corner) == 0 {
+                self.valves[corner].wanted_since = self.now.wrapping_sub(1);
+            }
         }
+        let is_wanted = |corner| wanted & bit(corner) != 0;
+        // The valves of an axle that are to open do so together.
+        let smooth = Axles::from_fn(|axle| {
+            (Side::ALL.map(|side| axle.corner(side)).into_iter())
+                .filter(|corner| is_wanted(*corner) && !self.is_open(*corner))
+                .all(|corner| self.valves[corner].opening_step_n.abs() <= c.opening_step_share * static_load_n[corner])
+        });
+        let elsewhere = wanted ^ self.open;
+        for corner in Corner::ALL.into_iter().filter(|corner| elsewhere & bit(*corner) != 0) {
+            if wanted & bit(corner) != 0 {
+                self.open_if_due(corner, smooth[corner.axle()]);
+            } else {
+                self.close_if_due(c, corner, urgency);
+            }
+        }
+        self.waiting = wanted ^ self.open;
+    }
+
+    #[inline(never)]
+    fn open_if_due(&mut self, corner: Corner, smooth: bool) {
+        if self.since(corner) < DWELL_TICKS {
+            return;
+        }
+        if smooth {
+            self.set(corner, true);
+        } else if self.waits(corner) >= COMFORT_PATIENCE_TICKS {
+            self.set(corner, true);
+            self.throttled |= bit(corner);
+        }
+    }
+
+    #[inline(never)]
+    fn close_if_due(&mut self, c: &Parameters, corner: Corner, urgency: Urgency) {
+        let patience = match urgency {
+            Urgency::Emergency => 0,
+            Urgency::Handling => HANDLING_PATIENCE_TICKS,
+            Urgency::Comfort => COMFORT_PATIENCE_TICKS,
+        };
+        let rested = self.since(corner) >= DWELL_TICKS || urgency == Urgency::Emergency;
+        let little_trapped = self.trapped_shift_m[corner].abs() <= c.trapped_shift_m;
+        if rested && (self.waits(corner) > patience || little_trapped) {
+            self.set(corner, false);
+        }
+    }
+
+    fn set(&mut self, corner: Corner, open: bool) {
+        self.valves[corner].changed_at = self.now;
+        self.throttled &= !bit(corner);
+        if open {
+            self.open |= bit(corner);
+        } else {
+            self.open &= !bit(corner);
+        }
+    }
+
+    /// Takes over what the pressures of an axle say.
+    #[inline(never)]
+    fn observe(&mut self, c: &Parameters, trusted: &Trusted) {
+        self.now = self.now.wrapping_add(1);
         let axle = if self.rear_is_next { Axle::Rear } else { Axle::Front };
         self.rear_is_next = !self.rear_is_next;
         for corner in Side::ALL.map(|side| axle.corner(side)) {
-            self.valves[corner].observe(c, &trusted.pressure[corner], trusted.charge[corner]);
+            let is_open = self.is_open(corner);
+            let pressure = &trusted.pressure[corner];
+            self.trapped_shift_m[corner] = self.valves[corner].observe(c, pressure, trusted.charge[corner], is_open);
+            if self.throttled & bit(corner) != 0 {
+                let (since, apart) = (self.since(corner), (pressure.p3 - pressure.p4).abs());
+                if apart < EQUAL_PA && since >= SETTLE_TICKS || since >= LONGEST_THROTTLE_TICKS {
+                    self.throttled &= !bit(corner);
+                }
+            }
         }
     }
 
     /// Corners at which valve 3 opens throttled through damper 2, so that valve 2 is to stay closed.
     pub fn throttled(&self) -> Corners<bool> {
-        self.valves.each_ref().map(|valve| valve.throttled)
+        Corners::from_fn(|corner| self.throttled & bit(corner) != 0)
     }
 
     /// The signals of the bypass valves, with those of valve 3 as they are to be. Valve 2 stays closed where valve 3 opens throttled,
     /// and also where it is closed: there it has no effect, and a valve that is not energised does not wear.
     pub fn applied_to(&self, bypass: ValveCommand) -> ValveCommand {
-        let (mut open, mut closed) = (0, 0);
-        for (corner, valve) in self.valves.iter() {
-            let bit = |valve| 1 << ValveCommand::bit(corner, valve);
-            if valve.open {
-                open |= bit(Valve::Spring);
-            }
-            if !valve.open || valve.throttled {
-                closed |= bit(Valve::Bypass2);
-            }
-        }
-        ValveCommand::from_word((bypass.word() | open) & !closed)
+        // The bit of valve 2 is next to that of valve 3, below it.
+        let bypass2 = (self.open & !self.throttled) >> 1;
+        ValveCommand::from_word(bypass.word() & (bypass2 | !BYPASS2_BITS) | self.open)
     }
 
     /// Whether valve 3 of a corner has been open for so long that p4 follows p1.
     pub fn is_settled_open(&self, corner: Corner) -> bool {
-        let valve = &self.valves[corner];
-        valve.open && valve.since >= SETTLE_TICKS && !valve.throttled
+        self.open & !self.throttled & bit(corner) != 0 && self.since(corner) >= SETTLE_TICKS
     }
 
     /// Shift of the ride height by the oil behind each closed valve 3, m, positive where the corner is lower. Where the valve
     /// is open it is the shift that closing it would trap.
     pub fn trapped_shift_m(&self) -> Corners<f32> {
-        self.valves.each_ref().map(|valve| valve.trapped_shift_m)
+        self.trapped_shift_m
+    }
+
+    const fn is_open(&self, corner: Corner) -> bool {
+        self.open & bit(corner) != 0
+    }
+
+    /// Ticks since a valve has changed.
+    fn since(&self, corner: Corner) -> u32 {
+        self.now.wrapping_sub(self.valves[corner].changed_at)
+    }
+
+    /// Ticks for which a change of a valve has been wanted, with this one.
+    fn waits(&self, corner: Corner) -> u32 {
+        self.now.wrapping_sub(self.valves[corner].wanted_since)
     }
 }
 
 impl SpringValve {
-    fn change(&mut self, open: bool) {
-        self.open = open;
-        self.since = 0;
-        self.waiting = 0;
-        self.throttled = false;
-    }
-
-    /// One tick of waiting, or of rest.
-    fn wait(&mut self, wanted: bool) {
-        self.since = self.since.saturating_add(1);
-        self.waiting = if wanted == self.open {
-            0
-        } else {
-            self.waiting.saturating_add(1)
-        };
-    }
-
-    /// Takes over what the pressures say, once in [`OBSERVATION_S`].
-    fn observe(&mut self, c: &Parameters, pressure: &StrutPressures<Gauge<f32>>, charge: Absolute<f32>) {
+    /// Takes over what the pressures say, once in [`OBSERVATION_S`]; returns the trapped shift, m.
+    fn observe(
+        &mut self,
+        c: &Parameters,
+        pressure: &StrutPressures<Gauge<f32>>,
+        charge: Absolute<f32>,
+        is_open: bool,
+    ) -> f32 {
         if !self.observed {
             self.observed = true;
             self.p1_rate = DerivativeState::at_rest(pressure.p1.pa());
@@ -270,49 +342,14 @@ impl SpringValve {
         let (v1, v2) = (c.gas_volume_1_m3, c.gas_volume_2_m3);
         let ahead = |p: Gauge<f32>, rate: &mut DerivativeState| {
             let later = p.absolute() + AHEAD_S * c.pressure_rate.step(rate, p.pa());
-            Absolute(at_least(later.pa(), LEAST_PA))
+            at_least(later.pa(), LEAST_PA)
         };
         let p1 = ahead(pressure.p1, &mut self.p1_rate);
         let p4 = ahead(pressure.p4, &mut self.p4_rate);
-        let gas4 = v2 * charge.pa() / p4.pa();
-        self.trapped_shift_m = (v2 - gas4) * c.per_piston_area;
-        if !self.open {
-            let gas1 = v1 * charge.pa() / p1.pa();
-            self.opening_step_n = c.piston_area_m2 * (p4 - p1) * gas4 / at_least(gas1 + gas4, f32::MIN_POSITIVE);
+        if !is_open {
+            let gas = v2 * p1;
+            self.opening_step_n = c.piston_area_m2 * (p4 - p1) * gas / (v1 * p4 + gas);
         }
-        if self.throttled
-            && ((pressure.p3 - pressure.p4).abs() < EQUAL_PA && self.since >= SETTLE_TICKS
-                || self.since >= LONGEST_THROTTLE_TICKS)
-        {
-            self.throttled = false;
-        }
-    }
-
-    fn opens_smoothly(&self, c: &Parameters, static_load_n: f32) -> bool {
-        self.open || self.opening_step_n.abs() <= c.opening_step_share * static_load_n
-    }
-
-    fn open_if_due(&mut self, smooth: bool) {
-        if self.open || self.since < DWELL_TICKS {
-            return;
-        }
-        if smooth {
-            self.change(true);
-        } else if self.waiting >= COMFORT_PATIENCE_TICKS {
-            self.change(true);
-            self.throttled = true;
-        }
-    }
-
-    fn close_if_due(&mut self, c: &Parameters, urgency: Urgency) {
-        let patience = match urgency {
-            Urgency::Emergency => 0,
-            Urgency::Handling => HANDLING_PATIENCE_TICKS,
-            Urgency::Comfort => COMFORT_PATIENCE_TICKS,
-        };
-        let rested = self.since >= DWELL_TICKS || urgency == Urgency::Emergency;
-        if self.open && rested && (self.waiting > patience || self.trapped_shift_m.abs() <= c.trapped_shift_m) {
-            self.change(false);
-        }
+        (v2 - v2 * charge.pa() / p4) * c.per_piston_area
     }
 }

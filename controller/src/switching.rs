@@ -9,10 +9,8 @@
 //! - If the last is a closing, the tenth is an opening. The first was 199 ticks before that, and the closing comes at least one
 //!   tick after it.
 
-use oleo_interface::{Corner, Corners, StrutValves, Valve};
-
 use crate::timing::ticks;
-use crate::valves::ValveCommand;
+use crate::valves::{VALVES, ValveCommand, bits};
 
 /// Most switchings of a valve within a second.
 const MOST_A_SECOND: usize = 10;
@@ -25,7 +23,8 @@ pub struct SwitchingLimit {
     command: ValveCommand,
     /// Number of ticks so far. It wraps after 248 days; a valve that last moved exactly then may have to wait a second.
     now: u32,
-    history: Corners<StrutValves<History>>,
+    /// Of each valve, in the order of the bits of the command.
+    history: [History; VALVES],
 }
 
 /// Times of the last switchings of a valve.
@@ -37,27 +36,31 @@ struct History {
 }
 
 impl History {
-    /// The oldest of the times.
-    fn oldest(&mut self) -> Option<&mut u32> {
-        self.times.get_mut(usize::from(self.oldest))
-    }
-
-    /// Records a switching of the valve at tick `now`.
-    fn add(&mut self, now: u32) {
-        if let Some(time) = self.oldest() {
-            *time = now;
+    /// Records a switching of the valve at tick `now`, unless it is an opening that comes too soon; returns whether the valve may move.
+    fn add(&mut self, now: u32, opens: bool) -> bool {
+        if let Some(oldest) = self.times.get_mut(usize::from(self.oldest)) {
+            if opens && now.wrapping_sub(*oldest) < SPAN_TICKS {
+                return false;
+            }
+            *oldest = now;
         }
-        self.oldest = self.oldest.wrapping_add(1) % (MOST_A_SECOND as u8 - 1);
+        self.oldest = if self.oldest < MOST_A_SECOND as u8 - 2 {
+            self.oldest + 1
+        } else {
+            0
+        };
+        true
     }
 }
 
 impl Default for SwitchingLimit {
+    #[inline]
     fn default() -> Self {
         Self {
             command: ValveCommand::SAFE,
             // Nothing has moved before the first tick.
             now: SPAN_TICKS,
-            history: Corners::splat(StrutValves::splat(History::default())),
+            history: [History::default(); VALVES],
         }
     }
 }
@@ -80,22 +83,11 @@ impl SwitchingLimit {
     /// Called in ticks in which some valve is to be elsewhere; most ticks have none.
     #[inline(never)]
     fn change(&mut self, permitted: ValveCommand) {
-        let now = self.now;
-        for corner in Corner::ALL {
-            for valve in Valve::ALL {
-                let open = permitted.is_open(corner, valve);
-                if open == self.command.is_open(corner, valve) {
-                    continue;
-                }
-                let history = &mut self.history[corner][valve];
-                let rested = history
-                    .oldest()
-                    .is_some_and(|time| now.wrapping_sub(*time) >= SPAN_TICKS);
-                if open && !rested {
-                    continue;
-                }
-                history.add(now);
-                self.command = self.command.with(corner, valve, open);
+        for (place, bit) in bits(permitted.word() ^ self.command.word()) {
+            let opens = permitted.word() & bit != 0;
+            let moves = (self.history.get_mut(place)).is_some_and(|history| history.add(self.now, opens));
+            if moves {
+                self.command = ValveCommand::from_word(self.command.word() ^ bit);
             }
         }
     }

@@ -26,6 +26,8 @@ use crate::valves::ValveCommand;
 /// assert_eq!(outputs.mode, Mode::StartUp); // no reading is valid yet
 /// ```
 #[derive(Clone, Debug, Default)]
+// In the order of the declaration: the checks of the readings come first, where one instruction of a Cortex-M4F reaches them.
+#[repr(C)]
 pub struct State {
     plausibility: plausibility::State,
     estimate: estimate::State,
@@ -38,6 +40,7 @@ pub struct State {
 
 impl State {
     /// Before the first tick: valves closed, mode start-up.
+    #[inline]
     pub fn new() -> Self {
         Self::default()
     }
@@ -52,6 +55,7 @@ impl State {
     /// let outputs = tick(&Configuration::defender110(), &mut state, &Inputs::default());
     /// assert_eq!((outputs.mode, outputs.fault), (Mode::Latched, FaultCode::Solenoid));
     /// ```
+    #[inline]
     pub fn latch(&mut self, cause: FaultCode) {
         self.failsafe = failsafe::State::latched(cause);
     }
@@ -130,8 +134,7 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     let mode = state.failsafe.step(&health);
     let demand = state.strategy.step(&c.strategy, &estimate, trusted);
     if mode == Mode::Normal {
-        let wanted = Corners::from_fn(|corner| demand.valves.is_open(corner, Valve::Spring));
-        let load_n = &estimate.static_load_n;
+        let (load_n, wanted) = (state.estimate.static_load_n(), demand.valves);
         state.springs.step(&c.spring, trusted, load_n, wanted, demand.urgency);
     } else {
         state.springs.forced_closed(&c.spring, trusted);

@@ -5,8 +5,26 @@
 
 use oleo_interface::{Corner, Corners, StrutValves, Valve};
 
+/// Number of valves.
+pub(crate) const VALVES: usize = 12;
+
+/// The bits that are set in a word, each with its place, from the lowest. The number of steps is that of the bits: a loop over all
+/// twelve valves would be unrolled into as many copies of its body.
+pub(crate) fn bits(word: u16) -> impl Iterator<Item = (usize, u16)> {
+    let mut rest = word;
+    core::iter::from_fn(move || {
+        let bit = rest & rest.wrapping_neg();
+        rest ^= bit;
+        (bit != 0).then_some((bit.trailing_zeros() as usize, bit))
+    })
+}
+
 /// The bits of the bypass valves 1 and 2 of every strut.
 pub(crate) const BYPASS_BITS: u16 = 0b011_011_011_011;
+/// The bits of bypass valve 2 of every strut.
+pub(crate) const BYPASS2_BITS: u16 = 0b010_010_010_010;
+/// The bits of valve 3 of every strut.
+pub(crate) const SPRING_BITS: u16 = 0b100_100_100_100;
 
 /// Commanded positions of the twelve valves: bit `3 * corner + valve`, 1 open (energised), 0 closed.
 ///

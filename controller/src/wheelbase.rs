@@ -4,9 +4,9 @@
 //! the road is and the body's motion is not, agree best at that delay. For every delay at once, agreement of the rear sign with
 //! the front signs of the last 128 ticks is one exclusive-or. The 128 sums are counted bit by bit, bit `n` of all of them in one
 //! word. A full adder adds the agreements of both sides to bit 0; its carries wait until there are two of them, which are then
-//! added to bit 1 by the next full adder, and so on. So bit `n` is touched in every `2^n`th tick, and a tick needs two additions on
-//! average, whatever the number of delays ("carry-save", as in the population count of Harley and Seal: Warren, Hacker's Delight,
-//! 2nd edition, section 5-1).
+//! added to bit 1 by the next full adder, and so on. So bit `n` is touched in every `2^n`th tick, and a tick needs two additions,
+//! whatever the number of delays ("carry-save", as in the population count of Harley and Seal: Warren, Hacker's Delight,
+//! 2nd edition, section 5-1). The turns of the bits are staggered, so that a tick never has more than these two.
 //!
 //! A window of 1.28 s gives 512 comparisons of two sides. On classes B to E and Belgian block at 40 to 80 km/h the greatest
 //! agreement is 0.62 to 0.96, and it lies within a tick of the truth whenever it is above 0.72 (`docs/controller.md`). For
@@ -22,9 +22,13 @@ use crate::filter::LowPass;
 /// Frequency above which strut speeds are compared, Hz.
 const CORNER_HZ: f32 = 3.0;
 /// Ticks compared before a delay is chosen.
-const WINDOW_TICKS: u16 = 1 << (PLACES - 1);
-/// Binary places of the counters, without the carry out of the last one: two agreements in each tick of the window.
-const PLACES: usize = 9;
+const WINDOW_TICKS: u16 = 1 << (PLACES - 2);
+/// Binary places of the counters: two agreements in each tick of the window, 512 at most.
+const PLACES: usize = 10;
+/// Ticks after the window in which two places each take in the carries that wait still: all places but the lowest two.
+const DRAINING_TICKS: u16 = (PLACES as u16 - 2) / 2;
+/// Ticks after that in which two places each are judged.
+const JUDGING_TICKS: u16 = PLACES as u16 / 2;
 /// Delays that are looked for, a bit each: 12 to 120 ticks, which are 168 down to 17 km/h at a wheelbase of 2.8 m.
 const DELAYS: u128 = (1 << 121) - (1 << 12);
 /// Least number of agreements, of two in each tick, that is more than chance: a fraction of 0.72.
@@ -54,8 +58,17 @@ impl Parameters {
 struct Place {
     /// The place itself.
     sum: u128,
-    /// A carry that waits for the next one; at the end of a window, the carry out of the place.
-    carry: u128,
+    /// Carries out of the place below that wait to be added.
+    waiting: [u128; 2],
+}
+
+impl Place {
+    /// Adds two carries, or agreements; returns the carry into the place above.
+    fn add(&mut self, [a, b]: [u128; 2]) -> u128 {
+        let carry = (self.sum & a) | (b & (self.sum | a));
+        self.sum ^= a ^ b;
+        carry
+    }
 }
 
 /// What is known of the greatest number of agreements, while the counters are looked at from their highest place.
@@ -65,16 +78,14 @@ struct Judgement {
     best: u128,
     /// Those places.
     agreements: u16,
-    /// Number of places that have been looked at.
-    looked_at: u8,
 }
 
 impl Default for Judgement {
+    #[inline]
     fn default() -> Self {
         Self {
             best: DELAYS,
             agreements: 0,
-            looked_at: 0,
         }
     }
 }
@@ -87,7 +98,7 @@ pub(crate) struct State {
     front: [u128; 2],
     /// Place `n` holds bit `n` of the number of agreements.
     places: [Place; PLACES],
-    /// Ticks since the start, until the history is full; then its length and the ticks of the window.
+    /// Ticks since the start, until the history is full; then its length and the ticks since the window began.
     ticks: u16,
     judgement: Judgement,
     delay: Option<u8>,
@@ -104,46 +115,47 @@ impl State {
         *left = *left << 1 | u128::from(front.0);
         *right = *right << 1 | u128::from(front.1);
         // A window begins when the history is full, or what was before the start would be counted.
-        let Some(tick) = self.ticks.checked_sub(HISTORY as u16) else {
-            self.ticks += 1;
-            return None;
-        };
-        if tick < WINDOW_TICKS {
-            // Front signs where the rear one is upward, and their inverse where it is not.
-            let agreeing = |rear: bool, front: u128| front ^ u128::from(rear).wrapping_sub(1);
-            count(
-                &mut self.places,
-                tick,
-                [agreeing(rear.0, *left), agreeing(rear.1, *right)],
-            );
-            self.ticks += 1;
-        } else {
-            // The places are judged one in a tick, from the highest, while nothing is counted.
-            self.judge();
+        let tick = self.ticks.checked_sub(HISTORY as u16);
+        self.ticks += 1;
+        match tick {
+            None => {}
+            Some(tick) if tick < WINDOW_TICKS => {
+                // Front signs where the rear one is upward, and their inverse where it is not.
+                let agreeing = |rear: bool, front: u128| front ^ u128::from(rear).wrapping_sub(1);
+                let both = [agreeing(rear.0, *left), agreeing(rear.1, *right)];
+                count(&mut self.places, tick, both);
+            }
+            Some(tick) => self.end_window(tick - WINDOW_TICKS),
         }
         self.delay
     }
 
-    /// Looks at the next lower place of the counters; after the lowest, chooses the delay of greatest agreement and begins a window.
-    fn judge(&mut self) {
-        let Judgement {
-            best,
-            agreements,
-            looked_at,
-        } = &mut self.judgement;
-        // After a whole window no carry waits, but for the one out of the last place, which is the highest bit.
-        let [.., last] = &self.places;
-        let mut downwards = core::iter::once(&last.carry).chain(self.places.iter().rev().map(|place| &place.sum));
-        if let Some(bit) = downwards.nth(usize::from(*looked_at)) {
-            let with = *best & bit;
-            *agreements = *agreements << 1 | u16::from(with != 0);
-            if with != 0 {
-                *best = with;
+    /// What is done after a window, a little in each tick, while nothing is counted: the waiting carries are added, the places are
+    /// judged from the highest, a delay of greatest agreement is chosen, and a window begins.
+    #[inline(never)]
+    fn end_window(&mut self, tick: u16) {
+        if tick < DRAINING_TICKS {
+            for place in [2 + 2 * tick, 3 + 2 * tick] {
+                add_waiting(&mut self.places, place.into(), WINDOW_TICKS);
             }
-            *looked_at += 1;
-            return;
+        } else if let Some(tick) = tick.checked_sub(DRAINING_TICKS)
+            && tick < JUDGING_TICKS
+        {
+            for place in self.places.iter().rev().skip(2 * usize::from(tick)).take(2) {
+                self.judgement.look_at(place.sum);
+            }
+        } else if tick == DRAINING_TICKS + JUDGING_TICKS {
+            self.places = [Place::default(); PLACES];
+        } else {
+            self.choose();
+            self.judgement = Judgement::default();
+            self.ticks = HISTORY as u16;
         }
-        if *agreements >= LEAST_AGREEMENTS {
+    }
+
+    fn choose(&mut self) {
+        let Judgement { best, agreements } = self.judgement;
+        if agreements >= LEAST_AGREEMENTS {
             self.delay = Some(best.trailing_zeros() as u8);
             self.unclear = 0;
         } else {
@@ -152,23 +164,53 @@ impl State {
                 self.delay = None;
             }
         }
-        self.judgement = Judgement::default();
-        self.places = [Place::default(); PLACES];
-        self.ticks = HISTORY as u16;
     }
 }
 
-/// Adds the agreements of both sides in a tick, 0 to 255, of the window to the counters.
-fn count(places: &mut [Place; PLACES], tick: u16, both: [u128; 2]) {
-    let [mut a, mut b] = both;
-    for (n, place) in places.iter_mut().enumerate() {
-        let carry = (place.sum & a) | (b & (place.sum | a));
-        place.sum ^= a ^ b;
-        if tick >> n & 1 == 0 {
-            place.carry = carry;
-            return;
+impl Judgement {
+    /// Looks at the next lower place of the counters.
+    fn look_at(&mut self, place: u128) {
+        let with = self.best & place;
+        self.agreements = self.agreements << 1 | u16::from(with != 0);
+        if with != 0 {
+            self.best = with;
         }
-        (a, b) = (place.carry, carry);
+    }
+}
+
+/// Adds the agreements of both sides in a tick of the window, 0 to 255, to the counters.
+///
+/// Place 0 adds in every tick, place 1 in every odd one. Of the even ticks place 2 has every second one, place 3 every second one of
+/// those that are left, and so on: ticks 0, 4, 8 for place 2, ticks 2, 10, 18 for place 3, ticks 6, 22 for place 4. At its turn
+/// a place finds the carries of two turns of the place below.
+#[inline(never)]
+fn count(places: &mut [Place; PLACES], tick: u16, both: [u128; 2]) {
+    let [units, twos, ..] = places;
+    let carry = units.add(both);
+    if tick & 1 == 0 {
+        let [first, _] = &mut twos.waiting;
+        *first = carry;
+        add_waiting(places, 2 + (tick >> 1).trailing_ones() as usize, tick);
+    } else {
+        let [first, _] = twos.waiting;
+        let carry = twos.add([first, carry]);
+        wait(places, 2, tick >> 1, carry);
+    }
+}
+
+/// The turn of a place, from 2 on, in a tick: adds the carries that wait there. None of the highest place is carried further.
+#[inline(never)]
+fn add_waiting(places: &mut [Place; PLACES], place: usize, tick: u16) {
+    let Some(here) = places.get_mut(place) else { return };
+    let carry = here.add(here.waiting);
+    wait(places, place + 1, tick >> place, carry);
+}
+
+/// Lets a carry wait at a place: that of each second turn of the place below beside that of the one before.
+fn wait(places: &mut [Place; PLACES], place: usize, turn: u16, carry: u128) {
+    if let Some(place) = places.get_mut(place) {
+        let [even, odd] = &mut place.waiting;
+        *(if turn & 1 == 0 { even } else { odd }) = carry;
     }
 }
 
@@ -252,17 +294,17 @@ mod tests {
             count(&mut places, tick, both);
         }
         expected[2] = WINDOW_TICKS;
+        let drain = |places: &mut _| (2..PLACES).for_each(|place| add_waiting(places, place, WINDOW_TICKS));
+        drain(&mut places);
         for (delay, expected) in expected.into_iter().enumerate() {
             let bit = |word: u128| (word >> delay & 1) as u16;
-            let mut counted = bit(places[PLACES - 1].carry) << PLACES;
-            for (n, place) in places.iter().enumerate() {
-                counted |= bit(place.sum) << n;
-            }
+            let counted: u16 = (places.iter().enumerate()).map(|(n, place)| bit(place.sum) << n).sum();
             assert_eq!(counted, expected, "delay {delay}");
         }
         let mut all = [Place::default(); PLACES];
         (0..WINDOW_TICKS).for_each(|tick| count(&mut all, tick, [u128::MAX; 2]));
-        assert_eq!(all[PLACES - 1].carry, u128::MAX, "512 agreements are bit 9 alone");
-        assert!(all.iter().all(|place| place.sum == 0));
+        drain(&mut all);
+        assert!(all.iter().rev().skip(1).all(|place| place.sum == 0));
+        assert_eq!(all[PLACES - 1].sum, u128::MAX, "512 agreements are bit 9 alone");
     }
 }

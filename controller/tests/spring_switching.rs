@@ -6,7 +6,7 @@ use common::{AREA_M2, QuietStrut, STATIC_PA};
 use oleo_controller::plausibility::Trusted;
 use oleo_controller::spring::Springs;
 use oleo_controller::strategy::Urgency;
-use oleo_controller::{Absolute, Axles, Configuration, Corner, Corners};
+use oleo_controller::{Absolute, Axles, Configuration, Corner, Corners, Valve, ValveCommand};
 use proptest::prelude::*;
 
 const LOAD_N: Corners<f32> = Corners::splat(STATIC_PA * AREA_M2);
@@ -48,9 +48,9 @@ impl Bench {
         for (corner, pressure) in trusted.pressure.iter_mut() {
             *pressure = self.struts[corner].pressures(x[corner], self.open[corner]);
         }
-        self.open = self
-            .springs
-            .step(&Configuration::defender110().spring, &trusted, &LOAD_N, wanted, urgency);
+        let wanted = ValveCommand::from_fn(|corner, valve| valve == Valve::Spring && wanted[corner]);
+        let open = (self.springs).step(&Configuration::defender110().spring, &trusted, &LOAD_N, wanted, urgency);
+        self.open = Corners::from_fn(|corner| open.is_open(corner, Valve::Spring));
         self.open
     }
 

@@ -19,15 +19,16 @@ const ALL: u32 = (ValveCommand::SOFT.word() as u32) << FIRST_PIN;
 /// pin really has, and not what was just written. A pin that is shorted, or whose driver holds it, is found in the tick after; a broken
 /// solenoid or wire is not.
 pub struct Solenoid {
-    mask: u32,
+    pin: u8,
     high: bool,
 }
 
 impl Solenoid {
     fn set(&mut self, high: bool) -> Result<(), ErrorKind> {
+        let mask = 1_u32.wrapping_shl(self.pin.into());
         // The emulator has no ports: they read as zero.
-        let obeyed = cfg!(feature = "slcan") || is_high(self.mask) == self.high;
-        write(if high { self.mask } else { self.mask << 16 });
+        let obeyed = cfg!(feature = "slcan") || is_high(mask) == self.high;
+        write(if high { mask } else { mask << 16 });
         self.high = high;
         if obeyed { Ok(()) } else { Err(ErrorKind::Other) }
     }
@@ -44,7 +45,7 @@ pub fn take(_port: GPIOE, rcc: &RCC) -> Corners<StrutValves<Solenoid>> {
     }
     Corners::from_fn(|corner| {
         StrutValves::from_fn(|valve| Solenoid {
-            mask: u32::from(ValveCommand::SAFE.with(corner, valve, true).word()) << FIRST_PIN,
+            pin: FIRST_PIN + ValveCommand::bit(corner, valve) as u8,
             high: false,
         })
     })

@@ -308,7 +308,7 @@ impl Series {
                 _ => Position::TopRight,
             };
             trace = trace
-                .text_array(vec![name.as_str()])
+                .text_array(vec![in_lines(&name)])
                 .text_position(position)
                 .clip_on_axis(false);
         }
@@ -325,6 +325,21 @@ impl Series {
         }
         trace
     }
+}
+
+/// Longest line of a name at a point, characters.
+const LINE: usize = 18;
+
+/// A name in lines that have room on a narrow page.
+fn in_lines(name: &str) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    for word in name.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.len() + 1 + word.len() <= LINE => *line += &format!(" {word}"),
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines.join("<br>")
 }
 
 /// "y", "y2", "y3": how traces name an axis.

@@ -11,8 +11,13 @@ pub struct Limits {
 impl Limits {
     /// Whether a value is within the range. NaN is not.
     pub fn hold(&self, value: f32) -> bool {
-        // Positive numbers compare as their bits do, and most values are positive: one integer comparison finds those in range.
-        value.to_bits() <= self.most.to_bits() || (value >= self.least && value <= self.most)
+        self.hold_positive(value) || (value >= self.least && value <= self.most)
+    }
+
+    /// Whether a value is within the upper part of the range, from 0 on. It is one comparison of integers, because positive numbers
+    /// compare as their bits do; the bits of a negative number or of NaN are above those of all of them.
+    pub fn hold_positive(&self, value: f32) -> bool {
+        value.to_bits() <= self.most.to_bits()
     }
 }
 

@@ -39,7 +39,7 @@ use crate::reading::Inputs;
 use crate::sensor_message::{MessageSet, SensorMessage};
 use crate::vehicle::VehicleDescription;
 use oil_balance::OilBalance;
-use reading_check::StrutReadings;
+use reading_check::{StrutReadings, take_over};
 use stuck::Stuck;
 use trapped_oil::TrappedOil;
 pub use trusted::Trusted;
@@ -64,6 +64,14 @@ impl Parameters {
     }
 }
 
+/// The bit of a corner, where there is one for each.
+const fn bit(corner: Corner) -> u8 {
+    1 << corner.index()
+}
+
+/// The bits of all corners.
+const ALL: u8 = (1 << Corner::ALL.len()) - 1;
+
 /// Memory of all checks.
 ///
 /// ```
@@ -86,27 +94,32 @@ impl Parameters {
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct State {
-    readings: Corners<StrutReadings>,
-    comparisons: Corners<Comparisons>,
-    /// The corner that is compared next.
-    turn: Corner,
-    /// Turns of the present window of `stuck` that are over at each corner before the one whose turn it is.
-    window_turns: u8,
-    /// A bit for each corner at which a comparison has found something.
-    disagreeing: u8,
     /// The last good readings. Nothing is wrong in its `health`.
     measured: Trusted,
     /// The same in a tick in which something is wrong: what is wrong, and with what it is replaced.
     replaced: Trusted,
+    /// The corner that is compared next.
+    turn: Corner,
+    /// Turns of the present window of `stuck` that are over at each corner before the one whose turn it is.
+    window_turns: u8,
+    /// A bit for each corner with one of whose readings by itself something was wrong lately.
+    restless: u8,
+    /// A bit for each corner at which a comparison has found something.
+    disagreeing: u8,
+    readings: Corners<StrutReadings>,
+    comparisons: Corners<Comparisons>,
 }
 
 impl Default for State {
+    #[inline]
     fn default() -> Self {
         Self {
             readings: Corners::default(),
             comparisons: Corners::default(),
             turn: Corner::FrontLeft,
             window_turns: 0,
+            // A sensor is believed after some good samples only.
+            restless: ALL,
             disagreeing: 0,
             measured: Trusted::default(),
             replaced: Trusted::default(),
@@ -145,30 +158,50 @@ impl State {
     /// One tick: returns all readings, measured or replaced, and their health.
     pub fn step(&mut self, parameters: &Parameters, inputs: &Inputs, context: &Context) -> &Trusted {
         // Written out, because the compiler then knows every place in memory.
-        let calm = self.check(Corner::FrontLeft, inputs)
-            & self.check(Corner::FrontRight, inputs)
-            & self.check(Corner::RearLeft, inputs)
-            & self.check(Corner::RearRight, inputs);
+        let mut doubtful = self.restless;
+        self.take_over(Corner::FrontLeft, inputs, &mut doubtful);
+        self.take_over(Corner::FrontRight, inputs, &mut doubtful);
+        self.take_over(Corner::RearLeft, inputs, &mut doubtful);
+        self.take_over(Corner::RearRight, inputs, &mut doubtful);
+        if doubtful != 0 {
+            self.doubt(doubtful, inputs);
+        }
         self.compare(parameters, context);
         // In most ticks nothing is wrong.
-        let right = calm && self.disagreeing == 0 && inputs.lost_messages == MessageSet::EMPTY;
+        let right = self.restless == 0 && self.disagreeing == 0 && inputs.lost_messages == MessageSet::EMPTY;
         if right && !inputs.foreign_sender && !inputs.solenoid_failed {
             return &self.measured;
         }
         self.replace(inputs)
     }
 
-    /// Checks the readings of a corner by themselves; returns whether nothing was wrong with any of them lately.
+    /// Takes over the readings of a corner unless it is doubtful; it becomes so if one of them may be wrong.
     #[inline(always)]
-    fn check(&mut self, corner: Corner, inputs: &Inputs) -> bool {
-        let lost = || {
-            let lost = |message| inputs.lost_messages.contains(message);
-            let displacement = lost(SensorMessage::Displacement(corner.axle()));
-            (displacement, lost(SensorMessage::Pressure(corner)))
-        };
+    fn take_over(&mut self, corner: Corner, inputs: &Inputs, doubtful: &mut u8) {
         let displacement = (inputs.displacement[corner], &mut self.measured.displacement_m[corner]);
         let pressure = (&inputs.pressure[corner], &mut self.measured.pressure[corner]);
-        self.readings[corner].step(displacement, pressure, lost)
+        if *doubtful & bit(corner) == 0 && !take_over(displacement, pressure) {
+            *doubtful |= bit(corner);
+        }
+    }
+
+    /// Checks each reading of the doubtful corners by itself.
+    #[inline(never)]
+    fn doubt(&mut self, doubtful: u8, inputs: &Inputs) {
+        for corner in Corner::ALL.into_iter().filter(|corner| doubtful & bit(*corner) != 0) {
+            let lost = |message| inputs.lost_messages.contains(message);
+            let lost = (
+                lost(SensorMessage::Displacement(corner.axle())),
+                lost(SensorMessage::Pressure(corner)),
+            );
+            let displacement = (inputs.displacement[corner], &mut self.measured.displacement_m[corner]);
+            let pressure = (&inputs.pressure[corner], &mut self.measured.pressure[corner]);
+            if self.readings[corner].doubt(displacement, pressure, lost) {
+                self.restless &= !bit(corner);
+            } else {
+                self.restless |= bit(corner);
+            }
+        }
     }
 
     /// The end of a tick in which something is or may be wrong.
@@ -212,13 +245,12 @@ impl State {
             .step(pressure, context.spring_commanded_closed, &mut verdict);
         self.measured.charge[corner] =
             (comparisons.oil).step(&parameters.oil_balance, x, pressure, context.learning, &mut verdict);
-        let bit = 1 << corner.index();
-        if self.disagreeing & bit != 0 || verdict != Verdicts::GOOD {
+        if self.disagreeing & bit(corner) != 0 || verdict != Verdicts::GOOD {
             // What was said of a reading that is wrong by itself now holds until it can be compared again.
             comparisons.verdicts = by_itself.select(comparisons.verdicts, verdict);
-            self.disagreeing &= !bit;
+            self.disagreeing &= !bit(corner);
             if comparisons.verdicts != Verdicts::GOOD {
-                self.disagreeing |= bit;
+                self.disagreeing |= bit(corner);
             }
         }
         self.turn = turn::next(corner);

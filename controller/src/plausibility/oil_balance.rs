@@ -162,7 +162,7 @@ mod tests {
         let mut verdict = Verdicts::GOOD;
         let charge = balance.step(&parameters(), reading_m, p, learning, &mut verdict);
         assert!(verdict.pressures_are_good(), "it is about the displacement");
-        (verdict.gravest() == FaultCode::OilBalance, charge.pa())
+        (Verdicts::gravest(&[verdict]) == FaultCode::OilBalance, charge.pa())
     }
 
     /// After a second of learning at rest.
@@ -291,7 +291,7 @@ mod tests {
                 let mut verdict = Verdicts::GOOD;
                 verdict.blame(place, FaultCode::SensorRange);
                 let charge = balance.step(&parameters(), 0.1, &strut(3.0e6, 0.0, 0.0), true, &mut verdict);
-                assert_eq!((charge.pa(), verdict.count()), (before, 1));
+                assert_eq!((charge.pa(), Verdicts::count(&[verdict])), (before, 1));
             }
         }
         // p1 and p3 are not needed.

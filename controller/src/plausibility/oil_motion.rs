@@ -36,6 +36,7 @@ pub struct OilMotion {
 }
 
 impl Default for OilMotion {
+    #[inline]
     fn default() -> Self {
         Self {
             turns: 0,

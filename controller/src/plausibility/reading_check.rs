@@ -13,39 +13,38 @@ use crate::reading::Reading;
 const UP: u8 = 4;
 const LIMIT: u8 = 12;
 
+const _: () = assert!(
+    DISPLACEMENT.least == -DISPLACEMENT.most,
+    "the short way looks at the magnitude of a displacement only"
+);
+
 /// State of the check. It starts as faulty: a sensor is believed after it has delivered twelve good samples. The last good value
 /// is kept by the caller.
 #[derive(Clone, Copy, Debug)]
 pub struct ReadingCheck {
     bad: u8,
-    faulty: bool,
+    /// What is wrong, from the third bad sample in a row to the last one that is forgotten.
     cause: FaultCode,
     /// Ticks since the last good sample.
     age: u8,
 }
 
 impl Default for ReadingCheck {
+    #[inline]
     fn default() -> Self {
         Self {
             bad: LIMIT,
-            faulty: true,
             cause: FaultCode::SensorRange,
             age: u8::MAX,
         }
     }
 }
 
-/// Whether a reading is good by itself, if the last sample was.
-fn is_ordinary(reading: Reading, last: f32, limits: &Limits) -> bool {
-    // Nothing compares with NaN, so no invalid reading passes.
-    let value = reading.value_or_nan();
-    (value - last).abs() <= limits.step && limits.hold(value)
-}
-
 impl ReadingCheck {
     /// One tick; returns what is wrong if the reading is to be replaced, and [`FaultCode::None`] if it may be used. `last` is the
     /// last good value.
     fn step(&mut self, last: &mut f32, reading: Reading, message_lost: bool, limits: &Limits) -> FaultCode {
+        // Nothing compares with NaN, so no invalid reading passes.
         let value = reading.value_or_nan();
         let change = (value - *last).abs();
         let in_range = limits.hold(value);
@@ -54,7 +53,7 @@ impl ReadingCheck {
             self.age = 0;
             self.bad = self.bad.saturating_sub(1);
             if self.bad == 0 {
-                self.faulty = false;
+                self.cause = FaultCode::None;
             }
         } else {
             self.age = self.age.saturating_add(1);
@@ -65,7 +64,6 @@ impl ReadingCheck {
                 self.bad.saturating_add(UP).min(LIMIT)
             };
             if self.bad == LIMIT {
-                self.faulty = true;
                 self.cause = if message_lost {
                     FaultCode::MessageLost
                 } else if in_range {
@@ -75,7 +73,7 @@ impl ReadingCheck {
                 };
             }
         }
-        if self.faulty { self.cause } else { FaultCode::None }
+        self.cause
     }
 
     /// Whether a value may have changed so much: the longer ago the last good sample, the further it may have gone.
@@ -84,14 +82,47 @@ impl ReadingCheck {
     }
 }
 
+/// The short way, on which most ticks end for a strut with whose readings nothing was wrong lately: takes them over into the last
+/// good displacement, m, and pressures, Pa, if nothing is wrong now. Returns whether it did so; if not,
+/// [`StrutReadings::doubt`] decides.
+#[inline(always)]
+pub fn take_over(
+    (displacement, last_displacement_m): (Reading, &mut f32),
+    (pressure, last_pressure): (&StrutPressures<Reading>, &mut StrutPressures<Gauge<f32>>),
+) -> bool {
+    let displacement_m = displacement.value_or_nan();
+    let pressure = pressure.map(|reading| Gauge(reading.value_or_nan()));
+    let ordinary = DISPLACEMENT.hold_positive(displacement_m.abs())
+        && (displacement_m - *last_displacement_m).abs() <= DISPLACEMENT.step
+        && have_ordinary_changes(pressure, *last_pressure)
+        && pressure
+            .into_array()
+            .into_iter()
+            .all(|p| PRESSURE.hold_positive(p.pa()));
+    if ordinary {
+        *last_displacement_m = displacement_m;
+        *last_pressure = pressure;
+    }
+    ordinary
+}
+
+/// Whether four pressures have all changed by less than the fastest plausible change, by the sum of the squares: each change is at
+/// most its root. Where the strut moves so fast that the sum is larger, the whole check looks at each. A sum with NaN is NaN.
+fn have_ordinary_changes(now: StrutPressures<Gauge<f32>>, last: StrutPressures<Gauge<f32>>) -> bool {
+    // A tenth below the bound, so that no rounding passes a change that the whole check rejects.
+    const MOST: f32 = 0.9 * PRESSURE.step * PRESSURE.step;
+    let change = |now: Gauge<f32>, last: Gauge<f32>| now - last;
+    let (d1, d2) = (change(now.p1, last.p1), change(now.p2, last.p2));
+    let (d3, d4) = (change(now.p3, last.p3), change(now.p4, last.p4));
+    d1 * d1 + d2 * d2 + d3 * d3 + d4 * d4 <= MOST
+}
+
 /// The checks of the five readings of a strut.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StrutReadings {
     displacement: ReadingCheck,
     pressure: StrutPressures<ReadingCheck>,
-    /// Whether nothing was wrong with any of the readings lately.
-    calm: bool,
-    /// What is wrong; nothing while all are calm.
+    /// What is wrong.
     verdicts: Verdicts,
 }
 
@@ -101,39 +132,15 @@ impl StrutReadings {
         self.verdicts
     }
 
-    /// One tick: takes the good readings over into the last good displacement, m, and pressures, Pa. Returns whether nothing was
-    /// wrong with any of them lately. `lost` says whether the displacement's and the pressures' message are lost.
-    #[inline(always)]
-    pub fn step(
-        &mut self,
-        (displacement, last_displacement_m): (Reading, &mut f32),
-        (pressure, last_pressure): (&StrutPressures<Reading>, &mut StrutPressures<Gauge<f32>>),
-        lost: impl FnOnce() -> (bool, bool),
-    ) -> bool {
-        // Most ticks end here: nothing was wrong lately, so all last samples were good, and nothing is wrong now.
-        if self.calm
-            && is_ordinary(displacement, *last_displacement_m, &DISPLACEMENT)
-            && is_ordinary(pressure.p1, last_pressure.p1.pa(), &PRESSURE)
-            && is_ordinary(pressure.p2, last_pressure.p2.pa(), &PRESSURE)
-            && is_ordinary(pressure.p3, last_pressure.p3.pa(), &PRESSURE)
-            && is_ordinary(pressure.p4, last_pressure.p4.pa(), &PRESSURE)
-        {
-            *last_displacement_m = displacement.value_or_nan();
-            *last_pressure = pressure.map(|reading| Gauge(reading.value_or_nan()));
-            return true;
-        }
-        self.doubt((displacement, last_displacement_m), (pressure, last_pressure), lost());
-        self.calm
-    }
-
-    /// The whole checks, for readings of which one was wrong lately or may be wrong now.
-    #[inline(never)]
-    fn doubt(
+    /// The whole check, for readings of which one was wrong lately or may be wrong now. Takes the good ones over into the last
+    /// good values, and returns whether nothing was wrong with any of them lately. `lost` says whether the displacement's and the
+    /// pressures' message are lost.
+    pub fn doubt(
         &mut self,
         (displacement, last_displacement_m): (Reading, &mut f32),
         (pressure, last_pressure): (&StrutPressures<Reading>, &mut StrutPressures<Gauge<f32>>),
         lost: (bool, bool),
-    ) {
+    ) -> bool {
         let cause = (self.displacement).step(last_displacement_m, displacement, lost.0, &DISPLACEMENT);
         let (checks, last) = (&mut self.pressure, last_pressure);
         let one = |check: &mut ReadingCheck, Gauge(last): &mut Gauge<f32>, reading| {
@@ -147,7 +154,7 @@ impl StrutReadings {
         ];
         self.verdicts = Verdicts::of(cause, causes);
         let bad = checks.p1.bad | checks.p2.bad | checks.p3.bad | checks.p4.bad;
-        self.calm = self.displacement.bad | bad == 0;
+        self.displacement.bad | bad == 0
     }
 }
 
@@ -187,7 +194,6 @@ mod tests {
             (Reading::new(-0.9), FaultCode::SensorRate),
         ] {
             let (mut check, mut last) = healthy();
-            assert!(!is_ordinary(bad, last, &LIMITS));
             assert_eq!(check.step(&mut last, bad, false, &LIMITS), FaultCode::None);
             assert_eq!(check.step(&mut last, bad, false, &LIMITS), FaultCode::None);
             assert_eq!(check.step(&mut last, bad, false, &LIMITS), cause);
@@ -213,12 +219,46 @@ mod tests {
         assert_eq!(n, 10); // 1.0 at 0.1 a tick
     }
 
+    /// A strut, with what its caller keeps.
+    #[derive(Clone, Copy, Debug, Default)]
+    struct Strut {
+        checks: StrutReadings,
+        calm: bool,
+        x: f32,
+        p: StrutPressures<Gauge<f32>>,
+    }
+
+    impl Strut {
+        /// One tick, as the caller does it; returns whether nothing was wrong lately.
+        fn step(&mut self, displacement: Reading, pressure: &StrutPressures<Reading>) -> bool {
+            let (x, p) = ((displacement, &mut self.x), (pressure, &mut self.p));
+            if !(self.calm && take_over(x, p)) {
+                self.doubt(displacement, pressure);
+            }
+            self.calm
+        }
+
+        fn doubt(&mut self, displacement: Reading, pressure: &StrutPressures<Reading>) {
+            let (x, p) = ((displacement, &mut self.x), (pressure, &mut self.p));
+            self.calm = self.checks.doubt(x, p, (false, false));
+        }
+
+        /// One whose five readings have been good for long, at a displacement and under one pressure.
+        fn calm(displacement_m: f32, pressure_pa: f32) -> Self {
+            let mut strut = Self::default();
+            let pressure = StrutPressures::splat(Reading::new(pressure_pa));
+            let last = (0..=LIMIT)
+                .map(|_| strut.step(Reading::new(displacement_m), &pressure))
+                .last();
+            assert_eq!(last, Some(true));
+            strut
+        }
+    }
+
     /// The short way and the whole check agree on every reading of a strut.
     #[test]
     fn the_short_way_decides_as_the_whole_check() {
-        let mut checks = StrutReadings::default();
-        let mut whole = checks;
-        let (mut last, mut last_whole) = ((0.0, StrutPressures::default()), (0.0, StrutPressures::default()));
+        let (mut strut, mut whole, mut short) = (Strut::default(), Strut::default(), 0);
         let mut random = 1_u32;
         for _ in 0..20_000 {
             random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -226,34 +266,38 @@ mod tests {
                 0 => Reading::INVALID,
                 1 => Reading::new(36.0e6),
                 2 => Reading::new(-5.0e6),
-                n => Reading::new(1.0e4 * n as f32),
+                3 => Reading::new(-1.0e5),
+                n => Reading::new(2.0e4 * n as f32),
             };
             let reading = StrutPressures::from_array([pressure(4), pressure(9), pressure(14), pressure(19)]);
-            let displacement = Reading::new((random >> 22) as f32 * 3.0e-4 - 0.01);
-            checks.step((displacement, &mut last.0), (&reading, &mut last.1), || (false, false));
-            whole.doubt(
-                (displacement, &mut last_whole.0),
-                (&reading, &mut last_whole.1),
-                (false, false),
-            );
+            let far = if random >> 11 & 0xFF == 0 { 0.2 } else { 0.0 };
+            let displacement = Reading::new((random >> 22) as f32 * 4.0e-5 - 0.02 + far);
+            let (mut x, mut p) = (strut.x, strut.p);
+            short += u32::from(strut.calm && take_over((displacement, &mut x), (&reading, &mut p)));
+            strut.step(displacement, &reading);
+            whole.doubt(displacement, &reading);
             assert_eq!(
-                (checks.verdicts, checks.calm, last),
-                (whole.verdicts, whole.calm, last_whole)
+                (strut.checks.verdicts, strut.calm, strut.x, strut.p),
+                (whole.checks.verdicts, whole.calm, whole.x, whole.p)
             );
         }
+        assert!(short > 1_000, "the short way was taken {short} times");
     }
 
-    /// A strut whose five readings have been good for long, at a displacement and under one pressure.
-    fn calm(displacement_m: f32, pressure_pa: f32) -> (StrutReadings, f32, StrutPressures<Gauge<f32>>) {
-        let (mut checks, mut x, mut p) = (StrutReadings::default(), 0.0, StrutPressures::default());
-        let pressure = StrutPressures::splat(Reading::new(pressure_pa));
-        for _ in 0..=LIMIT {
-            checks.step((Reading::new(displacement_m), &mut x), (&pressure, &mut p), || {
-                (false, false)
-            });
+    /// One change of 20 MPa is accepted by the whole check only, a larger one by neither.
+    #[test]
+    fn the_short_way_ends_before_the_bound() {
+        for (to_pa, whole, short) in [(20.0e6, true, true), (22.0e6, true, false), (22.1e6, false, false)] {
+            for point in 0..4 {
+                let mut pressure = [Reading::new(2.0e6); 4];
+                pressure[point] = Reading::new(to_pa);
+                let (pressure, x) = (StrutPressures::from_array(pressure), Reading::new(0.01));
+                let mut strut = Strut::calm(0.01, 2.0e6);
+                let mut p = strut.p;
+                assert_eq!(take_over((x, &mut strut.x), (&pressure, &mut p)), short, "{to_pa} Pa");
+                assert_eq!(strut.step(x, &pressure), whole, "{to_pa} Pa");
+            }
         }
-        assert!(checks.calm);
-        (checks, x, p)
     }
 
     /// No way of writing a jump makes it ordinary.
@@ -267,10 +311,9 @@ mod tests {
             (-0.1, 0.0),
             (0.1, 0.14),
         ] {
-            let (mut checks, mut x, mut p) = calm(from_m, 2.0e6);
-            let pressure = StrutPressures::splat(Reading::new(2.0e6));
-            let good = checks.step((Reading::new(to_m), &mut x), (&pressure, &mut p), || (false, false));
-            assert_eq!((good, x), (false, from_m), "{from_m} to {to_m}");
+            let mut strut = Strut::calm(from_m, 2.0e6);
+            let good = strut.step(Reading::new(to_m), &StrutPressures::splat(Reading::new(2.0e6)));
+            assert_eq!((good, strut.x), (false, from_m), "{from_m} to {to_m}");
         }
     }
 
@@ -278,8 +321,7 @@ mod tests {
     #[test]
     fn each_reading_and_each_pair_is_told() {
         for wrong in (1_u8..32).filter(|wrong| wrong.count_ones() <= 2) {
-            let (mut checks, mut x, mut p) = calm(0.01, 2.0e6);
-            let mut verdicts = Verdicts::GOOD;
+            let mut strut = Strut::calm(0.01, 2.0e6);
             for good in [false, true] {
                 for sample in 1..=2 * LIMIT {
                     let is_wrong = |n: u8| !good && wrong >> n & 1 == 1;
@@ -291,16 +333,18 @@ mod tests {
                         }
                     };
                     let pressure = StrutPressures::from_array([1, 2, 3, 4].map(|n| value(n, 2.0e6)));
-                    let displacement = (value(0, 0.01), &mut x);
-                    let calm = checks.step(displacement, (&pressure, &mut p), || (false, false));
-                    verdicts = checks.verdicts();
+                    let calm = strut.step(value(0, 0.01), &pressure);
+                    let verdicts = strut.checks.verdicts();
                     let told = if good { sample < LIMIT } else { sample >= 3 };
                     assert_eq!(verdicts != Verdicts::GOOD, told, "{wrong:05b} sample {sample}");
                     assert_eq!(calm, good && sample >= LIMIT, "{wrong:05b} sample {sample}");
-                    assert_eq!(u32::from(verdicts.count()), if told { wrong.count_ones() } else { 0 });
+                    assert_eq!(
+                        u32::from(Verdicts::count(&[verdicts])),
+                        if told { wrong.count_ones() } else { 0 }
+                    );
                 }
             }
-            assert_eq!(verdicts, Verdicts::GOOD);
+            assert_eq!(strut.checks.verdicts(), Verdicts::GOOD);
         }
     }
 }

@@ -46,6 +46,7 @@ pub struct Stuck {
 }
 
 impl Default for Stuck {
+    #[inline]
     fn default() -> Self {
         Self {
             displacement: Span::EMPTY,

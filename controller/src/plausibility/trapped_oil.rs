@@ -36,6 +36,7 @@ pub struct TrappedOil {
 }
 
 impl Default for TrappedOil {
+    #[inline]
     fn default() -> Self {
         Self {
             closed: 0,
@@ -109,7 +110,7 @@ mod tests {
             };
             let mut verdict = Verdicts::GOOD;
             check.step(&pressure, closed, &mut verdict);
-            verdict.gravest() == FaultCode::ValveStuck
+            Verdicts::gravest(&[verdict]) == FaultCode::ValveStuck
         })
     }
 
@@ -156,7 +157,7 @@ mod tests {
             };
             check.step(&pressure, true, &mut verdict);
         }
-        verdict.gravest() == FaultCode::ValveStuck
+        Verdicts::gravest(&[verdict]) == FaultCode::ValveStuck
     }
 
     /// A check whose valve has been closed for long enough, at the beginning of a window.

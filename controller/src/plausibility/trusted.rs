@@ -27,14 +27,9 @@ pub struct Trusted {
 impl Trusted {
     /// Sums up the verdicts for the mode machine.
     pub(super) fn judge(&mut self, verdicts: &Corners<Verdicts>, inputs: &Inputs) {
-        self.health = Health::default();
-        self.invalid_readings = 0;
-        let mut cause = FaultCode::None;
-        for (corner, verdict) in verdicts.iter().filter(|(_, verdict)| **verdict != Verdicts::GOOD) {
-            self.health.affected[corner] = true;
-            self.invalid_readings = self.invalid_readings.saturating_add(verdict.count());
-            cause = cause.max(verdict.gravest());
-        }
+        self.health.affected = verdicts.map(|verdict| verdict != Verdicts::GOOD);
+        self.invalid_readings = Verdicts::count(verdicts.as_array());
+        let mut cause = Verdicts::gravest(verdicts.as_array());
         if inputs.lost_messages == MessageSet::ALL {
             cause = FaultCode::BusSilent;
         }
@@ -62,29 +57,31 @@ impl Trusted {
             [true, true, true, false] => [fl, fr, rl, within(rl + fr - fl)],
             _ => [fl, fr, rl, rr],
         });
-        let pressures = self.pressure.each_mut().zip(measured.pressure.each_ref());
-        for ((pressure, measured), verdict) in pressures.zip(*verdicts).into_array() {
-            *pressure = *measured;
-            if verdict.pressures_are_good() {
-                continue;
-            }
-            let good = |place| verdict.is_good(place);
-            pressure.p1 = if good(Place::P1) {
-                measured.p1
-            } else if good(Place::P2) {
-                measured.p2
-            } else if good(Place::P3) {
-                measured.p3
-            } else {
-                measured.p1
-            };
-            if !good(Place::P2) {
-                pressure.p2 = pressure.p1;
-            }
-            if !good(Place::P3) {
-                pressure.p3 = pressure.p1;
+        self.pressure = measured.pressure;
+        for (pressure, verdict) in self.pressure.values_mut().zip(verdicts.values()) {
+            if !verdict.pressures_are_good() {
+                replace_wrong(pressure, *verdict);
             }
         }
+    }
+}
+
+/// Replaces the last good pressures of a strut where the present ones were found wrong.
+#[inline(never)]
+fn replace_wrong(pressure: &mut StrutPressures<Gauge<f32>>, verdict: Verdicts) {
+    let good = |place| verdict.is_good(place);
+    if !good(Place::P1) {
+        if good(Place::P2) {
+            pressure.p1 = pressure.p2;
+        } else if good(Place::P3) {
+            pressure.p1 = pressure.p3;
+        }
+    }
+    if !good(Place::P2) {
+        pressure.p2 = pressure.p1;
+    }
+    if !good(Place::P3) {
+        pressure.p3 = pressure.p1;
     }
 }
 

@@ -4,12 +4,14 @@ use oleo_interface::PressurePoint;
 
 use crate::failsafe::FaultCode;
 
-/// Bits of a cause.
-const CAUSE_BITS: u32 = 4;
+/// Bits of a cause, of which the highest is not used: it is the borrow of a comparison (see [`Verdicts::graver`]).
+const CAUSE_BITS: u32 = 5;
 /// The lowest bit of each of the five causes.
-const LOWEST: u32 = 0x1_1111;
+const LOWEST: u32 = 0b00001_00001_00001_00001_00001;
+/// All bits of one cause that are used.
+const CAUSE: u32 = 0b01111;
 
-const _: () = assert!(FaultCode::Internal.raw() < 1 << CAUSE_BITS, "a cause must fit");
+const _: () = assert!(FaultCode::Internal.raw() as u32 <= CAUSE, "a cause must fit");
 
 /// One of the five readings of a strut: the place of its cause among the verdicts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +32,7 @@ impl Place {
     }
 }
 
-/// A cause for each reading of a strut, [`FaultCode::None`] for a good one: four bits each, so that "nothing is wrong" is one
+/// A cause for each reading of a strut, [`FaultCode::None`] for a good one: a few bits each, so that "nothing is wrong" is one
 /// comparison.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Verdicts(u32);
@@ -41,7 +43,7 @@ impl Verdicts {
 
     /// Whether nothing was found about a reading.
     pub const fn is_good(self, place: Place) -> bool {
-        self.0 >> place.0 & 0xF == 0
+        self.0 >> place.0 & CAUSE == 0
     }
 
     /// Whether nothing was found about any pressure.
@@ -70,8 +72,7 @@ impl Verdicts {
 
     /// All bits of the causes that are not [`FaultCode::None`].
     const fn found(self) -> u32 {
-        let pairs = self.0 | self.0 >> 1;
-        ((pairs | pairs >> 2) & LOWEST) * 0xF
+        self.ones() * CAUSE
     }
 
     /// These causes, and those of later checks where there is none.
@@ -85,15 +86,34 @@ impl Verdicts {
         Self(faulty.0 & found | good.0 & !found)
     }
 
-    /// Number of causes, 0 to 5.
-    pub const fn count(self) -> u8 {
-        // The product sums the lowest bits up in its fifth place.
-        ((self.found() & LOWEST).wrapping_mul(LOWEST) >> (4 * CAUSE_BITS) & 0xF) as u8
+    /// A one in each place in which there is a cause. Up to 31 of these may be added.
+    const fn ones(self) -> u32 {
+        let pairs = self.0 | self.0 >> 1;
+        (pairs | pairs >> 2) & LOWEST
     }
 
-    /// The gravest of the causes.
-    pub fn gravest(self) -> FaultCode {
-        let at = |place: Place| self.0 >> place.0 & 0xF;
+    /// The number of causes in several verdicts, 0 to 20 in those of a vehicle.
+    pub fn count(all: &[Self]) -> u8 {
+        let ones: u32 = all.iter().map(|verdicts| verdicts.ones()).sum();
+        // The product sums the places up in the fifth one.
+        (ones.wrapping_mul(LOWEST) >> (4 * CAUSE_BITS) & 0x1F) as u8
+    }
+
+    /// The graver cause of two for each reading.
+    const fn graver(self, other: Self) -> Self {
+        // The unused bit of each place stays where nothing has to be borrowed from it: where our cause is not the lesser one. Less its
+        // lowest bit, it covers the place.
+        let not_less = ((self.0 | LOWEST << (CAUSE_BITS - 1)) - other.0) & LOWEST << (CAUSE_BITS - 1);
+        let ours = not_less - (not_less >> (CAUSE_BITS - 1));
+        Self(self.0 & ours | other.0 & !ours)
+    }
+
+    /// The gravest of the causes in several verdicts.
+    pub fn gravest(all: &[Self]) -> FaultCode {
+        let Self(all) = all
+            .iter()
+            .fold(Self::GOOD, |gravest, verdicts| gravest.graver(*verdicts));
+        let at = |place: Place| all >> place.0 & CAUSE;
         let pressures = at(Place::P1).max(at(Place::P2)).max(at(Place::P3)).max(at(Place::P4));
         let gravest = at(Place::DISPLACEMENT).max(pressures);
         FaultCode::from_repr(gravest as u8).unwrap_or(FaultCode::Internal)
@@ -115,9 +135,15 @@ mod tests {
                 let mut verdicts = Verdicts::GOOD;
                 verdicts.blame(place, cause);
                 let found = cause != FaultCode::None;
-                assert_eq!((verdicts.gravest(), verdicts.count()), (cause, u8::from(found)));
+                assert_eq!(
+                    (Verdicts::gravest(&[verdicts]), Verdicts::count(&[verdicts])),
+                    (cause, u8::from(found))
+                );
                 verdicts.blame(place, FaultCode::Internal);
-                assert_eq!(verdicts.gravest(), if found { cause } else { FaultCode::Internal });
+                assert_eq!(
+                    Verdicts::gravest(&[verdicts]),
+                    if found { cause } else { FaultCode::Internal }
+                );
                 for (m, other) in PLACES.into_iter().enumerate() {
                     assert_eq!(verdicts.is_good(other), n != m);
                 }
@@ -149,13 +175,49 @@ mod tests {
         let (mut first, mut later) = (Verdicts::GOOD, Verdicts::GOOD);
         first.blame(Place::P2, FaultCode::SensorRange);
         for (n, place) in PLACES.into_iter().enumerate() {
-            assert_eq!(usize::from(later.count()), n);
+            assert_eq!(usize::from(Verdicts::count(&[later])), n);
             later.blame(place, FaultCode::MessageLost);
         }
         let both = first.or(later);
-        assert_eq!((both.count(), both.gravest()), (5, FaultCode::MessageLost));
+        assert_eq!(
+            (Verdicts::count(&[both]), Verdicts::gravest(&[both])),
+            (5, FaultCode::MessageLost)
+        );
         let only_where_good = first.select(Verdicts::GOOD, later);
-        assert_eq!((only_where_good.count(), only_where_good.is_good(Place::P2)), (4, true));
+        assert_eq!(
+            (Verdicts::count(&[only_where_good]), only_where_good.is_good(Place::P2)),
+            (4, true)
+        );
         assert_eq!(Verdicts::GOOD.or(first), first);
+    }
+    /// Of every pair of causes at every pair of readings the graver one is told, and both are counted.
+    #[test]
+    fn the_gravest_of_several_is_told_and_all_are_counted() {
+        for place in PLACES {
+            for other in PLACES {
+                for &cause in FaultCode::VARIANTS {
+                    for &second in FaultCode::VARIANTS {
+                        let mut verdicts = [Verdicts::GOOD; 4];
+                        let [first, _, third, _] = &mut verdicts;
+                        first.blame(place, cause);
+                        third.blame(other, second);
+                        let found = [cause, second]
+                            .iter()
+                            .filter(|cause| **cause != FaultCode::None)
+                            .count();
+                        assert_eq!(Verdicts::gravest(&verdicts), cause.max(second), "{place:?} {other:?}");
+                        assert_eq!(usize::from(Verdicts::count(&verdicts)), found);
+                    }
+                }
+            }
+        }
+        let mut all = Verdicts::GOOD;
+        PLACES
+            .into_iter()
+            .for_each(|place| all.blame(place, FaultCode::Internal));
+        assert_eq!(
+            (Verdicts::count(&[all; 4]), Verdicts::gravest(&[all; 4])),
+            (20, FaultCode::Internal)
+        );
     }
 }

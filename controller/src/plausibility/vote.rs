@@ -82,6 +82,19 @@ impl Vote {
         if self.outvoted == StrutPressures::splat(0) && !(healthy && wrong != StrutPressures::splat(false)) {
             return;
         }
+        *verdict = self.judge(healthy, p4_follows, wrong, *verdict);
+    }
+
+    /// Counts for and against each pressure, where one is or was outvoted; returns the verdict with what that leads to.
+    #[inline(never)]
+    fn judge(
+        &mut self,
+        healthy: bool,
+        p4_follows: bool,
+        wrong: StrutPressures<bool>,
+        mut verdict: Verdicts,
+    ) -> Verdicts {
+        let StrutPressures { p1, p2, p3, p4 } = self.lagged;
         let near = |a: Gauge<f32>, b: Gauge<f32>| (a - b).abs() < AGREE_PA;
         let agrees = StrutPressures {
             p1: near(p1, p2) || near(p1, p3),
@@ -92,23 +105,30 @@ impl Vote {
         for point in PressurePoint::ALL {
             let (count, flagged) = (&mut self.outvoted[point], &mut self.flagged[point]);
             if healthy {
-                *count = if wrong[point] {
-                    count.saturating_add(1).min(CONFIRM_TURNS)
-                } else if !*flagged || agrees[point] {
-                    count.saturating_sub(1)
-                } else {
-                    *count
-                };
-                if *count == CONFIRM_TURNS {
-                    *flagged = true;
-                } else if *count == 0 {
-                    *flagged = false;
-                }
+                count_votes(count, flagged, wrong[point], agrees[point]);
             }
             if *flagged {
                 verdict.blame(Place::of(point), FaultCode::SensorVote);
             }
         }
+        verdict
+    }
+}
+
+/// Counts the turns in which a pressure was outvoted, and those in which it was not, until it is called wrong or believed again.
+#[inline(never)]
+fn count_votes(count: &mut u8, flagged: &mut bool, wrong: bool, agrees: bool) {
+    *count = if wrong {
+        count.saturating_add(1).min(CONFIRM_TURNS)
+    } else if !*flagged || agrees {
+        count.saturating_sub(1)
+    } else {
+        *count
+    };
+    if *count == CONFIRM_TURNS {
+        *flagged = true;
+    } else if *count == 0 {
+        *flagged = false;
     }
 }
 
@@ -124,7 +144,7 @@ mod tests {
     use super::*;
 
     fn outvoted(verdict: &Verdicts) -> bool {
-        verdict.gravest() == FaultCode::SensorVote
+        Verdicts::gravest(&[*verdict]) == FaultCode::SensorVote
     }
 
     /// The first turn in which a pressure is outvoted, on a strut that is shaken through closed dampers: p1 swings by 2 MPa
@@ -387,7 +407,11 @@ mod tests {
             .last()
             .unwrap_or_default();
         assert_eq!(
-            (said.count(), said.is_good(Place::P1), said.is_good(Place::P4)),
+            (
+                Verdicts::count(&[said]),
+                said.is_good(Place::P1),
+                said.is_good(Place::P4)
+            ),
             (2, false, false)
         );
         // Where p3 is the one that stands alone, p4 is not.

@@ -20,7 +20,7 @@ use oleo_controller::can::Frame;
 use oleo_controller::{Configuration, Inputs, Node, Outputs, PlantEnd, State, ValveCommand, tick};
 
 /// Largest permitted median and largest permitted value of the tick, instructions on the Cortex-M4F.
-const BUDGET: (u32, u32) = (2_240, 3_520);
+const BUDGET: (u32, u32) = (2_000, 3_000);
 
 #[cfg_attr(target_os = "none", cortex_m_rt::entry)]
 fn main() -> ! {

@@ -151,47 +151,59 @@ impl State {
         estimate: &Estimate,
         displacement_m: &Corners<f32>,
     ) -> Corners<bool> {
-        let band = &parameters.body_band;
         for (corner, state) in self.corners.iter_mut() {
-            let speed = estimate.strut_speed_m_s[corner];
-            let extension = -band.step(&mut state.speed_m_s, speed);
-            let acceleration = estimate.corner_acceleration_m_s2[corner];
-            let body_acceleration = band.step(&mut state.acceleration_m_s2, acceleration);
-            let velocity = estimate.corner_velocity_m_s[corner];
-            let by_velocity = (
-                velocity,
-                at_least(
-                    parameters.body_velocity_share_2 * estimate.vertical_mean_square,
-                    LEAST_VELOCITY_2,
-                ),
+            state.step(
+                parameters,
+                estimate.strut_speed_m_s[corner],
+                estimate.corner_acceleration_m_s2[corner],
+                estimate.corner_velocity_m_s[corner],
+                estimate.vertical_mean_square,
+                displacement_m[corner],
             );
-            let by_acceleration = (
-                body_acceleration,
-                at_least(
-                    parameters.body_acceleration_share_2 * estimate.vertical_mean_square,
-                    LEAST_ACCELERATION_2,
-                ),
-            );
-            let near_resonance = body_acceleration * body_acceleration < CROSSOVER_2 * velocity * velocity;
-            let (body, least_2) = match parameters.policy {
-                DamperPolicy::Low => (0.0, f32::MAX),
-                DamperPolicy::Karnopp => by_velocity,
-                DamperPolicy::ShAdd if near_resonance => by_velocity,
-                DamperPolicy::HoelscherHuang | DamperPolicy::ShAdd => by_acceleration,
-            };
-            let x = displacement_m[corner];
-            let (jounce, rebound) = NEAR_STOP_M;
-            let near_stop = (x > jounce && speed > 0.0) || (x < -rebound && speed < 0.0);
-            let opposes = if body < 0.0 { -extension } else { extension };
-            if near_stop {
-                state.high = true;
-            } else if body * body < least_2 || opposes < -DEAD_BAND_M_S {
-                state.high = false;
-            } else if opposes > DEAD_BAND_M_S {
-                state.high = true;
-            }
         }
         self.corners.map(|state| !state.high)
+    }
+}
+
+impl CornerState {
+    /// One tick, from the strut's speed, the body's acceleration and velocity over it, the vertical running mean square and the
+    /// displacement.
+    #[inline(never)]
+    fn step(
+        &mut self,
+        parameters: &Parameters,
+        speed: f32,
+        acceleration: f32,
+        velocity: f32,
+        vertical_mean_square: f32,
+        displacement_m: f32,
+    ) {
+        let band = &parameters.body_band;
+        let extension = -band.step(&mut self.speed_m_s, speed);
+        let body_acceleration = band.step(&mut self.acceleration_m_s2, acceleration);
+        let least = |share_2: f32, least_2| at_least(share_2 * vertical_mean_square, least_2);
+        let by_velocity = (velocity, least(parameters.body_velocity_share_2, LEAST_VELOCITY_2));
+        let by_acceleration = (
+            body_acceleration,
+            least(parameters.body_acceleration_share_2, LEAST_ACCELERATION_2),
+        );
+        let near_resonance = body_acceleration * body_acceleration < CROSSOVER_2 * velocity * velocity;
+        let (body, least_2) = match parameters.policy {
+            DamperPolicy::Low => (0.0, f32::MAX),
+            DamperPolicy::Karnopp => by_velocity,
+            DamperPolicy::ShAdd if near_resonance => by_velocity,
+            DamperPolicy::HoelscherHuang | DamperPolicy::ShAdd => by_acceleration,
+        };
+        let (jounce, rebound) = NEAR_STOP_M;
+        let near_stop = (displacement_m > jounce && speed > 0.0) || (displacement_m < -rebound && speed < 0.0);
+        let opposes = if body < 0.0 { -extension } else { extension };
+        if near_stop {
+            self.high = true;
+        } else if body * body < least_2 || opposes < -DEAD_BAND_M_S {
+            self.high = false;
+        } else if opposes > DEAD_BAND_M_S {
+            self.high = true;
+        }
     }
 }
 

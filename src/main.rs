@@ -1,4 +1,3 @@
-//! The `oleo` command line: it passes the arguments to the commands and converts their results into an exit status.
 //!
 //! Everything a command does is in `commands/NAME.rs` (arguments, help and how to run it) and in the library it calls.
 //! The exit status is 0 if the command succeeded, 1 if a check failed, 2 if the input was bad or the work could not be

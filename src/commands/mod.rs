@@ -12,4 +12,5 @@ pub mod rig;
 pub mod seal;
 pub mod show;
 pub mod study;
+mod vehicle_log;
 mod word;

@@ -1,3 +1,4 @@
+//! The `oleo` command line: it passes the arguments to the commands and converts their results into an exit status.
 //!
 //! Everything a command does is in `commands/NAME.rs` (arguments, help and how to run it) and in the library it calls.
 //! The exit status is 0 if the command succeeded, 1 if a check failed, 2 if the input was bad or the work could not be
@@ -40,6 +41,7 @@ enum Command {
     Rig(commands::rig::Args),
     Diagnose(commands::diagnose::Args),
     Predict(commands::predict::Args),
+    Convert(commands::convert::Args),
     Seal(commands::seal::Args),
     Show(commands::show::Args),
 }
@@ -53,6 +55,7 @@ fn main() -> ExitCode {
             Command::Rig(args) => commands::rig::run(args),
             Command::Diagnose(args) => commands::diagnose::run(args),
             Command::Predict(args) => commands::predict::run(args),
+            Command::Convert(args) => commands::convert::run(args),
             Command::Seal(args) => commands::seal::run(args),
             Command::Show(args) => commands::show::run(args, CommandLine::command()),
         },

@@ -2,6 +2,7 @@
 //! `pub fn run(args: Args) -> Result<ExitCode, Failure>`.
 
 mod column_map;
+pub mod convert;
 mod course_arguments;
 pub mod diagnose;
 pub mod drive;

@@ -25,6 +25,8 @@ except ImportError as error:
     print(f"logs_as_people_have_them.py: {error}: pip install python-can asammdf cantools", file=sys.stderr)
     sys.exit(2)
 
+import unsorted_mf4
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 CORNERS = ["front_left", "front_right", "rear_left", "rear_right"]
 SHORT = ["FL", "FR", "RL", "RR"]
@@ -100,12 +102,13 @@ def own_database(messages):
             more.append(can.Message(timestamp=at, arbitration_id=0x111, is_extended_id=False, is_fd=True, data=bytes(range(48))))
     write(more, "strangers.asc")
     write(more, "strangers.mf4")
+    unsorted_mf4.write([message for message in more if not message.is_remote_frame], FOLDER / "unsorted.mf4")
     mdf = asammdf.MDF(FOLDER / "own0.mf4")
     mdf.configure(write_fragment_size=4096)
     mdf.save(FOLDER / "fragments.mf4", compression=1, overwrite=True)
     expected, numbers = columns("drive.log")
     check("a row every 5 ms for 15 s", abs(len(numbers["time_s"]) - 3000) <= 1, str(len(numbers["time_s"])))
-    for name in ["own.asc", "own0.mf4", "own1.mf4", "own2.mf4", "fragments.mf4", "strangers.asc", "strangers.mf4"]:
+    for name in ["own.asc", "own0.mf4", "own1.mf4", "own2.mf4", "fragments.mf4", "strangers.asc", "strangers.mf4", "unsorted.mf4"]:
         check(f"{name}: the same columns, bit for bit", columns(name)[0] == expected)
     return numbers
 
@@ -133,7 +136,18 @@ def frames_through(messages):
                 channel=k % 2,
             )
         )
-    for source, target in [("mixed.log", "a.asc"), ("mixed.asc", "b.log"), ("mixed.mf4", "c.log"), ("mixed.mf4", "d.asc"), ("a.asc", "e.log")]:
+    unsorted_mf4.write(mixed, FOLDER / "unsorted-mixed.mf4")
+    read = list(can.LogReader(FOLDER / "unsorted-mixed.mf4"))
+    check("unsorted MDF 4 is one, says asammdf", [key(message) for message in read] == [key(message) for message in mixed])
+    ways = [
+        ("unsorted-mixed.mf4", "f.log"),
+        ("mixed.log", "a.asc"),
+        ("mixed.asc", "b.log"),
+        ("mixed.mf4", "c.log"),
+        ("mixed.mf4", "d.asc"),
+        ("a.asc", "e.log"),
+    ]
+    for source, target in ways:
         if source.startswith("mixed"):
             write(mixed, source)
         oleo("convert", source, target)

@@ -74,6 +74,11 @@ const STEPS: u64 = 100;
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let Some(folder) = args.campaign.first() else {
+        if args.database.is_given() {
+            return Err(Failure::new(
+                "--dbc and --signals: the self-test reads no logs; leave the options out",
+            ));
+        }
         return self_test::run_self_test(&args.self_test, &args.results);
     };
     if let Some(logs) = args.logs(folder)? {

@@ -156,7 +156,7 @@ fn in_words(account: &LogAccount, drives: usize) -> String {
 /// What was read of a log by a map, in one sentence.
 fn by_map_in_words(account: &SignalAccount, drives: &[SignalDrive]) -> String {
     format!(
-        "{} drive{} with a sample every {} ms, {} frames of the map; {} without a reading, {} repeated, {} outside the drives; {}.",
+        "{} drive{} with a sample every {:.1} ms, {} frames of the map; {} without a reading, {} repeated, {} outside the drives; {}.",
         drives.len(),
         plural(drives.len()),
         drives.first().map_or(0.0, |drive| 1e3 * drive.period_s),

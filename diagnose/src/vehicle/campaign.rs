@@ -64,7 +64,7 @@ impl VehicleCampaign {
         )?;
         let is_later = misfit(&a_tick_later) < misfit(&at_once);
         if is_later {
-            let period_ms = 1e3 * drives.first().map_or(0.0, |drive| drive.period_s);
+            let period_ms = (1e4 * drives.first().map_or(0.0, |drive| drive.period_s)).round() / 10.0;
             notes.push(format!(
                 "The commands act one tick ({period_ms} ms) after the sample whose tick they echo: with this the believed models fit the \
                  edges of the valves better."

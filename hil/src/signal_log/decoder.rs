@@ -113,6 +113,11 @@ impl Decoder {
         })
     }
 
+    /// The decoder that takes any value for one that means something.
+    pub fn without_range(self) -> Self {
+        Self { range: None, ..self }
+    }
+
     /// Step between two values; 0 of a floating-point number.
     pub fn step(&self) -> f64 {
         match self.number {

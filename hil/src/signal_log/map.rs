@@ -72,6 +72,9 @@ pub struct Source {
     pub on_change: bool,
     /// For a valve without a signal: `open` or `closed`.
     pub always: Option<String>,
+    /// Whether values outside the range that the database states are readings too.
+    #[serde(default)]
+    pub ignore_range: bool,
     /// Another signal of the same message that says whether the value means something.
     pub valid: Option<Valid>,
 }

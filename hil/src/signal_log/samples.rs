@@ -21,12 +21,16 @@ use super::series::Series;
 
 /// Periods of the displacement that are accepted, us. Above, the motion of a wheel (12 Hz) is not resolved.
 const PERIODS_US: std::ops::RangeInclusive<f64> = 1_000.0..=20_000.0;
-/// A period is rounded to this, us.
+/// A period is rounded to this, us, if that changes it by no more than clocks differ.
 const PERIOD_STEP_US: f64 = 100.0;
+/// Difference of two clocks.
+const CLOCKS_DIFFER: f64 = 0.004;
 /// Silence that ends a drive, us.
 const LONGEST_SILENCE_US: u64 = 1_000_000;
-/// Fewest beats of a drive.
-const FEWEST_BEATS: usize = 6;
+/// Fewest samples of a drive.
+const FEWEST_SAMPLES: usize = 6;
+/// Most samples of a drive for each beat. Of a drive with more gaps nothing could be used, and it would need a lot of memory.
+const MOST_SAMPLES_A_BEAT: usize = 20;
 /// How fast the beat follows the times of the log: a sixteenth of the difference with each frame. Half of the frames may be late by
 /// up to a third of a period then, and a clock that is wrong by a percent is followed.
 const FOLLOWING: f64 = 1.0 / 16.0;
@@ -66,7 +70,7 @@ pub fn drives(
             "holds no drive: displacements come for an instant only; log the bus for at least a second".to_owned(),
         );
     }
-    let period_us = (round(beat.interval_us / PERIOD_STEP_US) * PERIOD_STEP_US).max(PERIOD_STEP_US);
+    let period_us = period_us(&drives);
     let mut out: Vec<SignalDrive> = Vec::new();
     for (k, drive) in drives.iter().enumerate() {
         // Half a silence around a drive is its own, so that no frame belongs to two.
@@ -106,6 +110,19 @@ pub fn drives(
     Ok(out)
 }
 
+/// Mean time between two samples, us.
+fn period_us(drives: &[Drive]) -> f64 {
+    let last = || drives.iter().filter_map(|drive| drive.beats.last());
+    let ticks: i64 = last().map(|beat| beat.tick).sum();
+    let mean = last().map(|beat| beat.base_us).sum::<f64>() / ticks.max(1) as f64;
+    let rounded = round(mean / PERIOD_STEP_US) * PERIOD_STEP_US;
+    if (rounded - mean).abs() <= CLOCKS_DIFFER * mean {
+        rounded
+    } else {
+        mean
+    }
+}
+
 /// The displacement that beats the time.
 struct Beats {
     time_us: Vec<u64>,
@@ -127,8 +144,8 @@ fn beat(all: &[Series]) -> Result<Beats, String> {
             let time_us: Vec<u64> = series.of_reading(at).map(|(time_us, _)| time_us).collect();
             let Some(interval_us) = median_interval_us(time_us.iter().copied()) else {
                 return Err(format!(
-                    "holds no drive: {} readings of a displacement in {} frames of the message {name}; check the map, the database and \
-                     the bus of the log",
+                    "holds no drive: {} readings of a displacement in {} frames of the message {name}; check the bus of the log, the \
+                     map (valid, ignore_range) and the database",
                     time_us.len(),
                     series.time_us.len()
                 ));
@@ -194,8 +211,8 @@ fn drives_of_beat(beats: &Beats) -> Vec<Drive> {
 }
 
 fn finish(drives: &mut Vec<Drive>, beats: Vec<Beat>) {
-    if beats.len() >= FEWEST_BEATS {
-        let samples = beats.last().map_or(0, |beat| beat.tick as usize + 1);
+    let samples = beats.last().map_or(0, |beat| beat.tick as usize + 1);
+    if (FEWEST_SAMPLES..=MOST_SAMPLES_A_BEAT * beats.len()).contains(&samples) {
         drives.push(Drive { beats, samples });
     }
 }

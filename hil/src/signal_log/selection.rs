@@ -122,7 +122,10 @@ impl Selection {
                     out.fixed.push((target, value));
                     continue;
                 };
-                let definition = database.signal(signal).map_err(place)?;
+                let mut definition = database.signal(signal).map_err(place)?;
+                if source.ignore_range {
+                    definition.decoder = definition.decoder.without_range();
+                }
                 let valid = valid(source, &definition, database).map_err(place)?;
                 let meaning = meaning(source, &definition, target).map_err(place)?;
                 out.enter_step(target, &meaning, &definition.decoder);

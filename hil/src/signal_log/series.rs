@@ -7,6 +7,32 @@ use super::content::{SignalAccount, SignalMessage};
 use super::selection::{Reading, Selected, Selection};
 use crate::logs::{FrameKind, FrameSource, LogError};
 
+/// A time that runs back by more than this is that of another log behind the first, us. Frames are logged late by less.
+const RUNS_BACK_US: u64 = 1_000_000;
+/// Time between two logs of one file, us: long enough to end a drive.
+const BETWEEN_LOGS_US: u64 = 10_000_000;
+
+/// The time of a log of which several may be in one file.
+#[derive(Default)]
+struct Clock {
+    latest_us: u64,
+    /// What the times of the current log lack.
+    offset_us: u64,
+}
+
+impl Clock {
+    /// The time of an entry, which does not run back by more than frames are late.
+    fn read(&mut self, time_us: u64) -> u64 {
+        let mut now = time_us.saturating_add(self.offset_us);
+        if now.saturating_add(RUNS_BACK_US) < self.latest_us {
+            self.offset_us = self.latest_us.saturating_add(BETWEEN_LOGS_US).saturating_sub(time_us);
+            now = time_us.saturating_add(self.offset_us);
+        }
+        self.latest_us = self.latest_us.max(now);
+        now
+    }
+}
+
 /// The readings of one message.
 pub struct Series<'s> {
     /// The message and its readings.
@@ -66,9 +92,9 @@ pub fn read<'s>(
         .map(|message| SignalMessage::new(&message.name))
         .collect();
     let mut buses: Vec<Option<String>> = vec![None; all.len()];
-    let (mut foreign_frames, mut conflict) = (0, None);
+    let (mut foreign_frames, mut conflict, mut clock) = (0, None, Clock::default());
     let log = log.read(&mut |entry| {
-        let frame = &entry.frame;
+        let (frame, time_us) = (&entry.frame, clock.read(entry.time_us));
         let is_wanted =
             selection.bus.as_deref().is_none_or(|bus| bus == entry.bus) && !matches!(frame.kind, FrameKind::Remote(_));
         let at = selection.messages.iter().position(|message| message.id == frame.id);
@@ -96,7 +122,7 @@ pub fn read<'s>(
         if series.values[before..].iter().all(|value| value.is_nan()) {
             messages[at].without_reading += 1;
         }
-        series.time_us.push(entry.time_us);
+        series.time_us.push(time_us);
         ControlFlow::Continue(())
     })?;
     if let Some((at, one, other)) = conflict {

@@ -158,6 +158,32 @@ fn every_reading_arrives_in_its_sample_and_unit() {
 }
 
 #[test]
+fn logs_that_were_joined_are_several_drives() {
+    // The second log begins before the end of the first, as a log whose times count from its own beginning.
+    let mut lines = drive(0, 500, 7_000_000);
+    lines.extend(drive(500, 700, 8_000_000));
+    let log = read(&lines);
+    assert_eq!(log.drives.len(), 2);
+    assert_eq!(all_true(&log, 0, 0), 500 * READINGS_OF_A_SAMPLE);
+    assert_eq!(all_true(&log, 1, 500), 200 * READINGS_OF_A_SAMPLE);
+}
+
+#[test]
+fn a_range_that_its_signal_leaves_can_be_ignored() {
+    let database = DBC.replace("(0.1,250) [0|1000]", "(0.1,250) [0|1]");
+    let database = Database::from_bytes(database.as_bytes(), "car.dbc").expect("a database");
+    let read = |map: &str| {
+        let map = SignalMap::from_toml(map, "map.toml").expect("a map");
+        let selection = Selection::of(&map, &database, "map.toml").expect("a selection");
+        parse(&written(&drive(0, 50, 0)), &selection)
+    };
+    let said = read(MAP).expect_err("no displacement").to_string();
+    assert!(said.contains("0 readings of a displacement in 50 frames"), "{said}");
+    let map = MAP.replace("sign = -1", "sign = -1, ignore_range = true");
+    assert_eq!(all_true(&read(&map).expect("a drive"), 0, 0), 50 * READINGS_OF_A_SAMPLE);
+}
+
+#[test]
 fn what_a_sensor_calls_invalid_is_missing() {
     let mut lines = drive(0, 50, 0);
     for line in lines.iter_mut().filter(|line| line.1 == 0x18FF_0101).skip(10).take(3) {
@@ -238,6 +264,12 @@ fn displacements_that_come_too_seldom_are_refused() {
         said.contains("HEIGHT_F comes every 50 ms") && !said.contains('\n'),
         "{said}"
     );
+    // 300 samples a second: the period is no multiple of anything.
+    let lines: Vec<Line> = drive(0, 500, 0)
+        .into_iter()
+        .map(|(t, id, data)| (t / 3, id, data))
+        .collect();
+    assert!((read(&lines).drives[0].period_s - 0.01 / 3.0).abs() < 1e-7);
     let said = parse(b"(1.000000) can0 123#00\n", &selection())
         .expect_err("nothing")
         .to_string();

@@ -42,6 +42,7 @@ enum Command {
     Diagnose(commands::diagnose::Args),
     Predict(commands::predict::Args),
     Compare(commands::compare::Args),
+    Convert(commands::convert::Args),
     Seal(commands::seal::Args),
     Show(commands::show::Args),
 }
@@ -56,6 +57,7 @@ fn main() -> ExitCode {
             Command::Diagnose(args) => commands::diagnose::run(args),
             Command::Predict(args) => commands::predict::run(args),
             Command::Compare(args) => commands::compare::run(&args),
+            Command::Convert(args) => commands::convert::run(args),
             Command::Seal(args) => commands::seal::run(args),
             Command::Show(args) => commands::show::run(args, CommandLine::command()),
         },

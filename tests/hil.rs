@@ -5,7 +5,7 @@ mod support;
 use std::fs;
 use std::path::Path;
 
-use oleo_hil::candump::parse_line;
+use oleo_hil::logs::candump::parse_line;
 use oleo_hil::scenario::BUILT_IN;
 use support::{complaint, is_as_documented, no_panic, oleo, run, summary};
 

@@ -119,6 +119,42 @@ fn candump() {
 }
 
 #[test]
+fn asc() {
+    let log = b"Begin Triggerblock Wed Apr 26 10:00:00.000 2023\n 0.015270 1  110 Rx   d 2 1A FF\n 0.0155004 2  1FFF01E0x Tx   r 4\n\
+        0.015900 CANFD   3 Rx        123   Engine_Data   1 0 9 12 00 01 02 03 04 05 06 07 08 09 0A 0B  0 0 3000\n\
+        base dec  timestamps relative\n 0.1 1  ErrorFrame\n 1.0 1  Statistic: D 200\nEnd TriggerBlock\n";
+    drive(targets::asc, &[log]);
+}
+
+#[test]
+fn mf4() {
+    drive(
+        targets::mf4,
+        &[
+            include_bytes!("golden/frames.mf4"),
+            include_bytes!("golden/frames-plain.mf4"),
+        ],
+    );
+}
+
+#[test]
+fn can_database() {
+    let text = b"VERSION \"\"\nNS_ :\nBS_:\nBU_: A\nBO_ 256 M: 8 A\n SG_ W M : 0|8@1+ (1,0) [0|0] \"\" A\n\
+        SG_ S m3 : 8|12@0- (0.5,-3) [0|16] \"bar\" A\nBO_ 2147483904 N: 64 A\n SG_ T : 32|32@1- (1,0) [0|0] \"\" A\n\
+        CM_ SG_ 256 S \"text\";\nVAL_ 256 S 0 \"Zu\" 1 \"Auf\" ;\nSIG_VALTYPE_ 2147483904 T : 1;\n\
+        SG_MUL_VAL_ 256 S W 3-5, 7-9;\n";
+    drive(targets::can_database, &[text]);
+}
+
+#[test]
+fn signal_map() {
+    drive(
+        targets::signal_map,
+        &[include_bytes!("../hil/src/signal_log/invented_car.toml")],
+    );
+}
+
+#[test]
 fn drive_log() {
     use oleo_controller::Inputs;
     use oleo_hil::Frame;
@@ -130,7 +166,8 @@ fn drive_log() {
     for tick in 0..12 {
         for frame in plant.encode(tick, &inputs) {
             let time_us = u64::from(tick) * 5000;
-            oleo_hil::candump::write_line(&mut proper, time_us, "can0", &Frame::from(frame)).expect("memory takes it");
+            oleo_hil::logs::candump::write_line(&mut proper, time_us, "can0", &Frame::from(frame))
+                .expect("memory takes it");
         }
     }
     drive(targets::drive_log, &[&proper]);

@@ -9,7 +9,9 @@ mod fault_plan;
 use oleo_controller::{Configuration, Node, PlantEnd, SensorMessage};
 use oleo_diagnose::recording::{ColumnKind, ColumnSpec, GapPolicy, parse};
 use oleo_hil::bus::{SlcanDecoder, slcan_encode};
-use oleo_hil::candump::{parse_line, write_line};
+use oleo_hil::logs::candump::{parse_line, write_line};
+use oleo_hil::logs::{FrameKind, in_memory};
+use oleo_hil::signal_log::{Database, Selection, SignalMap};
 use oleo_interface::StrutValves;
 use oleo_plant_sim::road::{Road, crg, profile_from_csv};
 use oleo_plant_sim::specimen::{CylinderModel, DamperModel, DriveModel, GasSpringModel, smooth_motion, specimen_name};
@@ -70,9 +72,72 @@ pub fn candump(bytes: &[u8]) {
     for line in String::from_utf8_lossy(bytes).lines() {
         let Some(entry) = parse_line(line) else { continue };
         let mut written = Vec::new();
-        write_line(&mut written, entry.time_us, &entry.interface, &entry.frame).expect("memory takes it");
+        write_line(&mut written, entry.time_us, entry.interface, entry.frame).expect("memory takes it");
         let written = String::from_utf8(written).expect("the format is ASCII and the interface was text");
         assert_eq!(parse_line(&written), Some(entry), "{line}");
+    }
+}
+
+/// A log in any format. Its frames have as many bytes as their kind can carry, and every entry is accounted for.
+fn frames_of(bytes: &[u8]) {
+    let mut frames = 0;
+    let read = in_memory(bytes).and_then(|mut log| {
+        log.read(&mut |entry| {
+            let most = if matches!(entry.frame.kind, FrameKind::Fd(_)) {
+                64
+            } else {
+                8
+            };
+            assert!(entry.frame.data().len() <= most);
+            frames += 1;
+            std::ops::ControlFlow::Continue(())
+        })
+    });
+    match read {
+        Ok(account) => {
+            let others = account.unreadable + account.error_frames + account.without_frame;
+            assert_eq!(account.entries, frames + others, "{account:?}");
+        }
+        Err(error) => one_line(&error),
+    }
+}
+
+/// A Vector ASC log.
+pub fn asc(bytes: &[u8]) {
+    frames_of(&[b"base hex  timestamps absolute\n", bytes].concat());
+}
+
+/// An MDF 4 file, and whatever else a log may be.
+pub fn mf4(bytes: &[u8]) {
+    frames_of(bytes);
+}
+
+/// A CAN database. A signal that is found has finite values in every frame.
+pub fn can_database(bytes: &[u8]) {
+    let database = match Database::from_bytes(bytes, "any.dbc") {
+        Ok(database) => database,
+        Err(error) => return assert!(!error.is_empty() && !error.contains('\n'), "{error}"),
+    };
+    for name in ["M.S", "S", "M.T", "T"] {
+        match database.signal(name) {
+            Ok(signal) => {
+                for data in [&[][..], &[0xFF; 8], &[0x5A; 64]] {
+                    assert!(signal.decoder.value(data).is_none_or(f64::is_finite));
+                }
+            }
+            Err(error) => assert!(!error.is_empty() && !error.contains('\n'), "{error}"),
+        }
+    }
+}
+
+/// A map of signals, with a database in which it may find them.
+pub fn signal_map(bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let database = include_bytes!("../../hil/src/signal_log/invented_car.dbc");
+    let database = Database::from_bytes(database, "car.dbc").expect("a database");
+    let selection = SignalMap::from_toml(text, "any.toml").and_then(|map| Selection::of(&map, &database, "any.toml"));
+    if let Err(error) = selection {
+        assert!(!error.is_empty() && !error.contains('\n'), "{error}");
     }
 }
 

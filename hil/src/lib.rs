@@ -19,12 +19,12 @@
 //! * [`metrics`] and [`output`] turn a recording into figures and files; [`bit_timing`] computes when a wire would have carried each
 //!   frame.
 //! * [`strut_recording`] gives a run as a recording of one strut, for a diagnosis.
-//! * [`drive_log`] reads what a vehicle's bus carried from a candump log.
+//! * [`logs`] reads the frames of logs in any format. [`drive_log`] makes the drives of a vehicle of messages of our own database, and
+//!   [`signal_log`] of those of any other.
 #![forbid(unsafe_code)]
 
 pub mod bit_timing;
 pub mod bus;
-pub mod candump;
 pub mod clock;
 pub mod comparison;
 pub mod controller_node;
@@ -36,6 +36,7 @@ pub mod frame;
 pub mod handshake;
 pub mod image;
 pub mod instruments;
+pub mod logs;
 pub mod metrics;
 mod newcomer;
 pub mod output;
@@ -44,6 +45,7 @@ pub mod plant_node;
 pub mod record;
 pub mod run;
 pub mod scenario;
+pub mod signal_log;
 pub mod strut_recording;
 pub mod sync;
 mod time_series;

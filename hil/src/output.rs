@@ -10,8 +10,8 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 use serde::Serialize;
 
 use crate::bus::BusCounters;
-use crate::candump::write_line;
 use crate::clock::Lateness;
+use crate::logs::candump::write_line;
 use crate::metrics::Metrics;
 use crate::record::command_hash;
 use crate::run::Outcome;

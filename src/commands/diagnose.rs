@@ -13,6 +13,7 @@ use oleo_diagnose::{Campaign, Diagnosis, KeptBack, MODEL_FILE, Predictions, json
 use oleo_report::{Cell, Column, Progress, Table};
 
 use super::column_map::column_map;
+use super::vehicle_log::DatabaseArgs;
 use crate::failure::Failure;
 use crate::results::{ResultsArgs, command_line};
 
@@ -24,9 +25,11 @@ use crate::results::{ResultsArgs, command_line};
     The command writes three files into DIR: report.json, report.html (opens offline) and model.toml, the improved model. \
     oleo predict accepts the improved model unchanged; oleo rig and oleo hil accept it if the specimen is a strut. The exit \
     status is 0 whatever the verdict.\n\n\
-    A vehicle (kind = \"vehicle\" in model.toml) is diagnosed from logs of its bus, as candump -L writes them (*.log or *.log.gz):\n  \
+    A vehicle (kind = \"vehicle\" in model.toml) is diagnosed from logs of its bus: text of candump -L (*.log), \
+    Vector ASC (*.asc), both also with .gz, or ASAM MDF 4 (*.mf4):\n  \
     oleo diagnose drives --out found                           a folder with model.toml, four strut files and logs\n  \
-    oleo diagnose a.log b.log --vehicle model.toml --out found\n\n\
+    oleo diagnose a.log b.log --vehicle model.toml --out found\n  \
+    oleo diagnose a.mf4 --vehicle model.toml --dbc car.dbc --signals map.toml   a log with messages of another database\n\n\
     To test the improved model on data that it was not fitted to, hold part of the data out:\n  \
     oleo diagnose gas-spring --fit-until 0.5 --out found       fits the first half of every recording\n  \
     oleo diagnose cylinder --hold-out 5bar --out found         fits all recordings except 5bar.csv\n\
@@ -35,7 +38,7 @@ use crate::results::{ResultsArgs, command_line};
     and it resumes there. After a new build of oleo, use a new DIR."
 )]
 pub struct Args {
-    /// Folder with model.toml and the recordings (*.csv, or *.log of a vehicle); with --vehicle the logs themselves
+    /// Folder with model.toml and the recordings (*.csv, or *.log, *.asc, *.mf4 of a vehicle); with --vehicle the logs themselves
     #[arg(value_name = "CAMPAIGN|LOG", required_unless_present = "self_test")]
     campaign: Vec<PathBuf>,
     /// Model of a vehicle (kind = "vehicle"), beside which the models of its four struts lie
@@ -50,6 +53,8 @@ pub struct Args {
     /// Map of the columns of recordings that another program wrote: separator, decimal commas, titles and units (docs/diagnose.md)
     #[arg(long, value_name = "MAP.toml", conflicts_with_all = ["vehicle", "self_test"])]
     columns: Option<PathBuf>,
+    #[command(flatten)]
+    database: DatabaseArgs,
     #[command(flatten)]
     results: ResultsArgs,
     #[command(flatten)]
@@ -69,10 +74,15 @@ const STEPS: u64 = 100;
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let Some(folder) = args.campaign.first() else {
+        if args.database.is_given() {
+            return Err(Failure::new(
+                "--dbc and --signals: the self-test reads no logs; leave the options out",
+            ));
+        }
         return self_test::run_self_test(&args.self_test, &args.results);
     };
     if let Some(logs) = args.logs(folder)? {
-        return vehicle::run(&logs, &args.results);
+        return vehicle::run(&logs, &args.database, &args.results);
     }
     let begun = Instant::now();
     let kept_back = KeptBack {
@@ -158,9 +168,15 @@ impl Args {
             )));
         }
         let logs = vehicle::Logs::in_folder(first)?;
+        if logs.is_none() && self.database.is_given() {
+            return Err(Failure::new(format!(
+                "{}: is no campaign of a vehicle; leave --dbc and --signals out, or add --vehicle MODEL.toml if this is a log",
+                first.display()
+            )));
+        }
         if logs.is_some() && self.columns.is_some() {
             return Err(Failure::new(
-                "--columns: the logs of a vehicle have no columns; leave the option out",
+                "--columns: the logs of a vehicle have no columns; leave the option out, and see --signals",
             ));
         }
         if logs.is_some() && (self.fit_until.is_some() || !self.hold_out.is_empty()) {
@@ -176,10 +192,7 @@ impl Args {
 /// The models and recordings of a campaign, by name.
 fn inputs(folder: &Path) -> Vec<PathBuf> {
     let files = std::fs::read_dir(folder).into_iter().flatten().flatten();
-    let read = |path: &PathBuf| {
-        path.extension()
-            .is_some_and(|kind| kind == "csv" || kind == "log" || kind == "toml")
-    };
+    let read = |path: &PathBuf| path.extension().is_some_and(|kind| kind == "csv" || kind == "toml");
     let mut inputs: Vec<PathBuf> = files.map(|entry| entry.path()).filter(read).collect();
     inputs.sort();
     inputs

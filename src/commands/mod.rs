@@ -3,6 +3,7 @@
 
 mod column_map;
 pub mod compare;
+pub mod convert;
 mod course_arguments;
 pub mod diagnose;
 pub mod drive;
@@ -14,4 +15,5 @@ pub mod rig;
 pub mod seal;
 pub mod show;
 pub mod study;
+mod vehicle_log;
 mod word;

@@ -3,21 +3,26 @@
 //! A missing displacement must not become a step: it is interpolated, and the pressures about it do not count. A missing pressure
 //! does not count. Where a command is missing, the valves are taken to stay as they were; if they were switched meanwhile, nobody
 //! knows in which tick, so the pressures do not count until the valve has settled. The drive is cut where more than
-//! [`LONGEST_BRIDGE`] readings in a row are missing, because the state of the strut is not known after it.
+//! [`LONGEST_BRIDGE_S`] in a row are missing, because the state of the strut is not known after it.
 
 use oleo_interface::StrutValves;
-use oleo_interface::tick::TICKS_PER_SECOND;
 
 use super::drive::StrutSamples;
 
-/// Most missing readings in a row that are bridged: 0.1 s.
-pub const LONGEST_BRIDGE: usize = TICKS_PER_SECOND as usize / 10;
-/// Gaps up to this length are interpolated so well that only the pressures next to them are touched.
-const SHORT_GAP: usize = 3;
-/// Pressures that do not count before a gap, and after a short one: the dampers' pressures settle within milliseconds.
+/// Longest time without readings that is bridged, s.
+pub const LONGEST_BRIDGE_S: f64 = 0.1;
+/// Gaps up to this length are interpolated so well that only the pressures next to them are touched, s.
+const SHORT_GAP_S: f64 = 0.015;
+/// Pressures that do not count before a gap, and after a short one, in samples: the dampers' pressures settle within milliseconds.
 const BESIDE_SHORT: (usize, usize) = (2, 6);
-/// Pressures that do not count after a long gap, or after an edge whose time is not known: 0.3 s, three times the slowest valve.
-const AFTER_LONG: usize = 3 * TICKS_PER_SECOND as usize / 10;
+/// Pressures that do not count after a long gap, or after an edge whose time is not known, s: three times the slowest valve.
+const AFTER_LONG_S: f64 = 0.3;
+
+/// The number of whole samples in a time.
+pub fn samples_in(time_s: f64, period_s: f64) -> usize {
+    // A time that is a multiple of the period is not to lose a sample by rounding.
+    (time_s / period_s + 1e-6) as usize
+}
 /// Known readings on each side of a gap through which the interpolating polynomial goes.
 const NODES: usize = 3;
 
@@ -40,9 +45,15 @@ pub struct Bridged {
     pub cut_at: Option<usize>,
 }
 
-/// Bridges what is missing; `None` of a drive without a displacement.
+/// Bridges what is missing between samples a time `period_s` apart; `None` of a drive without a displacement.
 #[must_use]
-pub fn bridge(samples: &StrutSamples) -> Option<Bridged> {
+pub fn bridge(samples: &StrutSamples, period_s: f64) -> Option<Bridged> {
+    let in_samples = |time_s| samples_in(time_s, period_s);
+    let (longest_bridge, short_gap, after_long) = (
+        in_samples(LONGEST_BRIDGE_S),
+        in_samples(SHORT_GAP_S),
+        in_samples(AFTER_LONG_S),
+    );
     let x = &samples.displacement_m;
     let from = x.iter().position(|v| v.is_finite())?;
     let last = x.iter().rposition(|v| v.is_finite())? + 1;
@@ -50,7 +61,7 @@ pub fn bridge(samples: &StrutSamples) -> Option<Bridged> {
     // Before the first command all valves are closed, however long that takes.
     let first_command = samples.valves.iter().position(Option::is_some).unwrap_or(last);
     let silences = self::gaps(first_command.max(from), last, |k| samples.valves[k].is_some());
-    let long = |gap: &&(usize, usize)| gap.1 - gap.0 > LONGEST_BRIDGE;
+    let long = |gap: &&(usize, usize)| gap.1 - gap.0 > longest_bridge;
     let cut_at = (gaps.iter().find(long).into_iter().chain(silences.iter().find(long)))
         .map(|gap| gap.0)
         .min();
@@ -65,10 +76,10 @@ pub fn bridge(samples: &StrutSamples) -> Option<Bridged> {
     let mut interpolated = 0;
     for &(start, end) in gaps.iter().filter(|gap| gap.1 <= to) {
         interpolated += end - start;
-        let after = if end - start <= SHORT_GAP {
+        let after = if end - start <= short_gap {
             BESIDE_SHORT.1
         } else {
-            AFTER_LONG
+            after_long
         };
         uncounted(start.saturating_sub(BESIDE_SHORT.0), end + after);
         for k in start..end {
@@ -86,7 +97,7 @@ pub fn bridge(samples: &StrutSamples) -> Option<Bridged> {
         without_command += end - start;
         let known = |k: usize| samples.valves.get(k).copied().flatten();
         if start.checked_sub(1).and_then(known) != known(end) {
-            uncounted(start, end + AFTER_LONG);
+            uncounted(start, end + after_long);
         }
     }
     Some(Bridged {
@@ -136,6 +147,10 @@ fn interpolated_at(x: &[f64], k: usize, (start, end): (usize, usize)) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oleo_interface::tick::TICK_S;
+
+    /// Most missing readings in a row that are bridged.
+    const MOST: usize = 20;
 
     /// Wheel hop of 12 Hz and 5 mm on a slow stroke.
     fn motion(k: usize) -> f64 {
@@ -157,7 +172,7 @@ mod tests {
         for k in [100, 200, 201, 390] {
             s.displacement_m[k] = f64::NAN;
         }
-        let b = bridge(&s).expect("a drive");
+        let b = bridge(&s, TICK_S).expect("a drive");
         assert_eq!((b.interpolated, b.cut_at, b.displacement_m.len()), (4, None, 400));
         for (k, x) in b.displacement_m.iter().enumerate() {
             // Half a step of the bus for one, ten steps for two; a straight line would be off by 0.7 mm.
@@ -171,12 +186,12 @@ mod tests {
     #[test]
     fn a_long_gap_cuts_the_drive() {
         let mut s = samples(400);
-        s.displacement_m[150..150 + LONGEST_BRIDGE].fill(f64::NAN);
-        s.displacement_m[250..251 + LONGEST_BRIDGE].fill(f64::NAN);
-        let b = bridge(&s).expect("a drive");
+        s.displacement_m[150..150 + MOST].fill(f64::NAN);
+        s.displacement_m[250..251 + MOST].fill(f64::NAN);
+        let b = bridge(&s, TICK_S).expect("a drive");
         assert_eq!(
             (b.cut_at, b.displacement_m.len(), b.interpolated),
-            (Some(250), 250, LONGEST_BRIDGE)
+            (Some(250), 250, MOST)
         );
         assert!(b.displacement_m.iter().all(|x| x.is_finite()));
     }
@@ -189,13 +204,13 @@ mod tests {
         // One command is lost in the middle of nothing, another where the valves are switched.
         s.valves[50] = None;
         s.valves[200] = None;
-        let b = bridge(&s).expect("a drive");
+        let b = bridge(&s, TICK_S).expect("a drive");
         assert_eq!(b.without_command, 2);
         assert!(b.pressure_pa[0][50].is_finite() && b.pressure_pa[0][200].is_nan() && b.pressure_pa[0][260].is_nan());
         assert!(b.pressure_pa[0][262].is_finite());
         // Before the first command the valves are closed.
         s.valves[..60].fill(None);
-        let b = bridge(&s).expect("a drive");
+        let b = bridge(&s, TICK_S).expect("a drive");
         assert_eq!(
             (b.valves[0], b.cut_at, b.without_command),
             (StrutValves::default(), None, 61)
@@ -206,8 +221,8 @@ mod tests {
     fn nothing_is_made_of_nothing() {
         let mut s = samples(30);
         s.displacement_m.fill(f64::NAN);
-        assert!(bridge(&s).is_none() && bridge(&StrutSamples::default()).is_none());
+        assert!(bridge(&s, TICK_S).is_none() && bridge(&StrutSamples::default(), TICK_S).is_none());
         s.displacement_m[7] = 0.01;
-        assert_eq!(bridge(&s).expect("one").displacement_m, [0.01]);
+        assert_eq!(bridge(&s, TICK_S).expect("one").displacement_m, [0.01]);
     }
 }

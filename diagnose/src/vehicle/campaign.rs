@@ -36,14 +36,15 @@ impl VehicleCampaign {
     pub fn of(
         model: VehicleModel,
         drives: &[Drive],
-        resolution: Resolution,
+        resolution: &Corners<Resolution>,
         source: &str,
     ) -> Result<Self, DiagnoseError> {
         let bridged: Vec<BridgedDrive> = (drives.iter())
             .map(|drive| BridgedDrive {
                 name: drive.name.clone(),
                 is_first: drive.is_first,
-                struts: drive.struts.each_ref().map(bridge),
+                period_s: drive.period_s,
+                struts: drive.struts.each_ref().map(|strut| bridge(strut, drive.period_s)),
             })
             .collect();
         let Chosen { recordings, mut notes } = choose(&bridged);
@@ -55,7 +56,7 @@ impl VehicleCampaign {
             );
             return Err(DiagnoseError::file(source, what));
         }
-        let struts = model.struts.each_ref().map(|strut| as_read(strut, resolution));
+        let struts = Corners::from_fn(|corner| as_read(&model.struts[corner], resolution[corner]));
         let at_once = specimens(&struts, &recordings)?;
         let a_tick_later = specimens(
             &struts,
@@ -63,11 +64,11 @@ impl VehicleCampaign {
         )?;
         let is_later = misfit(&a_tick_later) < misfit(&at_once);
         if is_later {
-            notes.push(
-                "The commands act one tick (5 ms) after the sample whose tick they echo: with this the believed models fit the edges of \
-                 the valves better."
-                    .to_owned(),
-            );
+            let period_ms = (1e4 * drives.first().map_or(0.0, |drive| drive.period_s)).round() / 10.0;
+            notes.push(format!(
+                "The commands act one tick ({period_ms} ms) after the sample whose tick they echo: with this the believed models fit the \
+                 edges of the valves better."
+            ));
         }
         let specimens = if is_later { a_tick_later } else { at_once };
         let corners = specimens
@@ -128,7 +129,10 @@ fn as_read(strut: &StrutModel, resolution: Resolution) -> StrutModel {
         let step = match column.as_str() {
             "displacement_m" => resolution.displacement_m,
             "force_N" => 0.0,
-            _ => resolution.pressure_pa,
+            "p1_Pa" => resolution.pressure_pa.p1,
+            "p2_Pa" => resolution.pressure_pa.p2,
+            "p3_Pa" => resolution.pressure_pa.p3,
+            _ => resolution.pressure_pa.p4,
         };
         *noise = (*noise * *noise + VARIANCE_OF_ROUNDING * step * step).sqrt();
     }

@@ -1,14 +1,16 @@
 //! What a drive recorded.
 
-use oleo_interface::{Corners, StrutValves};
+use oleo_interface::{Corners, StrutPressures, StrutValves};
 
-/// One drive: what was recorded of every strut, one sample for each tick of 5 ms.
+/// One drive: what was recorded of every strut, all at the same instants.
 #[derive(Debug, Clone)]
 pub struct Drive {
     /// Name of the drive, such as the name of its log without `.log`.
     pub name: String,
     /// Whether the drive is the first of its log. Such a drive begins at rest; that of a later one must be seen.
     pub is_first: bool,
+    /// Time between two samples, s.
+    pub period_s: f64,
     /// The four struts. All series have the same length.
     pub struts: Corners<StrutSamples>,
 }
@@ -38,11 +40,11 @@ pub struct StrutSamples {
     pub valves: Vec<Option<StrutValves<bool>>>,
 }
 
-/// Steps to which readings are rounded on the bus.
+/// Steps to which the readings of a strut are rounded on the bus; 0 where they are not rounded.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resolution {
-    /// Step of a displacement, m.
+    /// Step of the displacement, m.
     pub displacement_m: f64,
-    /// Step of a pressure, Pa.
-    pub pressure_pa: f64,
+    /// Steps of the pressures, Pa.
+    pub pressure_pa: StrutPressures<f64>,
 }

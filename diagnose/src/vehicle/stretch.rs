@@ -4,18 +4,17 @@
 //! therefore always its beginning, without a stretch in which nothing has moved yet. Hours of data add little to the first
 //! minutes of those drives that move the struts fastest, farthest, and with most switchings of valve 3; these are used.
 
-use oleo_interface::tick::{TICK_S, TICKS_PER_SECOND};
 use oleo_interface::{Corner, Corners, Valve};
 
-use super::bridge::Bridged;
+use super::bridge::{Bridged, LONGEST_BRIDGE_S, samples_in};
 use crate::recording::{MIN_SAMPLES, Recording};
 
-/// Most samples of a corner that are used: two minutes. An hour of log is then diagnosed in about as long as a test-rig campaign.
-const MOST_SAMPLES: usize = 120 * TICKS_PER_SECOND as usize;
-/// Samples that a drive contributes before others are asked: 40 s, several times the thermal time constants of the gas.
-const FIRST_SHARE: usize = 40 * TICKS_PER_SECOND as usize;
-/// Standing still is kept for this long before a drive moves: 0.5 s.
-const KEPT_STILL: usize = TICKS_PER_SECOND as usize / 2;
+/// Most samples of a corner that are used: two minutes at 5 ms. An hour of log is then diagnosed in about as long as a test-rig campaign.
+const MOST_SAMPLES: usize = 24_000;
+/// Samples that a drive contributes before others are asked: 40 s at 5 ms, several times the thermal time constants of the gas.
+const FIRST_SHARE: usize = 8_000;
+/// Standing still is kept for this long before a drive moves, s.
+const KEPT_STILL_S: f64 = 0.5;
 /// A displacement this far from its first value has moved, m: far beyond noise and steps of the bus.
 const MOVED_M: f64 = 1e-4;
 /// Samples by which the beginning of a later drive is judged.
@@ -31,6 +30,8 @@ pub struct BridgedDrive {
     pub name: String,
     /// Whether the drive is the first of its log.
     pub is_first: bool,
+    /// Time between two samples, s.
+    pub period_s: f64,
     /// The struts; `None` of one without a displacement.
     pub struts: Corners<Option<Bridged>>,
 }
@@ -61,7 +62,7 @@ impl Excitation {
                 .filter(|w| w[0][Valve::Spring] != w[1][Valve::Spring])
                 .count();
         }
-        out.speed_m_s = (square / count.max(1) as f64).sqrt() / (2.0 * TICK_S);
+        out.speed_m_s = (square / count.max(1) as f64).sqrt() / (2.0 * drive.period_s);
         out
     }
 }
@@ -83,7 +84,8 @@ pub fn choose(drives: &[BridgedDrive]) -> Chosen {
     for drive in drives {
         let begins_at_rest = drive.is_first || reference.is_some_and(|first| begins_as(first, drive));
         if begins_at_rest {
-            known.push((drive, moves_from(drive).saturating_sub(KEPT_STILL)));
+            let kept_still = samples_in(KEPT_STILL_S, drive.period_s);
+            known.push((drive, moves_from(drive).saturating_sub(kept_still)));
         } else {
             notes.push(format!(
                 "{}: not used, because it does not begin at rest, so that the state of the struts at its beginning is not known.",
@@ -110,7 +112,7 @@ pub fn choose(drives: &[BridgedDrive]) -> Chosen {
             notes.push(format!("{}: not used, because {why}.", drive.name));
             continue;
         }
-        let of = |samples: usize| samples as f64 * TICK_S;
+        let of = |samples: usize| samples as f64 * drive.period_s;
         notes.push(format!(
             "{}: {:.1} s of {:.1} s are used, from {:.1} s on (RMS strut speed {:.3} m/s, range {:.0} mm, {} switchings of valves 3{}).",
             drive.name,
@@ -125,7 +127,7 @@ pub fn choose(drives: &[BridgedDrive]) -> Chosen {
         for corner in Corner::ALL {
             match &drive.struts[corner] {
                 Some(strut) if strut.displacement_m.len() >= from + MIN_SAMPLES => {
-                    recordings[corner].push(recording(&drive.name, strut, *from, *share));
+                    recordings[corner].push(recording(drive, strut, *from, *share));
                 }
                 _ => notes.push(format!(
                     "{}: not used for the {} strut, whose readings are missing.",
@@ -136,7 +138,7 @@ pub fn choose(drives: &[BridgedDrive]) -> Chosen {
             notes.extend(
                 drive.struts[corner]
                     .as_ref()
-                    .and_then(|strut| bridged(&drive.name, corner, strut)),
+                    .and_then(|strut| bridged(drive, corner, strut)),
             );
         }
     }
@@ -144,7 +146,7 @@ pub fn choose(drives: &[BridgedDrive]) -> Chosen {
 }
 
 /// What was missing at a corner, and what became of it.
-fn bridged(drive: &str, corner: Corner, strut: &Bridged) -> Option<String> {
+fn bridged(drive: &BridgedDrive, corner: Corner, strut: &Bridged) -> Option<String> {
     let mut parts = Vec::new();
     if strut.interpolated > 0 {
         parts.push(format!(
@@ -158,11 +160,11 @@ fn bridged(drive: &str, corner: Corner, strut: &Bridged) -> Option<String> {
     if let Some(at) = strut.cut_at {
         parts.push(format!(
             "the drive was cut at {:.2} s, where more than {} readings in a row are missing",
-            at as f64 * TICK_S,
-            super::bridge::LONGEST_BRIDGE
+            at as f64 * drive.period_s,
+            samples_in(LONGEST_BRIDGE_S, drive.period_s)
         ));
     }
-    (!parts.is_empty()).then(|| format!("{drive}, {}: {}.", corner.name(), parts.join("; ")))
+    (!parts.is_empty()).then(|| format!("{}, {}: {}.", drive.name, corner.name(), parts.join("; ")))
 }
 
 /// Samples of the longest strut of a drive.
@@ -243,7 +245,7 @@ fn shares(lengths: &[usize], excitation: &[Excitation]) -> Vec<usize> {
     used
 }
 
-fn recording(name: &str, strut: &Bridged, from: usize, samples: usize) -> Recording {
+fn recording(drive: &BridgedDrive, strut: &Bridged, from: usize, samples: usize) -> Recording {
     let end = (from + samples).min(strut.displacement_m.len());
     let mut columns = vec![strut.displacement_m[from..end].to_vec()];
     columns.extend(strut.pressure_pa.iter().map(|p| p[from..end].to_vec()));
@@ -253,8 +255,8 @@ fn recording(name: &str, strut: &Bridged, from: usize, samples: usize) -> Record
             .collect()
     }));
     Recording {
-        name: name.to_owned(),
-        time_s: (from..end).map(|k| (strut.from + k) as f64 * TICK_S).collect(),
+        name: drive.name.clone(),
+        time_s: (from..end).map(|k| (strut.from + k) as f64 * drive.period_s).collect(),
         columns,
         notes: vec![],
     }
@@ -264,6 +266,7 @@ fn recording(name: &str, strut: &Bridged, from: usize, samples: usize) -> Record
 mod tests {
     use super::*;
     use oleo_interface::StrutValves;
+    use oleo_interface::tick::{TICK_S, TICKS_PER_SECOND};
 
     /// A drive that stands still, then moves with an amplitude (m).
     fn drive(name: &str, is_first: bool, samples: usize, still: usize, amplitude_m: f64) -> BridgedDrive {
@@ -280,6 +283,7 @@ mod tests {
         BridgedDrive {
             name: name.into(),
             is_first,
+            period_s: TICK_S,
             struts: Corners::from_fn(|_| Some(strut.clone())),
         }
     }

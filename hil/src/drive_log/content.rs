@@ -3,6 +3,8 @@
 use oleo_controller::{Reading, ValveCommand};
 use oleo_interface::{Corners, StrutPressures};
 
+use crate::logs::Account;
+
 /// What a log holds.
 #[derive(Clone, Debug)]
 pub struct DriveLog {
@@ -35,10 +37,8 @@ pub struct LoggedSample {
 /// What was read from a log, and what could not be used.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LogAccount {
-    /// Number of lines.
-    pub lines: u64,
-    /// Number of lines that are not a classic CAN frame, such as a last line that was cut off.
-    pub unreadable_lines: u64,
+    /// Entries of the log, of whatever kind.
+    pub log: Account,
     /// Number of frames whose identifier is not in the database.
     pub foreign_frames: u64,
     /// One entry for each message of the database except `STATUS` and `BOARD`, in the order of [`oleo_controller::can::MESSAGES`].

@@ -7,8 +7,8 @@ use proptest::prelude::*;
 
 use super::{DriveLog, LoggedDrive, parse};
 use crate::Frame;
-use crate::candump::write_line;
 use crate::frame::standard;
+use crate::logs::candump::write_line;
 
 /// A line of a log before it is written.
 #[derive(Clone, Debug)]
@@ -226,7 +226,7 @@ fn a_log_without_a_drive_is_refused_in_one_line() {
         "{error}"
     );
     assert!(!error.contains('\n'));
-    assert!(parse(b"").expect_err("empty").contains("0 lines"));
+    assert!(parse(b"").expect_err("empty").contains("0 entries"));
 }
 
 /// What a logger does to a frame.

@@ -19,6 +19,7 @@ use std::collections::BTreeMap;
 use serde::Deserialize;
 
 use super::recording::other_separator;
+use super::units::unit_size;
 
 /// How the columns of a file become those of a recording.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -74,23 +75,6 @@ pub struct ColumnMapError {
     pub what: String,
 }
 
-/// The units of a kind of quantity, by the end of our names: each with its size in ours.
-const UNITS: [(&str, &[(&str, f64)]); 4] = [
-    ("_s", &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("min", 60.0)]),
-    ("_m", &[("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("in", 0.0254)]),
-    ("_N", &[("N", 1.0), ("kN", 1e3), ("lbf", 4.448_221_615_260_5)]),
-    (
-        "_Pa",
-        &[
-            ("Pa", 1.0),
-            ("kPa", 1e3),
-            ("MPa", 1e6),
-            ("bar", 1e5),
-            ("psi", 6_894.757_293_168_36),
-        ],
-    ),
-];
-
 impl Source {
     /// The factor from its numbers to ours.
     fn factor(&self, name: &str) -> Result<f64, String> {
@@ -98,19 +82,9 @@ impl Source {
             return Err(format!("{name}: sign is {}; it is 1 or -1", self.sign));
         }
         let sign = f64::from(self.sign);
-        let Some(unit) = &self.unit else { return Ok(sign) };
-        let Some((_, units)) = UNITS.iter().find(|(end, _)| name.ends_with(end)) else {
-            return Err(format!("{name}: has no unit; leave out unit = {unit:?}"));
-        };
-        match units.iter().find(|(known, _)| known == unit) {
-            Some((_, size)) => Ok(sign * size),
-            None => {
-                let known: Vec<&str> = units.iter().map(|(known, _)| *known).collect();
-                Err(format!(
-                    "{name}: {unit:?} is not a unit of it; the units are {}",
-                    known.join(", ")
-                ))
-            }
+        match &self.unit {
+            Some(unit) => Ok(sign * unit_size(name, unit)?),
+            None => Ok(sign),
         }
     }
 }

@@ -23,6 +23,7 @@ mod parabola;
 mod programme;
 mod recording;
 mod spring;
+mod units;
 mod valve_response;
 
 pub use bulk_modulus::{OilCompression, compress_oil};
@@ -35,4 +36,5 @@ pub use parabola::Parabola;
 pub use programme::{Programme, Record, play};
 pub use recording::{Columns, RecordedStrut, RecordingError, other_separator, wrong_separator};
 pub use spring::{SpringCharacteristic, SpringTest, side_loaded, test_spring};
+pub use units::unit_size;
 pub use valve_response::{ValveResponse, measure_valve_response, measure_valve_responses};

@@ -1,7 +1,7 @@
 //! One file of results, whole or absent, in a folder that may hold anything.
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter};
+use std::io::{self, BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
@@ -74,6 +74,29 @@ impl OutputFile {
         self.put(|staged| fs::write(staged, bytes))
     }
 
+    /// Lets `write` write the file piece by piece, and moves it into place unless `write` says why there is nothing to keep.
+    ///
+    /// # Errors
+    /// The file cannot be written; inside, what `write` says.
+    pub fn stream<E>(
+        self,
+        write: impl FnOnce(&mut BufWriter<File>) -> io::Result<Result<(), E>>,
+    ) -> Result<Result<PathBuf, E>, OutputError> {
+        let mut refused = None;
+        let written = self.put(|staged| {
+            let mut file = BufWriter::new(File::create(staged)?);
+            if let Err(error) = write(&mut file)? {
+                refused = Some(error);
+                return Err(io::ErrorKind::Interrupted.into());
+            }
+            file.flush()
+        });
+        match refused {
+            Some(error) => Ok(Err(error)),
+            None => written.map(Ok),
+        }
+    }
+
     fn put(self, write: impl FnOnce(&Path) -> io::Result<()>) -> Result<PathBuf, OutputError> {
         let refused = |source| OutputError::Io {
             action: "write",
@@ -121,5 +144,13 @@ mod tests {
             Err(OutputError::AFolder { .. })
         ));
         assert_eq!(fs::read_dir(folder.path()).expect("a folder").count(), 4);
+        let stream = |name: &str, answer: Result<(), &str>| {
+            let file = OutputFile::stage(&path(name), &inputs, false).expect("staged");
+            file.stream(|out| out.write_all(b"half").map(|()| answer.map_err(str::to_owned)))
+                .expect("the disk is not full")
+        };
+        assert_eq!(stream("half.log", Err("no")), Err("no".to_owned()));
+        assert!(!path("half.log").exists());
+        assert_eq!(stream("whole.log", Ok(())), Ok(path("whole.log")));
     }
 }

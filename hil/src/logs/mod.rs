@@ -1,0 +1,36 @@
+//! Logs of CAN buses as people have them: the frames of a file, whatever its format, one after the other.
+//!
+//! ```text
+//!   FILE --format--> lines or records --candump, asc, mf4--> Entry (time, bus, frame) --> drive_log, signal_log, conversion
+//! ```
+//!
+//! A reader knows nothing of what a frame means. It needs constant memory, passes over what is no frame and counts it.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `frame` | a frame with up to 64 bytes, its time and its bus |
+//! | `account` | what else was in a log |
+//! | `source` | what every reader does |
+//! | `format` | which format a file has, and its reader |
+//! | `text` | lines in constant memory |
+//! | `candump` | text of `candump -L`, read and written |
+//! | `asc`, `asc_writer` | Vector ASC, read and written |
+//! | `mf4` | ASAM MDF 4 with logged frames |
+
+mod account;
+mod asc;
+mod asc_writer;
+pub mod candump;
+mod error;
+mod format;
+mod frame;
+mod mf4;
+mod source;
+mod text;
+
+pub use account::Account;
+pub use asc_writer::AscWriter;
+pub use error::LogError;
+pub use format::{Format, in_memory, open};
+pub use frame::{Entry, FrameKind, LoggedFrame, MOST_BYTES, Payload, identifier};
+pub use source::{FrameSource, Sink};

@@ -1,0 +1,132 @@
+//! `oleo convert`: the same drive in every format that is written, and by a map of our own database.
+//!
+//! Files of other programs are read by `tests/logs_as_people_have_them.py`.
+
+mod support;
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use support::{complaint, run};
+
+fn path(path: &Path) -> &str {
+    path.to_str().expect("a path in UTF-8")
+}
+
+fn succeeds(arguments: &[&str]) {
+    let ran = run(arguments);
+    let said = String::from_utf8_lossy(&ran.stderr);
+    assert!(ran.status.success(), "oleo {}: {said}", arguments.join(" "));
+}
+
+/// A map that reads our own database as a foreign one.
+fn map_of_our_database() -> String {
+    let mut map = String::new();
+    for (key, axle, side, place) in [
+        ("front_left", "FRONT", "Left", "FrontLeft"),
+        ("front_right", "FRONT", "Right", "FrontRight"),
+        ("rear_left", "REAR", "Left", "RearLeft"),
+        ("rear_right", "REAR", "Right", "RearRight"),
+    ] {
+        let works = format!("valid = {{ signal = \"DISPLACEMENT_{axle}.Status{side}\", is = 0 }}");
+        let _ = writeln!(
+            map,
+            "[{key}]\ndisplacement_m = {{ signal = \"DISPLACEMENT_{axle}.Displacement{side}\", {works} }}"
+        );
+        for point in 1..=4 {
+            let message = format!("PRESSURE_{axle}_{}", side.to_uppercase());
+            let _ = writeln!(map, "p{point}_Pa = {{ signal = \"{message}.P{point}\" }}");
+        }
+        for valve in 1..=3 {
+            let _ = writeln!(map, "valve{valve} = {{ signal = \"COMMAND.Valve{valve}_{place}\" }}");
+        }
+    }
+    map
+}
+
+/// The rows of a CSV file as numbers.
+fn numbers(text: &str) -> Vec<Vec<f64>> {
+    let number = |field: &str| field.parse().expect("a number");
+    text.lines()
+        .skip(1)
+        .map(|line| line.split(',').map(number).collect())
+        .collect()
+}
+
+#[test]
+fn a_drive_has_the_same_columns_in_every_format() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name);
+    let read = |name: &str| std::fs::read_to_string(file(name)).expect("a file");
+    succeeds(&["hil", "--duration-s", "2", "--out", path(&file("run"))]);
+    let log = file("run/candump.log");
+    succeeds(&["convert", path(&log), path(&file("a.asc"))]);
+    succeeds(&["convert", path(&file("a.asc")), path(&file("b.log"))]);
+    assert_eq!(read("b.log").lines().count(), read("run/candump.log").lines().count());
+    for (input, output) in [(&log, "a.csv"), (&file("a.asc"), "b.csv"), (&file("b.log"), "c.csv")] {
+        succeeds(&["convert", path(input), path(&file(output))]);
+    }
+    let expected = read("a.csv");
+    assert!(
+        expected.starts_with("drive,time_s,displacement_front_left_m,p1_front_left_Pa,"),
+        "{expected:.200}"
+    );
+    assert_eq!((read("b.csv"), read("c.csv")), (expected.clone(), expected.clone()));
+    // Our controller reads in single precision, the map in double.
+    std::fs::write(file("map.toml"), map_of_our_database()).expect("written");
+    let database = Path::new(env!("CARGO_MANIFEST_DIR")).join("controller/oleo.dbc");
+    let by_map = ["--dbc", path(&database), "--signals", path(&file("map.toml"))].map(str::to_owned);
+    let csv = file("d.csv");
+    let mut arguments = vec!["convert", path(&log), path(&csv)];
+    arguments.extend(by_map.iter().map(String::as_str));
+    succeeds(&arguments);
+    let (ours, mapped) = (numbers(&expected), numbers(&read("d.csv")));
+    assert_eq!(ours.len(), mapped.len());
+    for (ours, mapped) in ours.iter().flatten().zip(mapped.iter().flatten()) {
+        let is_same = (ours - mapped).abs() <= 1e-6 * ours.abs() + 1e-9 || ours.is_nan() && mapped.is_nan();
+        assert!(is_same, "{ours} {mapped}");
+    }
+}
+
+#[test]
+fn what_cannot_be_converted_is_refused_in_one_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name);
+    let line = "(0000000001.000000) can0 123#00\n";
+    std::fs::write(file("a.log"), line).expect("written");
+    let refused = |arguments: &[&str]| complaint(&run(&[&["convert"], arguments].concat()));
+    let log = file("a.log");
+    assert!(refused(&[path(&log), path(&log)]).contains("is an input"));
+    assert!(refused(&[path(&log), path(&file("a.mf4"))]).contains("is no format that is written"));
+    assert!(refused(&[path(&log), path(&file("a.csv"))]).contains("1 frame with other identifiers"));
+    assert!(refused(&[path(&file("none.log")), path(&file("b.log"))]).contains("check the path"));
+    assert!(refused(&[path(&log), path(&file("b.log")), "--dbc", "a.dbc"]).contains("--signals"));
+    let both = ["--dbc", "none.dbc", "--signals", "none.toml"];
+    assert!(refused(&[&[path(&log), path(&file("a.csv"))], &both[..]].concat()).contains("none.toml: cannot read"));
+    assert!(refused(&[&[path(&log), path(&file("b.log"))], &both[..]].concat()).contains("leave the options out"));
+    for (name, content, said) in [
+        ("words.asc", &b"these are words\n"[..], "holds no frame"),
+        (
+            "cut.mf4",
+            &include_bytes!("golden/frames.mf4")[..5000],
+            "the file is damaged or was cut off",
+        ),
+        ("a.blf", b"LOGG\0\0", "can_logconvert"),
+    ] {
+        std::fs::write(file(name), content).expect("written");
+        let complaint = refused(&[path(&file(name)), path(&file("b.log"))]);
+        assert!(complaint.contains(name) && complaint.contains(said), "{complaint}");
+    }
+    // Nothing half-written, and the input as it was.
+    assert!(!file("b.log").exists() && !file("a.csv").exists());
+    assert_eq!(std::fs::read_to_string(&log).expect("a log"), line);
+    // Frames of an MDF 4 file, CAN FD among them.
+    std::fs::write(file("whole.mf4"), include_bytes!("golden/frames.mf4")).expect("written");
+    succeeds(&["convert", path(&file("whole.mf4")), path(&file("b.log"))]);
+    let written = std::fs::read_to_string(file("b.log")).expect("a log");
+    assert_eq!(
+        (written.lines().count(), written.matches("##1").count()),
+        (40, 10),
+        "{written}"
+    );
+}

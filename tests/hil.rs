@@ -451,16 +451,16 @@ fn a_run_is_repeated_from_its_own_folder() {
     let folder = tempfile::tempdir().unwrap();
     let [given, first, again] = ["given.toml", "first", "again"].map(|name| folder.path().join(name));
     let strut = run(&["show", "strut"]);
-    let heavy = String::from_utf8(strut.stdout)
+    let wider = String::from_utf8(strut.stdout)
         .unwrap()
         .replacen("bore_m = 0.05", "bore_m = 0.051", 1);
-    fs::write(&given, heavy).unwrap();
+    fs::write(&given, wider).unwrap();
     let text = |path: &Path| path.to_str().unwrap().to_owned();
     let changed = [
         "--manoeuvre",
         "step-steer",
         "--speed-km-h",
-        "47.3",
+        "47.12345678912",
         "--load",
         "laden",
         "--seed",
@@ -485,14 +485,14 @@ fn a_run_is_repeated_from_its_own_folder() {
     ]
     .concat());
     assert!(
-        output.status.code() < Some(2),
+        matches!(output.status.code(), Some(0 | 1)),
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );
     let scenario = text(&first.join("scenario.toml"));
     let output = run(&["hil", "--scenario", &scenario, "--out", &text(&again)]);
     assert!(
-        output.status.code() < Some(2),
+        matches!(output.status.code(), Some(0 | 1)),
         "{}",
         String::from_utf8_lossy(&output.stderr)
     );

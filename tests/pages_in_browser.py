@@ -48,24 +48,25 @@ for (const level of ["error", "warn"]) console[level] = (...words) => found.push
 JUDGE = """<script>
 (() => {
   const name = (node) => {
-    const figure = node.closest("figure, section");
-    const heading = figure && figure.querySelector("h3, h2");
-    return heading ? heading.textContent : "the page";
+    const figure = node.closest("figure");
+    const heading = figure && figure.querySelector("h3");
+    return heading ? heading.textContent : figure && figure.getAttribute("aria-label");
   };
   const rgb = (colour) => (colour.match(/[\\d.]+/g) || []).map(Number);
   const luminance = ([r, g, b]) => {
     const part = (v) => { v /= 255; return v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; };
     return 0.2126 * part(r) + 0.7152 * part(g) + 0.0722 * part(b);
   };
-  const contrast = (node) => {
+  const contrast = (node, property = "color") => {
     let ground = node;
     while (ground && rgb(getComputedStyle(ground).backgroundColor)[3] === 0) ground = ground.parentElement;
-    const at = [getComputedStyle(node).color, ground ? getComputedStyle(ground).backgroundColor : "rgb(255, 255, 255)"];
+    const at = [getComputedStyle(node)[property], ground ? getComputedStyle(ground).backgroundColor : "rgb(255, 255, 255)"];
     const [high, low] = at.map((colour) => luminance(rgb(colour))).sort((a, b) => b - a);
     return (high + 0.05) / (low + 0.05);
   };
   const seen = (node) => node.getClientRects().length > 0;
-  const judge = () => {
+  const sleep = (ms) => new Promise((done) => setTimeout(done, ms));
+  const judgeText = () => {
     const page = document.documentElement;
     if (page.scrollWidth > innerWidth + 1) found.push(`the page is ${page.scrollWidth} px wide`);
     if (!document.title || !document.querySelector("h1").textContent) found.push("no title");
@@ -76,22 +77,24 @@ JUDGE = """<script>
         found.push(`cut off: ${node.textContent.slice(0, 60)}`);
       if (contrast(node) < CONTRAST) found.push(`faint, ${contrast(node).toFixed(1)}: ${node.textContent.slice(0, 60)}`);
     }
-    for (const figure of document.querySelectorAll("figure")) {
-      if (!seen(figure)) continue;
-      if (!name(figure)) found.push("a figure without a heading");
-      for (const drawing of figure.querySelectorAll("svg"))
-        if (!figure.querySelector("h3") && !drawing.getAttribute("aria-label") && !drawing.querySelector("title"))
-          found.push("a drawing without a name");
-    }
+    for (const figure of document.querySelectorAll("figure"))
+      if (seen(figure) && !name(figure) && !figure.querySelector("svg[aria-label], svg > title")) found.push("a figure without a name");
+  };
+  const judgeCharts = () => {
     for (const chart of document.querySelectorAll(".chart")) {
       if (!seen(chart)) continue;
       const plot = chart.querySelector("svg.main-svg");
       if (!plot) { found.push(`not drawn: ${name(chart)}`); continue; }
       const frame = plot.getBoundingClientRect();
       // An axis whose ticks are names says what it is by them.
-      const named = [...chart.querySelectorAll(".xtick text, .ytick text")].some((tick) => /[a-z]{2}/i.test(tick.textContent));
-      const titles = chart.querySelectorAll(".g-xtitle text, .g-ytitle text, .g-y2title text");
-      if (titles.length < (named ? 1 : 2)) found.push(`axes without a title: ${name(chart)}`);
+      for (const axis of Object.keys(chart.layout).filter((key) => /^[xy]axis\\d*$/.test(key))) {
+        const letter = axis.replace("axis", ""), ticks = chart.querySelectorAll(`.${letter}tick text`);
+        const named = [...ticks].some((tick) => /[a-z]{2}/i.test(tick.textContent));
+        const title = chart.layout[axis].title;
+        if (!named && !(title && title.text)) found.push(`${axis} without a title: ${name(chart)}`);
+      }
+      for (const text of chart.querySelectorAll(".xtick text, .ytick text, .xtitle, .ytitle, .legendtext"))
+        if (seen(text) && contrast(text, "fill") < CONTRAST) found.push(`faint, ${contrast(text, "fill").toFixed(1)}: "${text.textContent}" in ${name(chart)}`);
       for (const text of chart.querySelectorAll("svg text")) {
         const box = text.getBoundingClientRect();
         if (box.width === 0 || !text.textContent.trim() || text.closest(".hoverlayer, .modebar, .scrollbox")) continue;
@@ -99,9 +102,21 @@ JUDGE = """<script>
           found.push(`outside of its drawing: "${text.textContent}" in ${name(chart)}`);
       }
     }
-    parent.postMessage({ found: [...new Set(found)], charts: document.querySelectorAll(".chart .main-svg").length }, "*");
   };
-  addEventListener("load", () => setTimeout(judge, 6000));
+  // What is behind a line to click, and each figure that can be chosen, is looked at too.
+  const judge = async () => {
+    await sleep(4000);
+    document.querySelectorAll("details").forEach((details) => { details.open = true; });
+    judgeText();
+    judgeCharts();
+    for (const choice of document.querySelectorAll("input[type=radio]:not(:checked)")) {
+      choice.click();
+      await sleep(500);
+      judgeCharts();
+    }
+    parent.postMessage({ found: [...new Set(found)], charts: document.querySelectorAll(".chart.drawn").length }, "*");
+  };
+  addEventListener("load", judge);
 })();
 </script>"""
 

@@ -210,7 +210,7 @@ pub struct State {
 }
 
 impl State {
-    /// The static load on each strut, N: that of the last [`Estimate`], where it is kept anyway.
+    /// The static load on each strut, N.
     pub(crate) fn static_load_n(&self) -> &Corners<f32> {
         &self.static_load_n
     }

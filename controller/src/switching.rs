@@ -38,12 +38,14 @@ struct History {
 impl History {
     /// Records a switching of the valve at tick `now`, unless it is an opening that comes too soon; returns whether the valve may move.
     fn add(&mut self, now: u32, opens: bool) -> bool {
-        if let Some(oldest) = self.times.get_mut(usize::from(self.oldest)) {
-            if opens && now.wrapping_sub(*oldest) < SPAN_TICKS {
-                return false;
-            }
-            *oldest = now;
+        // There always is a place; without one, a valve would only close.
+        let Some(oldest) = self.times.get_mut(usize::from(self.oldest)) else {
+            return !opens;
+        };
+        if opens && now.wrapping_sub(*oldest) < SPAN_TICKS {
+            return false;
         }
+        *oldest = now;
         self.oldest = if self.oldest < MOST_A_SECOND as u8 - 2 {
             self.oldest + 1
         } else {
@@ -85,7 +87,7 @@ impl SwitchingLimit {
     fn change(&mut self, permitted: ValveCommand) {
         for (place, bit) in bits(permitted.word() ^ self.command.word()) {
             let opens = permitted.word() & bit != 0;
-            let moves = (self.history.get_mut(place)).is_some_and(|history| history.add(self.now, opens));
+            let moves = (self.history.get_mut(place)).map_or(!opens, |history| history.add(self.now, opens));
             if moves {
                 self.command = ValveCommand::from_word(self.command.word() ^ bit);
             }

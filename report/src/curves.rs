@@ -308,7 +308,7 @@ impl Series {
                 _ => Position::TopRight,
             };
             trace = trace
-                .text_array(vec![in_lines(&name)])
+                .text_array(vec![in_lines(&self.name)])
                 .text_position(position)
                 .clip_on_axis(false);
         }
@@ -330,15 +330,16 @@ impl Series {
 /// Longest line of a name at a point, characters.
 const LINE: usize = 18;
 
-/// A name in lines that have room on a narrow page.
+/// A name in lines that have room on a narrow page, as plotly.js shows it.
 fn in_lines(name: &str) -> String {
     let mut lines: Vec<String> = Vec::new();
     for word in name.split(' ') {
         match lines.last_mut() {
-            Some(line) if line.len() + 1 + word.len() <= LINE => *line += &format!(" {word}"),
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= LINE => *line += &format!(" {word}"),
             _ => lines.push(word.to_owned()),
         }
     }
+    let lines: Vec<String> = lines.iter().map(|line| escape_plotly(line)).collect();
     lines.join("<br>")
 }
 

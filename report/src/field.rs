@@ -98,7 +98,7 @@ impl Field {
         let layout = json!({ "xaxis": x_axis.to_json(), "yaxis": y_axis.to_json(), "legend": { "orientation": "h", "y": -0.2 } });
         Figure {
             title: self.title,
-            caption: [format!("The colour is: {}.", z_axis.label()), self.caption]
+            caption: [format!("Colour: {}.", z_axis.label()), self.caption]
                 .join(" ")
                 .trim_end()
                 .to_owned(),

@@ -8,6 +8,7 @@
 //!                         sheet: summary, CSV <--+--> page, tables (quantity: units; drawn: which)
 //! ```
 
+mod difference;
 mod differences;
 mod drawn;
 mod figures;
@@ -25,7 +26,7 @@ use std::process::ExitCode;
 use oleo_plant_sim::model_file::names::did_you_mean;
 
 use self::differences::Differences;
-use self::tolerance::Tolerance;
+use self::tolerance::{Allowed, Tolerance};
 use super::column_map::column_map;
 use crate::failure::Failure;
 use crate::results::ResultsArgs;
@@ -68,10 +69,10 @@ pub struct Args {
     /// must be the same
     #[arg(long, value_name = "NAME=VALUE[%|x]")]
     tolerance: Vec<Tolerance>,
-    /// File of tolerances: a table [tolerance] with lines such as max_roll_deg = "5 %"
+    /// File of tolerances: a table [tolerance] with lines such as max_roll_deg = "5 %". --tolerance overrides it
     #[arg(long, value_name = "FILE.toml")]
     tolerances: Option<PathBuf>,
-    /// Every figure and every trace must be the same to the last digit
+    /// Every figure and every trace must be there in all runs and the same to the last digit
     #[arg(long)]
     equal: bool,
     #[command(flatten)]
@@ -104,8 +105,14 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let out = args.results.stage("oleo compare", "compare", inputs)?;
     let mut tolerances = args.tolerance.clone();
     if let Some(path) = &args.tolerances {
-        tolerances.extend(tolerance::read(path)?);
+        let given = |name: &str| args.tolerance.iter().any(|tolerance| tolerance.name == name);
+        tolerances.extend(
+            tolerance::read(path)?
+                .into_iter()
+                .filter(|of_file| !given(&of_file.name)),
+        );
     }
+    run::check_operands(&args.runs)?;
     let groups = if args.model.is_empty() {
         let mut group = run::of_results(&args.runs)?;
         if let Some(reference) = &args.reference {
@@ -121,11 +128,17 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         .map(|group| Differences::of(group, axis, &tolerances))
         .collect::<Result<Vec<_>, Failure>>()?;
     let known: Vec<&str> = found.iter().flat_map(Differences::names).collect();
-    for tolerance in &tolerances {
-        is_known("--tolerance", &tolerance.name, &known)?;
+    for Tolerance { name, allowed } in &tolerances {
+        is_known("--tolerance", name, "figure or trace", &known)?;
+        if matches!(allowed, Allowed::Noise(_)) && !groups.iter().any(|group| group.noise.contains_key(name)) {
+            return Err(Failure::new(format!(
+                "--tolerance {name}={allowed}: no model states a noise of {name}; give a number or a percentage"
+            )));
+        }
     }
+    let traces: Vec<&str> = found.iter().flat_map(Differences::trace_names).collect();
     for trace in &args.trace {
-        is_known("--trace", trace, &known)?;
+        is_known("--trace", trace, "trace", &traces)?;
     }
     let sheet = sheet::Sheet {
         axis,
@@ -137,8 +150,8 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     Ok(if passed { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Refuses the name of a figure or trace that no run has.
-fn is_known(option: &str, name: &str, known: &[&str]) -> Result<(), Failure> {
+/// Refuses a name that no run has.
+fn is_known(option: &str, name: &str, what: &str, known: &[&str]) -> Result<(), Failure> {
     if known.contains(&name) {
         return Ok(());
     }
@@ -147,6 +160,6 @@ fn is_known(option: &str, name: &str, known: &[&str]) -> Result<(), Failure> {
         None => "the names are in the table All figures and in the headers of the CSV files".to_owned(),
     };
     Err(Failure::new(format!(
-        "{option} {name}: no run has such a figure or trace: {hint}"
+        "{option} {name}: no run has such a {what}: {hint}"
     )))
 }

@@ -16,7 +16,7 @@ use oleo_plant_sim::road;
 
 pub use arguments::Args;
 
-use super::parameter_files::parameters;
+use super::parameter_files::Parameters;
 use crate::failure::Failure;
 use plan::Plan;
 
@@ -29,8 +29,8 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let inputs = files.chain(road.map(PathBuf::from)).collect();
     let name = format!("drive-{}", args.manoeuvre.name());
     let out = args.results.stage("oleo drive", &name, inputs)?;
-    let (vehicle, handling) = parameters(args.vehicle.as_ref(), args.handling.as_ref())?;
-    let plan = Plan::new(&args, vehicle, handling)?;
+    let parameters = Parameters::read(args.vehicle.as_ref(), args.handling.as_ref(), args.strut.as_ref())?;
+    let plan = Plan::new(&args, &parameters)?;
     if !(args.score_from_s >= 0.0 && args.score_from_s <= 3600.0) {
         return Err(Failure::new(format!(
             "--score-from-s {}: give a value from 0 to 3600",
@@ -38,6 +38,6 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         )));
     }
     let drives = driven::drive(&plan, &args)?;
-    sheet::publish(&plan, &args, &drives, out)?;
+    sheet::publish(&plan, &args, &parameters, &drives, out)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -26,7 +26,7 @@ use strum::VariantNames;
 
 use self::record::{Recorded, record, recorded};
 use super::course_arguments::{CourseArgs, option_failure};
-use super::parameter_files::{HANDLING, STRUT, VEHICLE, keep};
+use super::parameter_files::Parameters;
 use super::show::{DBC, scenarios};
 use crate::failure::Failure;
 use crate::results::{ResultsArgs, command_line, say};
@@ -99,8 +99,8 @@ pub struct Args {
     /// Handling parameters [default: the scenario's]
     #[arg(long, value_name = "HANDLING.toml")]
     handling: Option<String>,
-    /// Seed of random roads and of injected faults [default: the scenario's]
-    #[arg(long)]
+    /// Seed of random roads and of injected faults, up to 2^63 - 1 [default: the scenario's]
+    #[arg(long, value_parser = clap::value_parser!(u64).range(..=i64::MAX.cast_unsigned()))]
     seed: Option<u64>,
     /// Run only this node; the other node must run as another process on the same bus
     #[arg(long, value_parser = by_name::<Role>())]
@@ -140,6 +140,9 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     }
     let name = format!("hil-{}", scenario.name);
     let staged = args.results.stage("oleo hil", &name, inputs(&args, &scenario))?;
+    let [vehicle, handling, strut] = [&scenario.vehicle, &scenario.handling, &scenario.strut]
+        .map(|name| (name != DEFENDER).then(|| PathBuf::from(name)));
+    let parameters = Parameters::read(vehicle.as_ref(), handling.as_ref(), strut.as_ref())?;
     let mut vehicle = run::vehicle(&scenario)?;
     if args.record.is_some() {
         vehicle = vehicle.recording_struts();
@@ -163,7 +166,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         (None, None) => run::both(&scenario, vehicle, args.threads.into(), &mut watch)?,
     };
     drop(progress);
-    report(&args, &scenario, &outcome, road_measured_m, staged)
+    report(&args, &scenario, &parameters, &outcome, road_measured_m, staged)
 }
 
 /// The files that a run reads; names of built-in things are no files.
@@ -291,6 +294,7 @@ fn within(option: &str, value: f64, low: f64, high: f64) -> Result<f64, Failure>
 fn report(
     args: &Args,
     scenario: &Scenario,
+    parameters: &Parameters,
     outcome: &Outcome,
     road_measured_m: Option<f64>,
     mut staged: Option<OutputDirectory>,
@@ -307,13 +311,7 @@ fn report(
     }
     if let Some(out) = &mut staged {
         output::write(out, scenario, outcome, &metrics, &summary)?;
-        for (kept, name) in [
-            (VEHICLE, &scenario.vehicle),
-            (HANDLING, &scenario.handling),
-            (STRUT, &scenario.strut),
-        ] {
-            keep(out, kept, Some(name).filter(|name| *name != DEFENDER))?;
-        }
+        parameters.keep(out)?;
         out.write("scenario.toml", scenario.to_toml())?;
         out.write("oleo.dbc", DBC)?;
         out.page(&page::page(scenario, outcome, &metrics, &summary, &command_line()))?;

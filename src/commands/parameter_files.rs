@@ -5,55 +5,62 @@ use std::path::{Path, PathBuf};
 use oleo_plant_sim::handling::HandlingParameters;
 use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::vehicle::VehicleParameters;
-
 use oleo_report::OutputDirectory;
 
 use crate::failure::Failure;
 
-/// Reads the given files, and uses the built-in defender110 if a file is not given.
-pub fn parameters(
-    vehicle: Option<&PathBuf>,
-    handling: Option<&PathBuf>,
-) -> Result<(VehicleParameters, HandlingParameters), Failure> {
-    let vehicle = match vehicle {
-        Some(path) => {
-            let (text, name) = read(path, "parameters")?;
-            VehicleParameters::from_toml(&text, &name)?
-        }
-        None => VehicleParameters::defender110(),
-    };
-    let handling = match handling {
-        Some(path) => {
-            let (text, name) = read(path, "parameters")?;
-            HandlingParameters::from_toml(&text, &name)?
-        }
-        None => HandlingParameters::defender110(),
-    };
-    Ok((vehicle, handling))
+/// Parameters as they were read, once, so that results hold what was used.
+pub struct Parameters {
+    pub vehicle: VehicleParameters,
+    pub handling: HandlingParameters,
+    /// Charged for the load that its file says.
+    pub strut: StrutModel,
+    vehicle_text: String,
+    handling_text: String,
+    strut_text: String,
+}
+
+impl Parameters {
+    /// Reads the given files, and uses the built-in defender110 if a file is not given.
+    pub fn read(
+        vehicle: Option<&PathBuf>,
+        handling: Option<&PathBuf>,
+        strut: Option<&PathBuf>,
+    ) -> Result<Self, Failure> {
+        let given = |path: Option<&PathBuf>, what: &str, built_in: &str| match path {
+            Some(path) => read(path, what),
+            None => Ok((built_in.to_owned(), "presets".to_owned())),
+        };
+        let (vehicle_text, vehicle) = given(vehicle, "parameters", VehicleParameters::DEFENDER110_TOML)?;
+        let (handling_text, handling) = given(handling, "parameters", HandlingParameters::DEFENDER110_TOML)?;
+        let (strut_text, strut) = given(strut, "model", StrutModel::DEFENDER110_TOML)?;
+        Ok(Self {
+            vehicle: VehicleParameters::from_toml(&vehicle_text, &vehicle)?,
+            handling: HandlingParameters::from_toml(&handling_text, &handling)?,
+            strut: StrutModel::from_toml(&strut_text, &strut)?,
+            vehicle_text,
+            handling_text,
+            strut_text,
+        })
+    }
+
+    /// Puts the parameters of vehicle and handling into the results, so that they can be given back.
+    pub fn keep_vehicle(&self, out: &mut OutputDirectory) -> Result<(), Failure> {
+        out.write("vehicle.toml", &self.vehicle_text)?;
+        Ok(out.write("handling.toml", &self.handling_text)?)
+    }
+
+    /// Puts all of them into the results.
+    pub fn keep(&self, out: &mut OutputDirectory) -> Result<(), Failure> {
+        self.keep_vehicle(out)?;
+        Ok(out.write("strut.toml", &self.strut_text)?)
+    }
 }
 
 /// The strut in a model file, charged for the load that the file says.
 pub fn strut(path: &Path) -> Result<StrutModel, Failure> {
     let (text, name) = read(path, "model")?;
     Ok(StrutModel::from_toml(&text, &name)?)
-}
-
-/// Name in the results, and text of what is built in.
-pub const VEHICLE: (&str, &str) = ("vehicle.toml", VehicleParameters::DEFENDER110_TOML);
-pub const HANDLING: (&str, &str) = ("handling.toml", HandlingParameters::DEFENDER110_TOML);
-pub const STRUT: (&str, &str) = ("strut.toml", StrutModel::DEFENDER110_TOML);
-
-/// Puts parameters that were used into the results, so that they can be given back: the given file, or what is built in.
-pub fn keep(
-    out: &mut OutputDirectory,
-    (name, built_in): (&str, &str),
-    given: Option<impl AsRef<Path>>,
-) -> Result<(), Failure> {
-    let text = match given {
-        Some(path) => read(path.as_ref(), "parameters")?.0,
-        None => built_in.to_owned(),
-    };
-    Ok(out.write(name, text)?)
 }
 
 /// Text and name of a file of `what`.

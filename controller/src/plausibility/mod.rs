@@ -102,7 +102,7 @@ pub struct State {
     turn: Corner,
     /// Turns of the present window of `stuck` that are over at each corner before the one whose turn it is.
     window_turns: u8,
-    /// A bit for each corner with one of whose readings by itself something was wrong lately.
+    /// A bit for each corner at which a reading failed its own check and is not believed again yet.
     restless: u8,
     /// A bit for each corner at which a comparison has found something.
     disagreeing: u8,

@@ -190,6 +190,7 @@ mod tests {
         );
         assert_eq!(Verdicts::GOOD.or(first), first);
     }
+
     /// Of every pair of causes at every pair of readings the graver one is told, and both are counted.
     #[test]
     fn the_gravest_of_several_is_told_and_all_are_counted() {

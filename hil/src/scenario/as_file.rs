@@ -33,8 +33,10 @@ impl Scenario {
             _ => self.road.clone(),
         };
         set("road", road.into());
-        // Rounded, because the conversion to m/s and back changes the last digit.
-        set("speed_km_h", ((self.speed_m_s * 3.6 * 1e6).round() / 1e6).into());
+        if !self.changes.is_empty() {
+            set("description", self.title().into());
+        }
+        set("speed_km_h", speed_km_h(self.speed_m_s).into());
         set("duration_s", self.duration_s().into());
         set("strategy", self.strategy.name().into());
         set("damper_policy", self.damper_policy.name().into());
@@ -86,6 +88,14 @@ impl Scenario {
     }
 }
 
+/// The speed that is read as this one, to the bit, and has few digits where there is such a one.
+fn speed_km_h(speed_m_s: f64) -> f64 {
+    let about = 3.6 * speed_m_s;
+    let brief = (about * 1e6).round() / 1e6;
+    let candidates = [brief, about, about.next_up(), about.next_down()];
+    (candidates.into_iter().find(|km_h| km_h / 3.6 == speed_m_s)).unwrap_or(about)
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
@@ -117,7 +127,7 @@ mod tests {
     fn what_was_changed_is_in_the_file() {
         let written = named("lane-change-on-belgian").expect("built in");
         let changed = Scenario {
-            speed_m_s: 47.3 / 3.6,
+            speed_m_s: 47.123_456_789_12 / 3.6,
             seed: u64::from(u32::MAX),
             course: Some(CourseSettings {
                 steer_deg: Some(3.0),

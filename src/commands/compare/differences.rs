@@ -1,9 +1,10 @@
 //! How the runs of a group differ from its first, and whether that is within the tolerances.
 
+use super::difference::{Difference, difference};
 use super::figures::Figure;
 use super::run::Group;
 use super::tolerance::{Allowed, Judged, Tolerance, judge_figure, judge_trace};
-use super::traces::{Difference, difference};
+use super::traces::Trace;
 use crate::failure::Failure;
 
 /// A figure of all runs, in their order; `None` where a run does not have it.
@@ -15,7 +16,10 @@ pub struct ComparedFigure {
 /// A trace of all runs but the first, against that of the first.
 pub struct ComparedTrace {
     pub name: String,
+    /// `None` where one of the two runs does not have it.
     pub differences: Vec<Option<Difference>>,
+    /// Whether all runs have the same values at the same places, to the last digit.
+    pub is_same: bool,
 }
 
 /// A tolerance and what was found of it in one run.
@@ -36,101 +40,117 @@ pub struct Differences {
 impl ComparedFigure {
     /// Whether all runs have the same.
     pub fn is_same(&self) -> bool {
-        self.values.windows(2).all(|pair| pair[0] == pair[1])
+        self.values.windows(2).all(|pair| match (&pair[0], &pair[1]) {
+            (Some(a), Some(b)) => a.is_same(b),
+            (a, b) => a.is_none() && b.is_none(),
+        })
     }
 }
 
-impl ComparedTrace {
-    /// Whether all runs have the same.
-    pub fn is_same(&self) -> bool {
-        (self.differences.iter()).all(|found| found.is_some_and(|difference| difference.is_none()))
-    }
+/// Each name once, in the order in which they come.
+fn once<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    names.fold(Vec::new(), |mut names, name| {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+        names
+    })
 }
 
 impl Differences {
     /// Compares the runs of a group over a column.
     pub fn of(group: &Group, axis: &str, tolerances: &[Tolerance]) -> Result<Self, Failure> {
-        let (first, others) = group
-            .runs
-            .split_first()
-            .ok_or_else(|| Failure::new("there is no run"))?;
         let axes = (group.runs.iter())
             .map(|run| run.traces.axis(axis, &run.name))
             .collect::<Result<Vec<_>, Failure>>()?;
-        let mut names: Vec<&str> = Vec::new();
-        for (name, _) in group.runs.iter().flat_map(|run| &run.figures) {
-            if !names.contains(&name.as_str()) {
-                names.push(name);
-            }
-        }
-        let figures: Vec<ComparedFigure> = (names.into_iter())
-            .map(|name| ComparedFigure {
+        let same_places = axes.windows(2).all(|pair| pair[0] == pair[1]);
+        let figure = |name: &str| ComparedFigure {
+            name: name.to_owned(),
+            values: group.runs.iter().map(|run| run.figure(name).cloned()).collect(),
+        };
+        let trace = |name: &str| {
+            let columns: Vec<_> = group.runs.iter().map(|run| run.traces.trace(name)).collect();
+            let same = |pair: &[Option<&Trace>]| matches!(pair, [Some(a), Some(b)] if a.is_same(b));
+            ComparedTrace {
                 name: name.to_owned(),
-                values: group.runs.iter().map(|run| run.figure(name).cloned()).collect(),
-            })
-            .collect();
-        // A column that only the reference has is no trace to compare; one that some of the others lack is.
-        let has = |name: &str| others.iter().any(|run| run.traces.trace(name).is_some());
-        let traces: Vec<ComparedTrace> = (first.traces.names())
-            .filter(|name| *name != axis && has(name))
-            .map(|name| ComparedTrace {
-                name: name.to_owned(),
-                differences: (others.iter().zip(&axes[1..]))
-                    .map(|(run, own)| difference((axes[0], first.traces.trace(name)?), (own, run.traces.trace(name)?)))
+                differences: (columns.iter().zip(&axes).skip(1))
+                    .map(|(own, places)| difference((axes[0], columns[0]?), (places, (*own)?)))
                     .collect(),
-            })
-            .collect();
+                is_same: same_places && columns.windows(2).all(same),
+            }
+        };
+        let figures = group
+            .runs
+            .iter()
+            .flat_map(|run| &run.figures)
+            .map(|(name, _)| name.as_str());
+        let traces = group
+            .runs
+            .iter()
+            .flat_map(|run| run.traces.names())
+            .filter(|name| *name != axis);
         let mut differences = Self {
-            figures,
-            traces,
+            figures: once(figures).into_iter().map(figure).collect(),
+            traces: once(traces).into_iter().map(trace).collect(),
             checks: Vec::new(),
         };
-        differences.checks = differences.judge(group, tolerances);
+        if !(differences.traces.iter()).any(|trace| trace.differences.iter().any(Option::is_some)) {
+            let names: Vec<&str> = group.runs.iter().map(|run| run.name.as_str()).collect();
+            return Err(Failure::new(format!(
+                "{}: have no trace in common but {axis}, or not at the same {}; give runs of one kind",
+                names.join(", "),
+                if axis == "time_s" { "time" } else { "place" }
+            )));
+        }
+        differences.checks = (tolerances.iter())
+            .flat_map(|tolerance| differences.judge(group, tolerance))
+            .collect();
         Ok(differences)
     }
 
-    /// Every tolerance against every run but the first.
-    fn judge(&self, group: &Group, tolerances: &[Tolerance]) -> Vec<Check> {
-        let mut checks = Vec::new();
-        for Tolerance { name, allowed } in tolerances {
-            let mut check = |run: usize, judged: Option<Judged>| {
-                checks.push(Check {
-                    name: name.clone(),
-                    run: group.runs[run].name.clone(),
-                    allowed: *allowed,
-                    judged: judged.unwrap_or(Judged::MISSING),
-                });
-            };
-            for figure in self.figures.iter().filter(|figure| figure.name == *name) {
-                for run in 1..group.runs.len() {
-                    let (first, own) = (figure.values[0].as_ref(), figure.values[run].as_ref());
-                    check(
-                        run,
-                        first.zip(own).map(|(first, own)| judge_figure(*allowed, first, own)),
-                    );
+    /// A tolerance against every run but the first. What a run of this group does not have is not within.
+    fn judge(&self, group: &Group, Tolerance { name, allowed }: &Tolerance) -> Vec<Check> {
+        let figure = self.figures.iter().find(|figure| figure.name == *name);
+        let trace = self.traces.iter().find(|trace| trace.name == *name);
+        let noise = group.noise.get(name).copied();
+        let judged = |run: usize| -> Option<Judged> {
+            match (figure, trace) {
+                (Some(figure), _) => {
+                    let (first, own) = (figure.values[0].as_ref()?, figure.values[run].as_ref()?);
+                    Some(judge_figure(*allowed, first, own))
                 }
+                (None, Some(trace)) => Some(judge_trace(*allowed, &trace.differences[run - 1]?, noise)),
+                (None, None) => None,
             }
-            for trace in self.traces.iter().filter(|trace| trace.name == *name) {
-                for (i, found) in trace.differences.iter().enumerate() {
-                    let noise = group.noise.get(name).copied();
-                    check(i + 1, found.map(|found| judge_trace(*allowed, &found, noise)));
-                }
-            }
-        }
-        checks
+        };
+        (1..group.runs.len())
+            .map(|run| Check {
+                name: name.clone(),
+                run: group.runs[run].name.clone(),
+                allowed: *allowed,
+                judged: judged(run).unwrap_or(Judged::MISSING),
+            })
+            .collect()
+    }
+
+    /// Names of all traces.
+    pub fn trace_names(&self) -> impl Iterator<Item = &str> {
+        self.traces.iter().map(|trace| trace.name.as_str())
     }
 
     /// Names of all figures and traces.
     pub fn names(&self) -> impl Iterator<Item = &str> {
-        let figures = self.figures.iter().map(|figure| figure.name.as_str());
-        figures.chain(self.traces.iter().map(|trace| trace.name.as_str()))
+        self.figures
+            .iter()
+            .map(|figure| figure.name.as_str())
+            .chain(self.trace_names())
     }
 
     /// Numbers of figures and traces that are not the same in all runs.
     pub fn unequal(&self) -> (usize, usize) {
         (
             self.figures.iter().filter(|figure| !figure.is_same()).count(),
-            self.traces.iter().filter(|trace| !trace.is_same()).count(),
+            self.traces.iter().filter(|trace| !trace.is_same).count(),
         )
     }
 }

@@ -24,8 +24,17 @@ const NO_FIGURES: [&str; 9] = [
     "lateness",
 ];
 
-/// All figures of a summary or of a part of it. Elements of a list are numbered from 0 behind a point; lists of events are left
-/// out.
+impl Figure {
+    /// Whether two figures are the same, to the last digit.
+    pub fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Number(a), Self::Number(b)) => a == b || (a.is_nan() && b.is_nan()),
+            _ => self == other,
+        }
+    }
+}
+
+/// All figures of a summary or of a part of it. Elements of a list are numbered from 0 behind a point.
 pub fn figures(summary: &Value) -> Vec<(String, Figure)> {
     let mut found = Vec::new();
     if let Value::Object(entries) = summary {
@@ -44,7 +53,7 @@ fn collect(name: &str, value: &Value, found: &mut Vec<(String, Figure)>) {
         Value::Bool(false) => Figure::Word("no".into()),
         Value::Null => Figure::Word("none".into()),
         Value::Array(values) => {
-            for (i, value) in values.iter().enumerate().filter(|(_, value)| value.is_number()) {
+            for (i, value) in values.iter().enumerate() {
                 collect(&format!("{name}.{i}"), value, found);
             }
             return;
@@ -68,12 +77,14 @@ mod tests {
     fn provenance_and_wall_clock_are_no_figures() {
         let summary = json!({
             "schema": 1, "inputs": [], "wall_s": 0.3, "max_roll_deg": 2.5, "ending": null,
-            "valve_switches": [1, 2], "modes": [{ "tick": 3 }],
+            "valve_switches": [1, 2], "modes": [{ "tick": 3, "mode": "safe" }],
         });
         let number = |name: &str, value| (name.to_owned(), Figure::Number(value));
         let expected = [
             ("ending".to_owned(), Figure::Word("none".into())),
             number("max_roll_deg", 2.5),
+            ("modes.0.mode".to_owned(), Figure::Word("safe".into())),
+            number("modes.0.tick", 3.0),
             number("valve_switches.0", 1.0),
             number("valve_switches.1", 2.0),
         ];

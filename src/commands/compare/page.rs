@@ -40,12 +40,12 @@ pub fn page(
             page.details("All figures", figure_table(group, found.figures.iter()));
         }
         let drawn = drawn.among(&found.traces);
-        page.choice(
-            "Trace",
-            drawn
-                .iter()
-                .filter_map(|trace| Some((quantity(&trace.name).0, overlaid(axis_name, group, trace)?))),
-        );
+        let figures: Vec<_> = (drawn.iter())
+            .filter_map(|trace| Some((quantity(&trace.name).0, overlaid(axis_name, group, trace)?)))
+            .collect();
+        if !figures.is_empty() {
+            page.choice("Trace", figures);
+        }
         page.table(trace_table(group, axis_name, &drawn));
         page.details(
             "All traces",
@@ -77,7 +77,7 @@ fn overlaid(axis_name: &str, group: &Group, trace: &ComparedTrace) -> Option<Dra
     let first = &group.runs[0];
     let places = first.traces.axis(axis_name, &first.name).ok()?;
     if let Some(Trace::Quantity(reference)) = first.traces.trace(&trace.name) {
-        curves.panel(Axis::new(&format!("Less {}", first.name), unit));
+        curves.panel(Axis::new(&format!("Difference from {}", first.name), unit));
         for run in &group.runs[1..] {
             if let Ok(Some(values)) = run.quantity_at(&trace.name, axis_name, places) {
                 let apart: Vec<f64> = values

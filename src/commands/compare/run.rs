@@ -8,8 +8,9 @@ use oleo_plant_sim::model_file::names::suggestion;
 use oleo_plant_sim::rig::ColumnMap;
 use serde_json::Value;
 
+use super::difference::at_places;
 use super::figures::{Figure, figures};
-use super::traces::{Trace, Traces, at_places};
+use super::traces::{Trace, Traces};
 use crate::commands::prediction::{Prediction, predict};
 use crate::failure::Failure;
 
@@ -58,6 +59,42 @@ impl Group {
     }
 }
 
+/// A name that needs no quotes in a header or as the name of a file.
+pub fn plain(name: &str) -> String {
+    let kept = |c: char| match c.is_ascii_alphanumeric() || "-_".contains(c) {
+        true => c,
+        false => '-',
+    };
+    name.replace(": ", "-").chars().map(kept).collect()
+}
+
+/// Numbers those of several names that are alike when they are plain.
+fn tell_apart<'a>(names: impl Iterator<Item = &'a mut String>) {
+    let mut taken: Vec<String> = Vec::new();
+    for name in names {
+        let (given, mut number) = (name.clone(), 2);
+        while taken.contains(&plain(name)) {
+            *name = format!("{given} {number}");
+            number += 1;
+        }
+        taken.push(plain(name));
+    }
+}
+
+/// Refuses an operand that is given twice: it can only be equal to itself.
+pub fn check_operands(operands: &[PathBuf]) -> Result<(), Failure> {
+    let places: Vec<_> = operands.iter().map(|path| std::fs::canonicalize(path).ok()).collect();
+    for (i, place) in places.iter().enumerate().filter(|(_, place)| place.is_some()) {
+        if places[..i].contains(place) {
+            return Err(Failure::new(format!(
+                "{}: is given twice; give each run once",
+                operands[i].display()
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// The runs in folders of results and CSV files, as one group.
 pub fn of_results(operands: &[PathBuf]) -> Result<Group, Failure> {
     let mut runs = Vec::new();
@@ -78,6 +115,7 @@ pub fn of_results(operands: &[PathBuf]) -> Result<Group, Failure> {
             operands[0].display()
         )));
     }
+    tell_apart(runs.iter_mut().map(|run: &mut Run| &mut run.name));
     Ok(Group {
         name: String::new(),
         runs,
@@ -174,8 +212,13 @@ pub fn of_recordings(
     models: &[PathBuf],
     map: Option<&ColumnMap>,
 ) -> Result<Vec<Group>, Failure> {
-    (recordings.iter().zip(names(recordings)))
-        .map(|(recording, name)| of_recording(recording, name.trim_end_matches(".csv").to_owned(), models, map))
+    let mut names = names(recordings);
+    names
+        .iter_mut()
+        .for_each(|name| *name = name.trim_end_matches(".csv").to_owned());
+    tell_apart(names.iter_mut());
+    (recordings.iter().zip(names))
+        .map(|(recording, name)| of_recording(recording, name, models, map))
         .collect()
 }
 
@@ -184,10 +227,8 @@ fn of_recording(recording: &Path, name: String, models: &[PathBuf], map: Option<
     let mut noise = BTreeMap::new();
     for (model, name) in models.iter().zip(names(models)) {
         let Prediction { inputs, channels } = predict(model, recording, map)?;
-        let inputs: Vec<_> = inputs
-            .into_iter()
-            .filter(|(name, _)| name == "time_s" || name == "displacement_m")
-            .collect();
+        // The other inputs are those of the recording, whatever the model.
+        let inputs: Vec<_> = inputs.into_iter().filter(|(name, _)| name == "time_s").collect();
         if runs.is_empty() {
             let recorded =
                 (channels.iter()).filter_map(|channel| Some((channel.name.clone(), channel.recorded.clone()?)));
@@ -208,5 +249,6 @@ fn of_recording(recording: &Path, name: String, models: &[PathBuf], map: Option<
             traces: Traces::of(inputs.into_iter().chain(predicted)),
         });
     }
+    tell_apart(runs.iter_mut().map(|run| &mut run.name));
     Ok(Group { name, runs, noise })
 }

@@ -3,19 +3,19 @@
 use oleo_report::{OutputDirectory, Verdict};
 use serde_json::{Value, json};
 
+use super::difference::{Difference, Size};
 use super::differences::{Check, ComparedFigure, ComparedTrace, Differences};
 use super::drawn::Drawn;
 use super::figures::Figure;
 use super::page::page;
-use super::run::Group;
+use super::run::{Group, plain};
 use super::tables::{check_table, figure_table, trace_table};
-use super::traces::Difference;
 use crate::failure::Failure;
 use crate::results::ResultsArgs;
 
 /// Those that are not the same in all runs.
 fn changed<'a>(traces: &[&'a ComparedTrace]) -> Vec<&'a ComparedTrace> {
-    traces.iter().copied().filter(|trace| !trace.is_same()).collect()
+    traces.iter().copied().filter(|trace| !trace.is_same).collect()
 }
 
 /// A comparison that is complete.
@@ -67,19 +67,33 @@ impl Sheet<'_> {
         let all: (usize, usize) = (self.compared.iter())
             .map(|(_, found)| (found.figures.len(), found.traces.len()))
             .fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
-        let same = match (figures, traces) {
-            (0, 0) => format!("All {} figures and {} traces are the same.", all.0, all.1),
-            _ => format!(
-                "{figures} of {} figures and {traces} of {} traces differ.",
-                all.0, all.1
-            ),
+        let count = |number: usize, what: &str| format!("{number} {what}{}", if number == 1 { "" } else { "s" });
+        let of = |differ: usize, number: usize, what: &str| match number {
+            0 => None,
+            number => Some(format!("{differ} of {}", count(number, what))),
         };
+        let same = match (figures, traces) {
+            (0, 0) if all.0 == 0 => format!("All {} are the same.", count(all.1, "trace")),
+            (0, 0) => format!(
+                "All {} and {} are the same.",
+                count(all.0, "figure"),
+                count(all.1, "trace")
+            ),
+            _ => {
+                let parts = [of(figures, all.0, "figure"), of(traces, all.1, "trace")];
+                format!(
+                    "{} differ.",
+                    parts.into_iter().flatten().collect::<Vec<_>>().join(" and ")
+                )
+            }
+        };
+        // A tolerance is held against every run but the first.
         let tolerances = match (checks().count(), failed) {
             (0, _) => String::new(),
             (1, 0) => "The tolerance is met. ".to_owned(),
-            (count, 0) => format!("All {count} tolerances are met. "),
             (1, _) => "The tolerance is not met. ".to_owned(),
-            (count, failed) => format!("{failed} of {count} tolerances are not met. "),
+            (count, 0) => format!("The tolerances are met in all {count} comparisons. "),
+            (count, failed) => format!("The tolerances are not met in {failed} of {count} comparisons. "),
         };
         let unequal = self.equal && (figures, traces) != (0, 0);
         let verdict = match (failed > 0 || unequal, self.equal || checks().count() > 0) {
@@ -128,18 +142,6 @@ impl Sheet<'_> {
     }
 }
 
-/// A name that needs no quotes in a header or as the name of a file.
-fn plain(name: &str) -> String {
-    let kept = |c: char| {
-        if c.is_ascii_alphanumeric() || "-_".contains(c) {
-            c
-        } else {
-            '-'
-        }
-    };
-    name.replace(": ", "-").chars().map(kept).collect()
-}
-
 fn figure_json(figure: &ComparedFigure) -> Value {
     let value = |value: &Option<Figure>| match value {
         None => Value::Null,
@@ -153,18 +155,20 @@ fn trace_json(group: &Group, trace: &ComparedTrace) -> Value {
     let noise = group.noise.get(&trace.name);
     let difference = |difference: &Option<Difference>| match difference {
         None => Value::Null,
-        Some(Difference::State(share)) => json!({ "share": share }),
-        Some(Difference::Quantity {
-            rms,
-            reference_rms,
-            largest,
-            at,
-        }) => json!({
-            "rms": rms, "reference_rms": reference_rms, "largest": largest, "at": at,
-            "noise_ratio": noise.map(|noise| rms / noise),
-        }),
+        Some(Difference { size, compared }) => match size {
+            Size::State(share) => json!({ "share": share, "compared": compared }),
+            Size::Quantity {
+                rms,
+                reference_rms,
+                largest,
+                at,
+            } => json!({
+                "rms": rms, "reference_rms": reference_rms, "largest": largest, "at": at,
+                "noise_ratio": noise.map(|noise| rms / noise), "compared": compared,
+            }),
+        },
     };
-    json!({ "name": trace.name, "differences": trace.differences.iter().map(difference).collect::<Vec<_>>() })
+    json!({ "name": trace.name, "same": trace.is_same, "differences": trace.differences.iter().map(difference).collect::<Vec<_>>() })
 }
 
 fn check_json(check: &Check) -> Value {

@@ -2,12 +2,12 @@
 
 use oleo_report::{Cell, Column, Table, significant};
 
+use super::difference::{Difference, Size};
 use super::differences::{Check, ComparedFigure, ComparedTrace};
 use super::figures::Figure;
 use super::quantity::quantity;
 use super::run::Group;
 use super::tolerance::Allowed;
-use super::traces::Difference;
 
 /// A row for each tolerance and run.
 pub fn check_table(checks: &[Check]) -> Table {
@@ -36,6 +36,20 @@ pub fn check_table(checks: &[Check]) -> Table {
     table
 }
 
+/// Digits at which numbers that differ look different, 4 to 9.
+fn digits(values: &[Option<Figure>]) -> usize {
+    let numbers = || {
+        values.iter().filter_map(|value| match value {
+            Some(Figure::Number(number)) => Some(*number),
+            _ => None,
+        })
+    };
+    let differ = |digits: &usize| {
+        numbers().all(|a| numbers().all(|b| a == b || significant(a, *digits) != significant(b, *digits)))
+    };
+    (4..9).find(differ).unwrap_or(9)
+}
+
 /// A row for each figure, a column for each run. Behind a number stands how much larger it is than that of the first run.
 pub fn figure_table<'a>(group: &Group, figures: impl Iterator<Item = &'a ComparedFigure>) -> Table {
     let mut columns = vec![Column::text("Figure")];
@@ -43,13 +57,16 @@ pub fn figure_table<'a>(group: &Group, figures: impl Iterator<Item = &'a Compare
     let mut table = Table::new(columns);
     for figure in figures {
         let first = figure.values.first().and_then(Option::as_ref);
+        let digits = digits(&figure.values);
         let cell = |value: &Option<Figure>| match (value, first) {
             (None, _) => "-".to_owned(),
             (Some(Figure::Word(word)), _) => word.clone(),
-            (Some(own @ Figure::Number(number)), Some(Figure::Number(of))) if Some(own) != first && *of != 0.0 => {
-                format!("{} ({:+.1} %)", significant(*number, 4), 100.0 * (number / of - 1.0))
+            (Some(Figure::Number(number)), Some(Figure::Number(of))) if number != of && *of != 0.0 => {
+                let percent = significant(100.0 * (number - of) / of.abs(), 2);
+                let sign = if number > of { "+" } else { "" };
+                format!("{} ({sign}{percent} %)", significant(*number, digits))
             }
-            (Some(Figure::Number(number)), _) => significant(*number, 4),
+            (Some(Figure::Number(number)), _) => significant(*number, digits),
         };
         let mut row = vec![figure.name.clone()];
         row.extend(figure.values.iter().map(cell));
@@ -68,6 +85,7 @@ pub fn trace_table(group: &Group, axis: &str, traces: &[&ComparedTrace]) -> Tabl
         Column::number("RMS of the difference"),
         Column::number("Of the first's RMS"),
         Column::number("Largest difference"),
+        Column::number("Compared"),
         Column::number(&format!("At {}, {over_unit}", over.to_lowercase())),
         Column::text("Unit"),
     ];
@@ -81,35 +99,40 @@ pub fn trace_table(group: &Group, axis: &str, traces: &[&ComparedTrace]) -> Tabl
             let mut row = vec![words.clone(), run.name.clone()];
             let noise = group.noise.get(&trace.name);
             match difference {
-                None => row.extend(["-", "-", "-", "-", unit].map(str::to_owned)),
-                Some(Difference::State(share)) => {
-                    row.extend([
-                        format!("{} %", significant(100.0 * share, 3)),
-                        "-".into(),
-                        "-".into(),
-                        "-".into(),
-                        "of the samples".into(),
-                    ]);
+                None => row.extend(["-", "-", "-", "0 %", "-", unit].map(str::to_owned)),
+                Some(Difference { size, compared }) => {
+                    let compared = format!("{} %", significant(100.0 * compared, 3));
+                    match size {
+                        Size::State(share) => row.extend([
+                            format!("{} %", significant(100.0 * share, 3)),
+                            "-".into(),
+                            "-".into(),
+                            compared,
+                            "-".into(),
+                            "of the samples".into(),
+                        ]),
+                        Size::Quantity {
+                            rms,
+                            reference_rms,
+                            largest,
+                            at,
+                        } => row.extend([
+                            significant(factor * rms, 4),
+                            match *reference_rms {
+                                0.0 => "-".to_owned(),
+                                of => format!("{} %", significant(100.0 * rms / of, 3)),
+                            },
+                            significant(factor * largest, 4),
+                            compared,
+                            significant(*at, 5),
+                            unit.to_owned(),
+                        ]),
+                    }
                 }
-                Some(Difference::Quantity {
-                    rms,
-                    reference_rms,
-                    largest,
-                    at,
-                }) => row.extend([
-                    significant(factor * rms, 4),
-                    match *reference_rms {
-                        0.0 => "-".to_owned(),
-                        of => format!("{} %", significant(100.0 * rms / of, 3)),
-                    },
-                    significant(factor * largest, 4),
-                    significant(*at, 5),
-                    unit.to_owned(),
-                ]),
             }
             if noisy {
-                row.push(match (difference, noise) {
-                    (Some(Difference::Quantity { rms, .. }), Some(noise)) => significant(rms / noise, 3),
+                row.push(match (difference.map(|difference| difference.size), noise) {
+                    (Some(Size::Quantity { rms, .. }), Some(noise)) => significant(rms / noise, 3),
                     _ => "-".to_owned(),
                 });
             }

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::str::FromStr;
 
+use oleo_plant_sim::model_file::{self, Checked, InvalidValue, Limit};
 use serde::Deserialize;
 
+use super::difference::{Difference, Size};
 use super::figures::Figure;
-use super::traces::Difference;
 use crate::commands::parameter_files;
 use crate::failure::Failure;
 
@@ -76,47 +77,54 @@ impl FromStr for Tolerance {
     }
 }
 
-/// A file of tolerances: names with numbers or texts such as "5 %".
+/// A file of tolerances.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
-    tolerance: BTreeMap<String, Entry>,
+    /// Names with numbers or texts such as "5 %".
+    tolerance: BTreeMap<String, toml::Value>,
 }
 
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum Entry {
-    Number(f64),
-    Text(String),
+impl Checked for File {
+    const LIMITS: &'static [Limit<Self>] = &[];
+
+    fn check_together(&self) -> Result<(), InvalidValue> {
+        let bad = |(name, value): (&String, &toml::Value)| allowed(value).err().map(|what| (name.clone(), what));
+        match self.tolerance.iter().find_map(bad) {
+            None => Ok(()),
+            Some((name, what)) => Err(InvalidValue::new("tolerance", format!("{name}: {what}"))),
+        }
+    }
+}
+
+/// What a value of a file allows.
+fn allowed(value: &toml::Value) -> Result<Allowed, String> {
+    match value {
+        toml::Value::String(text) => text.parse(),
+        other => other.to_string().parse(),
+    }
 }
 
 /// The tolerances in a file.
 pub fn read(path: &Path) -> Result<Vec<Tolerance>, Failure> {
-    let (text, name) = parameter_files::read(path, "tolerances")?;
-    let file: File = toml::from_str(&text).map_err(|error| {
-        Failure::new(format!(
-            "{name}: {error}; write [tolerance] and lines such as max_roll_deg = \"5 %\""
-        ))
-    })?;
+    let (text, file) = parameter_files::read(path, "tolerances")?;
+    let file: File = model_file::read(&text, &file)?;
     (file.tolerance.into_iter())
-        .map(|(key, entry)| {
-            let text = match entry {
-                Entry::Number(number) => number.to_string(),
-                Entry::Text(text) => text,
-            };
-            let allowed = text
-                .parse()
-                .map_err(|what| Failure::new(format!("{name}: {key}: {what}")))?;
-            Ok(Tolerance { name: key, allowed })
+        .map(|(name, value)| {
+            let allowed = allowed(&value).map_err(Failure::new)?;
+            Ok(Tolerance { name, allowed })
         })
         .collect()
 }
 
-/// What was found of a tolerance: the value that was held against it, in its unit, and whether it is within. `None` where the
-/// tolerance says nothing: a figure that one of the runs does not have is not within.
+/// Share of the samples of the reference at which a trace must be compared for a tolerance to be met. Two runs of a manoeuvre end some
+/// samples apart; a run that ended early has not shown that it is within.
+const LEAST_COMPARED: f64 = 0.95;
+
+/// What was found of a tolerance: the value that was held against it, and whether it is within.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judged {
-    /// The difference in the unit of the tolerance.
+    /// The difference in the unit of the tolerance; NaN if it cannot be compared.
     pub found: f64,
     /// Whether it is within.
     pub passed: bool,
@@ -130,7 +138,7 @@ impl Judged {
         }
     }
 
-    /// What cannot be compared.
+    /// What cannot be compared. It is not within.
     pub const MISSING: Self = Self {
         found: f64::NAN,
         passed: false,
@@ -159,18 +167,23 @@ pub fn judge_figure(allowed: Allowed, reference: &Figure, figure: &Figure) -> Ju
 
 /// Holds the difference of a trace against its tolerance. `noise` is that of the channel.
 pub fn judge_trace(allowed: Allowed, difference: &Difference, noise: Option<f64>) -> Judged {
-    match (*difference, allowed) {
-        (Difference::Quantity { rms, .. }, Allowed::Absolute(most)) => Judged::of(rms, most),
-        (Difference::Quantity { rms: 0.0, .. }, _) => Judged::of(0.0, 0.0),
-        (Difference::Quantity { rms, reference_rms, .. }, Allowed::Percent(most)) => {
+    let judged = match (difference.size, allowed) {
+        (Size::Quantity { rms, .. }, Allowed::Absolute(most)) => Judged::of(rms, most),
+        (Size::Quantity { rms, .. }, Allowed::Noise(most)) => match noise {
+            Some(noise) => Judged::of(rms / noise, most),
+            None => Judged::MISSING,
+        },
+        (Size::Quantity { rms: 0.0, .. }, Allowed::Percent(_)) => Judged::of(0.0, 0.0),
+        (Size::Quantity { rms, reference_rms, .. }, Allowed::Percent(most)) => {
             Judged::of(100.0 * rms / reference_rms, most)
         }
-        (Difference::Quantity { rms, .. }, Allowed::Noise(most)) => {
-            noise.map_or(Judged::MISSING, |noise| Judged::of(rms / noise, most))
-        }
-        (Difference::State(share), Allowed::Absolute(most)) => Judged::of(share, most),
-        (Difference::State(share), Allowed::Percent(most)) => Judged::of(100.0 * share, most),
-        (Difference::State(_), Allowed::Noise(_)) => Judged::MISSING,
+        (Size::State(share), Allowed::Absolute(most)) => Judged::of(share, most),
+        (Size::State(share), Allowed::Percent(most)) => Judged::of(100.0 * share, most),
+        (Size::State(_), Allowed::Noise(_)) => Judged::MISSING,
+    };
+    Judged {
+        passed: judged.passed && difference.compared >= LEAST_COMPARED,
+        ..judged
     }
 }
 
@@ -191,6 +204,16 @@ mod tests {
         for bad in ["max_roll_deg", "a=", "a=-1", "a=nan", "a=5 percent"] {
             assert!(bad.parse::<Tolerance>().is_err(), "{bad}");
         }
+    }
+
+    #[test]
+    fn a_run_that_ended_early_is_not_within() {
+        let apart = |compared| Difference {
+            size: Size::State(0.0),
+            compared,
+        };
+        assert!(judge_trace(Allowed::Absolute(0.0), &apart(0.99), None).passed);
+        assert!(!judge_trace(Allowed::Absolute(1.0), &apart(0.5), None).passed);
     }
 
     #[test]

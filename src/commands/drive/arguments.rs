@@ -150,6 +150,17 @@ pub enum Model {
     Both,
 }
 
+impl Model {
+    /// As on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ride => "ride",
+            Self::Handling => "handling",
+            Self::Both => "both",
+        }
+    }
+}
+
 /// Suspension of the vehicle.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum, IntoStaticStr)]
 #[strum(serialize_all = "kebab-case")]

@@ -18,9 +18,10 @@ type Signal<'a> = &'a dyn Fn(&Sample) -> f64;
 type Panel<'a> = (&'a str, &'a str, Signal<'a>);
 
 /// The page of one or several drives.
-pub fn page(plan: &Plan, drives: &[Driven], table: &Table, comparison: Option<&Table>) -> Page {
+pub fn page(plan: &Plan, model: &str, drives: &[Driven], table: &Table, comparison: Option<&Table>) -> Page {
     let mut page = Page::new(&format!("Drive: {}", plan.title), &command_line());
     page.fact("Vehicle", plan.vehicle_name())
+        .fact("Model", model)
         .fact("Suspension", &settings(drives))
         .fact("Driver", plan.course.driver.key())
         .fact("Road", &plan.road_name)

@@ -9,7 +9,6 @@ use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::course::{Course, Drive, Run, Sample, Signals, Track};
 use oleo_plant_sim::handling::{HandlingParameters, HandlingVehicle};
 use oleo_plant_sim::road;
-use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::vehicle::suspension::{CoilElement, StrutElement, SuspensionElement};
 use oleo_plant_sim::vehicle::{
     BaselineVehicle, RideModel, RideVehicle, SeatAcceleration, Seats, TemperedStrut, VehicleParameters,
@@ -19,7 +18,7 @@ use oleo_report::significant;
 use super::arguments::{Args, Kind, Model, Setting};
 use super::suspension::{Valves, struts};
 use crate::commands::course_arguments::option_failure;
-use crate::commands::parameter_files;
+use crate::commands::parameter_files::Parameters;
 use crate::failure::Failure;
 
 /// Temperature at which the struts were charged, degrees Celsius.
@@ -39,7 +38,13 @@ pub struct Plan {
 }
 
 impl Plan {
-    pub fn new(args: &Args, vehicle: VehicleParameters, handling: HandlingParameters) -> Result<Self, Failure> {
+    pub fn new(args: &Args, parameters: &Parameters) -> Result<Self, Failure> {
+        let Parameters {
+            vehicle,
+            handling,
+            strut,
+            ..
+        } = parameters;
         let kind = args.manoeuvre;
         if kind.steers() && args.model != Model::Handling {
             return Err(Failure::new(
@@ -67,9 +72,9 @@ impl Plan {
         let duration_s = args.duration_s.or(past_bump_s);
         let manoeuvre = (settings.manoeuvre(speed_m_s, duration_s)).map_err(|invalid| option_failure(&invalid))?;
         let name = own_road.or(args.road.as_deref()).unwrap_or("flat");
-        let length_m = settings.road_length_m(&manoeuvre, &vehicle);
+        let length_m = settings.road_length_m(&manoeuvre, vehicle);
         let course = settings.course(manoeuvre, road::from_name_or_path(name, length_m, args.seed)?);
-        let track = course.track(&vehicle);
+        let track = course.track(vehicle);
         let mut road_name = name.to_owned();
         if let Some(measured_m) = course.road.measured_length_m() {
             road_name += &format!(" ({} m, beyond them its mirror image)", significant(measured_m, 3));
@@ -81,12 +86,8 @@ impl Plan {
         let celsius = args.gas_temperature_c.unwrap_or(CHARGED_AT_C);
         within("--gas-temperature-c", celsius, -60.0, 120.0)?;
         let load = args.course.load.unwrap_or_default();
-        let strut = match &args.strut {
-            Some(path) => parameter_files::strut(path)?,
-            None => StrutModel::defender110(1.0),
-        };
-        let described = describe(&vehicle, &handling, &strut);
-        let levelled = load.at_ride_height(&vehicle);
+        let described = describe(vehicle, handling, strut);
+        let levelled = load.at_ride_height(vehicle);
         let struts = levelled
             .static_strut_load_n()
             .map(|load_n| TemperedStrut::new(&strut.clone().charged_for(load_n), celsius + 273.15));
@@ -95,8 +96,8 @@ impl Plan {
             course,
             track,
             on_struts: levelled.raised(struts.each_ref().by_axle().map(|(left, _)| left.rise_m)),
-            on_coil_springs: load.on_coil_springs(&vehicle),
-            handling,
+            on_coil_springs: load.on_coil_springs(vehicle),
+            handling: handling.clone(),
             struts,
             described,
             road_name,

@@ -11,7 +11,7 @@ use super::driven::Driven;
 use super::measures::{Measure, measures};
 use super::page::{page, settings, verdict};
 use super::plan::Plan;
-use crate::commands::parameter_files::{HANDLING, STRUT, VEHICLE, keep};
+use crate::commands::parameter_files::Parameters;
 use crate::failure::Failure;
 
 /// RMS of the difference over RMS of the first, at the same places of the road: the handling model's speed gives way on
@@ -51,12 +51,19 @@ const COMPARED: [(&str, &str, Signal); 5] = [
 ];
 
 /// Prints the table and writes the folder.
-pub fn publish(plan: &Plan, args: &Args, drives: &[Driven], mut out: Option<OutputDirectory>) -> Result<(), Failure> {
+pub fn publish(
+    plan: &Plan,
+    args: &Args,
+    parameters: &Parameters,
+    drives: &[Driven],
+    mut out: Option<OutputDirectory>,
+) -> Result<(), Failure> {
     let mut columns = vec![Column::text("Measure")];
     columns.extend(drives.iter().map(|driven| Column::number(driven.name)));
     columns.push(Column::text("Unit"));
     let mut table = Table::new(columns);
     let mut summary = Map::new();
+    summary.insert("model".into(), json!(args.model.name()));
     let mut row = vec!["end of the run".to_owned()];
     row.extend((drives.iter()).map(|Driven { run, .. }| ending_in_words(Some(run.ending), run.cone_margin_m)));
     row.push(String::new());
@@ -98,7 +105,7 @@ pub fn publish(plan: &Plan, args: &Args, drives: &[Driven], mut out: Option<Outp
         comparison = Some(rows);
     }
     if let Some(out) = &mut out {
-        let page = page(plan, drives, &table, comparison.as_ref());
+        let page = page(plan, args.model.name(), drives, &table, comparison.as_ref());
         for Driven { name, run, .. } in drives {
             let columns: Vec<(&str, Vec<f64>)> = COLUMNS.iter().map(|(name, of)| (*name, column(run, *of))).collect();
             let columns: Vec<(&str, &[f64])> = columns
@@ -107,9 +114,7 @@ pub fn publish(plan: &Plan, args: &Args, drives: &[Driven], mut out: Option<Outp
                 .collect();
             out.csv(&format!("{}.csv", name.replace(' ', "-")), &columns)?;
         }
-        keep(out, VEHICLE, args.vehicle.as_ref())?;
-        keep(out, HANDLING, args.handling.as_ref())?;
-        keep(out, STRUT, args.strut.as_ref())?;
+        parameters.keep(out)?;
         out.summary("summary.json", Some(args.seed), &summary)?;
         out.page(&page)?;
     }

@@ -83,7 +83,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
             args.duration_s
         )));
     }
-    let bench = args.drives.bench()?;
+    let (bench, parameters) = args.drives.bench()?;
     let (records, mut out) = args.drives.stage("control")?;
     let comparison = comparison(args, &bench, &records)?;
     let [own, ..] = &comparison.scores[..] else {
@@ -92,7 +92,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     let tables = [ride_table(&comparison), roll_table(&comparison), goals_table(own)];
     let met = own.goals.iter().all(|goal| goal.met);
     if let Some(out) = &mut out {
-        args.drives.keep(out)?;
+        parameters.keep(out)?;
         write(out, args.first_seed, &comparison, own, &tables)?;
     }
     let text: Vec<String> = tables.iter().map(ToString::to_string).collect();

@@ -8,7 +8,7 @@ use oleo_plant_sim::vehicle::Load;
 use oleo_report::interrupt::Graceful;
 use oleo_report::{OutputDirectory, Progress};
 
-use crate::commands::parameter_files::{HANDLING, VEHICLE, keep, parameters};
+use crate::commands::parameter_files::Parameters;
 use crate::commands::word::word;
 use crate::failure::Failure;
 use crate::results::ResultsArgs;
@@ -46,9 +46,9 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// The test bench as set.
-    pub fn bench(&self) -> Result<Bench, Failure> {
-        let (vehicle, handling) = parameters(self.vehicle.as_ref(), self.handling.as_ref())?;
+    /// The test bench as set, and what its vehicle was read from.
+    pub fn bench(&self) -> Result<(Bench, Parameters), Failure> {
+        let parameters = Parameters::read(self.vehicle.as_ref(), self.handling.as_ref(), None)?;
         let range = |option: &str, value: f64, low: f64, high: f64| match value >= low && value <= high {
             true => Ok(()),
             false => Err(Failure::new(format!(
@@ -67,13 +67,11 @@ impl Drive {
             ..Conditions::default()
         };
         // The study's gas springs are charged for what they carry.
-        Ok(Bench::new(self.load.at_ride_height(&vehicle), handling, conditions)?)
-    }
-
-    /// Puts the parameters into the results.
-    pub fn keep(&self, out: &mut OutputDirectory) -> Result<(), Failure> {
-        keep(out, VEHICLE, self.vehicle.as_ref())?;
-        keep(out, HANDLING, self.handling.as_ref())
+        let vehicle = self.load.at_ride_height(&parameters.vehicle);
+        Ok((
+            Bench::new(vehicle, parameters.handling.clone(), conditions)?,
+            parameters,
+        ))
     }
 
     /// Runs `work` on the threads asked for.

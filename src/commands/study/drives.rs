@@ -4,11 +4,10 @@ use std::path::PathBuf;
 
 use oleo_controller::{DamperPolicy, Strategy};
 use oleo_hil::comparison::{Bench, Setting};
-use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::study::Records;
 use oleo_report::OutputDirectory;
 
-use crate::commands::parameter_files::{HANDLING, STRUT, VEHICLE, keep, parameters, strut};
+use crate::commands::parameter_files::Parameters;
 use crate::failure::Failure;
 use crate::results::ResultsArgs;
 
@@ -33,21 +32,17 @@ pub struct Drives {
 }
 
 impl Drives {
-    /// The vehicle on its struts.
-    pub fn bench(&self) -> Result<Bench, Failure> {
-        let (vehicle, handling) = parameters(self.vehicle.as_ref(), self.handling.as_ref())?;
-        let strut = match &self.strut {
-            Some(path) => strut(path)?,
-            None => StrutModel::defender110(1.0),
-        };
-        Ok(Bench::new(vehicle, handling, &strut))
-    }
-
-    /// Puts the parameters into the results.
-    pub fn keep(&self, out: &mut OutputDirectory) -> Result<(), Failure> {
-        keep(out, VEHICLE, self.vehicle.as_ref())?;
-        keep(out, HANDLING, self.handling.as_ref())?;
-        keep(out, STRUT, self.strut.as_ref())
+    /// The vehicle on its struts, and what it was read from.
+    pub fn bench(&self) -> Result<(Bench, Parameters), Failure> {
+        let (vehicle, handling) = (self.vehicle.as_ref(), self.handling.as_ref());
+        let parameters = Parameters::read(vehicle, handling, self.strut.as_ref())?;
+        let Parameters {
+            vehicle,
+            handling,
+            strut,
+            ..
+        } = &parameters;
+        Ok((Bench::new(vehicle.clone(), handling.clone(), strut), parameters))
     }
 
     /// Runs `work` on the threads asked for.

@@ -51,7 +51,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
             "--ride, --sickness, --roll: no weight may be negative, and at least one must be above 0",
         ));
     }
-    let bench = args.drive.bench()?;
+    let (bench, parameters) = args.drive.bench()?;
     let (ledger, mut out) = args.drive.stage("optimise", &bench)?;
     let objective = Objective {
         weights,
@@ -71,7 +71,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
 
     let table = outcome(&optimum);
     if let Some(out) = &mut out {
-        args.drive.keep(out)?;
+        parameters.keep_vehicle(out)?;
         let map = surface.map(|surface| map(&weights, &optimum, &surface));
         write(out, args.drive.seed, &optimum, &table, map)?;
     }

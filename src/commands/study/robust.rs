@@ -61,7 +61,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
             args.vehicles
         )));
     }
-    let nominal = args.drives.bench()?;
+    let (nominal, parameters) = args.drives.bench()?;
     let setting = controlled(
         &nominal,
         Strategy::default().name(),
@@ -94,7 +94,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         .collect();
     let table = table(&results);
     if let Some(out) = &mut out {
-        args.drives.keep(out)?;
+        parameters.keep(out)?;
         write(out, args.first, &results, &over, &table)?;
     }
     let text = format!("{table}{}\n", verdict(results.len(), &over));

@@ -22,7 +22,7 @@ pub struct Args {
 
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode, Failure> {
-    let bench = args.drive.bench()?;
+    let (bench, parameters) = args.drive.bench()?;
     let (ledger, mut out) = args.drive.stage("sweep", &bench)?;
     let surface = args.drive.surface("sweep", &bench, &ledger)?;
     let conclusions = findings(&surface);
@@ -30,7 +30,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
 
     let table = conclusions_table(&conclusions);
     if let Some(out) = &mut out {
-        args.drive.keep(out)?;
+        parameters.keep_vehicle(out)?;
         write(out, args.drive.seed, &surface, &conclusions, &table, met)?;
     }
     let text = format!("{}{table}", grid_table(&surface));
@@ -127,8 +127,8 @@ fn cells(values: &[Vec<f64>]) -> impl Iterator<Item = (usize, usize)> {
     (values.iter().enumerate()).flat_map(|(j, row)| (0..row.len()).map(move |i| (j, i)))
 }
 
-/// The cells than which no other has both a lower RMS and a lower roll, by rising RMS.
-fn front(rms: &[Vec<f64>], roll: &[Vec<f64>]) -> Vec<(usize, usize)> {
+/// The Pareto front, by rising RMS: no other cell is lower in one of RMS and roll and at most as high in the other.
+fn pareto_front(rms: &[Vec<f64>], roll: &[Vec<f64>]) -> Vec<(usize, usize)> {
     let mut all: Vec<(usize, usize)> = cells(rms)
         .filter(|&(j, i)| rms[j][i].is_finite() && roll[j][i].is_finite())
         .collect();
@@ -148,7 +148,8 @@ fn ride_against_roll(rms: &[Vec<f64>], roll: &[Vec<f64>], front: &[(usize, usize
         Axis::new("Weighted RMS, mean of both seats", "m/s2"),
     );
     figure.caption(
-        "A point for each combination. No combination is better in both than those on the line, which the table lists.",
+        "A point for each combination that completed both drives. On the Pareto front, which the table lists, one measure can only be improved at the \
+         cost of the other.",
     );
     let of = |values: &[Vec<f64>], places: &[(usize, usize)]| {
         places.iter().map(|&(j, i)| values[j][i]).collect::<Vec<f64>>()
@@ -157,12 +158,7 @@ fn ride_against_roll(rms: &[Vec<f64>], roll: &[Vec<f64>], front: &[(usize, usize
     figure
         .panel(Axis::new("Largest body roll", "degrees"))
         .series(Style::Points, "all combinations", &of(rms, &all), &of(roll, &all))
-        .series(
-            Style::LineAndPoints,
-            "best compromises",
-            &of(rms, front),
-            &of(roll, front),
-        );
+        .series(Style::LineAndPoints, "Pareto front", &of(rms, front), &of(roll, front));
     figure
 }
 
@@ -255,7 +251,7 @@ fn write(
         }),
     );
     let rms = ride(|r| r.mean_rms_m_s2());
-    let front = front(&rms, &roll);
+    let front = pareto_front(&rms, &roll);
     page.section("Ride against roll")
         .figure(ride_against_roll(&rms, &roll, &front))
         .table(front_table(&litres, factors, &rms, &roll, &front));
@@ -329,11 +325,11 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_better_in_both_than_the_front() {
+    fn cells_that_another_one_dominates_are_not_on_the_front() {
         let nan = f64::NAN;
         let rms = [vec![1.0, 2.0, 3.0], vec![2.0, 4.0, nan]];
         let roll = [vec![9.0, 5.0, 5.0], vec![6.0, 1.0, 0.0]];
-        assert_eq!(front(&rms, &roll), [(0, 0), (0, 1), (1, 1)]);
+        assert_eq!(pareto_front(&rms, &roll), [(0, 0), (0, 1), (1, 1)]);
     }
 
     #[test]

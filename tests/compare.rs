@@ -291,7 +291,7 @@ fn refusals_are_one_line() {
         ),
         (
             &["compare", good, other, "--tolerances", path(&bad)],
-            "bad.toml:1: [tolerance] roll_rad: \"some\" is no tolerance",
+            "bad.toml:1: tolerance roll_rad: \"some\" is no tolerance",
         ),
         (
             &["compare", good, other, "--tolerance", "roll_rad=2x"],

@@ -159,6 +159,32 @@ def judged(chromium, page, theme):
         return json.loads(html.unescape(answers))
 
 
+# What is put into a page that has nothing wrong, and the complaint that must follow.
+PLANTED = [
+    ("</main>", '<p style="color: #777; background: #888">faint</p></main>', "faint"),
+    ("</main>", '<h2 style="width: 40px; white-space: nowrap; overflow: hidden">a heading without room</h2></main>', "cut off: a heading"),
+    ("</main>", "<figure><svg></svg></figure></main>", "a figure without a name"),
+    ("</main>", '<div style="width: 3000px">wide</div></main>', "px wide"),
+    ("</main>", '<script>console.error("said")</script></main>', "console: said"),
+    ('"title":{"text":"Roll, degrees"}', '"title":{"text":""}', "without a title: Roll"),
+    ('"text":"Roll, degrees"', '"text":"Roll, degrees' + ", and so on" * 30 + '"', "outside of its drawing"),
+]
+
+
+def unseen(chromium, page):
+    """The planted mistakes that are not complained of. A check that cannot fail proves nothing."""
+    text = page.read_text(encoding="utf-8")
+    for place, mistake, complaint in PLANTED:
+        if place not in text:
+            yield f"planted: the page has no {place}"
+            continue
+        wrong = page.with_name("planted.html")
+        wrong.write_text(text.replace(place, mistake, 1), encoding="utf-8")
+        answers = judged(chromium, wrong, THEMES["light"]).values()
+        if not any(complaint in what for answer in answers for what in answer["found"]):
+            yield f"planted and not found: {complaint}"
+
+
 def pages(oleo, folder):
     """The page of each command."""
     commands = dict(COMMANDS)
@@ -184,8 +210,10 @@ def main():
             for width, answer in judged(chromium, page, number).items():
                 charts += answer["charts"]
                 wrong += [f"{name}, {theme}, {width} px: {what}" for what in answer["found"]]
+        if name == "compare":
+            wrong += unseen(chromium, page)
     print("\n".join(wrong))
-    print(f"{count} pages at {len(WIDTHS)} widths in 2 themes, {charts} charts drawn, {len(wrong)} complaints")
+    print(f"{count} pages at {len(WIDTHS)} widths in 2 themes, {charts} charts drawn, {len(wrong)} complaints; {len(PLANTED)} were planted")
     sys.exit(1 if wrong or charts == 0 else 0)
 
 

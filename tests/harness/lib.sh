@@ -67,6 +67,21 @@ need() {
     command -v "$@" > /dev/null
 }
 
+# Where Python packages for the tests are installed.
+# shellcheck disable=SC2034 # read by the steps
+readonly PYTHON_PACKAGES=$CARGO_TARGET_DIR/test-python
+
+# python_packages "MODULE, MODULE" PACKAGE...: whether the modules can be imported, after installing the packages if one cannot.
+python_packages() {
+    local modules=$1
+    shift
+    have() { PYTHONPATH=$PYTHON_PACKAGES python3 -c "import $modules" 2> /dev/null; }
+    have && return 0
+    echo "   installing $modules"
+    python3 -m pip install --quiet --target "$PYTHON_PACKAGES" "$@" > "$OLEO_LOGS/pip-$OLEO_STEP.log" 2>&1
+    have
+}
+
 # libtest NAME COMMAND...: runs Rust tests (with --show-output, so that a test which says "SKIPPED: reason" and returns
 # is told from one that passed) and tallies each.
 libtest() {

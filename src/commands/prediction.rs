@@ -5,6 +5,7 @@
 //! accumulator from which they would follow. The input of a damper is its displacement. The input of a drive is its force, with
 //! the recorded position and speed at the start of each window.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Cursor, Read};
 use std::path::Path;
@@ -119,16 +120,8 @@ fn gas_spring(text: &str, model_file: &str, source: Source, file: &str) -> Resul
     let pressure = model
         .pressure_pa(time, x, recorded[0])
         .map_err(|what| Failure::new(format!("{file}: {what}")))?;
-    let inputs = vec![
-        ("time_s".to_owned(), time.to_vec()),
-        ("displacement_m".to_owned(), x.to_vec()),
-    ];
-    let channel = Channel {
-        name: "p_Pa".into(),
-        recorded: Some(recorded.to_vec()),
-        predicted: model.shown(time, pressure),
-        noise: model.noise.get("p_Pa").copied(),
-    };
+    let inputs = inputs(&recording, &["displacement_m"]);
+    let channel = channel("p_Pa", &recording, model.shown(time, pressure), &model.noise);
     Ok((inputs, vec![channel]))
 }
 
@@ -146,23 +139,8 @@ fn cylinder(text: &str, model_file: &str, source: Source, file: &str) -> Result<
         .map(|chamber| column(&recording, &chamber.column).to_vec())
         .collect();
     let force = model.force_n(time, &motion, &pressures);
-    let mut inputs = vec![
-        ("time_s".to_owned(), time.to_vec()),
-        ("displacement_m".to_owned(), x.to_vec()),
-    ];
-    inputs.extend(
-        model
-            .chamber
-            .iter()
-            .map(|chamber| chamber.column.clone())
-            .zip(pressures),
-    );
-    let channel = Channel {
-        name: "force_N".into(),
-        recorded: recording.column("force_N").map(<[f64]>::to_vec),
-        predicted: model.shown(time, force),
-        noise: model.noise.get("force_N").copied(),
-    };
+    let inputs = inputs(&recording, &needed);
+    let channel = channel("force_N", &recording, model.shown(time, force), &model.noise);
     Ok((inputs, vec![channel]))
 }
 
@@ -173,16 +151,8 @@ fn damper(text: &str, model_file: &str, source: Source, file: &str) -> Result<Pr
     let force = model
         .force_n(&DamperModel::motion(time, x))
         .map_err(|what| Failure::new(format!("{file}: {what}")))?;
-    let inputs = vec![
-        ("time_s".to_owned(), time.to_vec()),
-        ("displacement_m".to_owned(), x.to_vec()),
-    ];
-    let channel = Channel {
-        name: "force_N".into(),
-        recorded: recording.column("force_N").map(<[f64]>::to_vec),
-        predicted: model.shown(time, force),
-        noise: model.noise.get("force_N").copied(),
-    };
+    let inputs = inputs(&recording, &["displacement_m"]);
+    let channel = channel("force_N", &recording, model.shown(time, force), &model.noise);
     Ok((inputs, vec![channel]))
 }
 
@@ -194,20 +164,30 @@ fn drive(text: &str, model_file: &str, source: Source, file: &str) -> Result<Pre
     let position = model
         .position_m(time, force, &DriveModel::motion(time, recorded))
         .map_err(|what| Failure::new(format!("{file}: {what}")))?;
-    let inputs = vec![
-        ("time_s".to_owned(), time.to_vec()),
-        ("force_N".to_owned(), force.to_vec()),
-    ];
-    let channel = Channel {
-        name: "position_m".into(),
-        recorded: Some(recorded.to_vec()),
-        predicted: model.shown(time, position),
-        noise: model.noise.get("position_m").copied(),
-    };
+    let inputs = inputs(&recording, &["force_N"]);
+    let channel = channel("position_m", &recording, model.shown(time, position), &model.noise);
     Ok((inputs, vec![channel]))
 }
 
 /// A column that was asked for as needed.
 fn column<'a>(recording: &'a Columns, name: &str) -> &'a [f64] {
     recording.column(name).unwrap_or_default()
+}
+
+/// Columns of a recording by name, the time before them.
+fn inputs(recording: &Columns, names: &[&str]) -> Vec<(String, Vec<f64>)> {
+    std::iter::once("time_s")
+        .chain(names.iter().copied())
+        .map(|name| (name.to_owned(), column(recording, name).to_vec()))
+        .collect()
+}
+
+/// A predicted channel beside what the recording has of it.
+fn channel(name: &str, recording: &Columns, predicted: Vec<f64>, noise: &BTreeMap<String, f64>) -> Channel {
+    Channel {
+        name: name.to_owned(),
+        recorded: recording.column(name).map(<[f64]>::to_vec),
+        predicted,
+        noise: noise.get(name).copied(),
+    }
 }

@@ -217,7 +217,9 @@ impl State {
 
     /// One tick; returns the motion that follows from readings that may be used.
     pub fn step(&mut self, c: &Parameters, trusted: &Trusted) -> Estimate {
-        let force = trusted.pressure.map(|pressure| pressure.p1.pa() * c.piston_area_m2);
+        let force = Corners::from_fn(|corner| {
+            (trusted.pressure[corner].p1.pa() - trusted.p1_offset_pa[corner]) * c.piston_area_m2
+        });
         if !self.started {
             self.started = true;
             self.speed = trusted.displacement_m.map(DerivativeState::at_rest);

@@ -132,6 +132,26 @@ fn steady_cornering() {
 }
 
 #[test]
+fn what_p1_shows_too_much_is_no_force() {
+    let (parameters, state) = at_rest();
+    let motion = Motion { roll: 1.5, ..still() };
+    let right = trusted(&motion);
+    let mut wrong = right;
+    for (corner, offset_pa) in [(Corner::FrontLeft, 0.7e6), (Corner::RearRight, -0.4e6)] {
+        wrong.pressure[corner].p1 = Gauge(wrong.pressure[corner].p1.pa() + offset_pa);
+        wrong.p1_offset_pa[corner] = offset_pa;
+    }
+    let [right, wrong] = [right, wrong].map(|trusted| { state }.step(&parameters.estimate, &trusted));
+    let near_to = |a: f32, b: f32| (a - b).abs() < 1e-3;
+    assert!(near_to(
+        wrong.vertical_acceleration_m_s2,
+        right.vertical_acceleration_m_s2
+    ));
+    assert!(near_to(wrong.roll_acceleration_rad_s2, right.roll_acceleration_rad_s2));
+    near("roll", right.roll_acceleration_rad_s2, motion.roll, 1e-2);
+}
+
+#[test]
 fn payload_needs_no_parameter() {
     let (c, mut state) = (Configuration::defender110(), State::default());
     let load = |share: f32| {

@@ -38,7 +38,7 @@ const STEP_RIGHT: &str = "manoeuvre = \"step-steer\"\nsteer_deg = -3\nbegin_s = 
 const BEFORE_THE_BEND_S: f64 = 8.0;
 
 /// What is wrong, as a row of the table and as a part of a scenario.
-const FAULTS: [(&str, &[&str]); 18] = [
+const FAULTS: [(&str, &[&str]); 22] = [
     (
         "displacement front left off by 35 mm",
         &["sensor-offset front-left.displacement 0.035"],
@@ -95,6 +95,31 @@ const FAULTS: [(&str, &[&str]); 18] = [
     (
         "p1 of both left struts off by 0.9 MPa",
         &["sensor-offset front-left.p1 0.9e6", "sensor-offset rear-left.p1 0.9e6"],
+    ),
+    (
+        "p1 front left drifts by 0.1 MPa/s",
+        &["sensor-drift front-left.p1 0.1e6"],
+    ),
+    (
+        "p2 and p3 front left off by 0.9 MPa",
+        &["sensor-offset front-left.p2 0.9e6", "sensor-offset front-left.p3 0.9e6"],
+    ),
+    (
+        "p1, p2 and p3 front left off by 0.9 MPa",
+        &[
+            "sensor-offset front-left.p1 0.9e6",
+            "sensor-offset front-left.p2 0.9e6",
+            "sensor-offset front-left.p3 0.9e6",
+        ],
+    ),
+    (
+        "all four pressures front left off by 0.9 MPa",
+        &[
+            "sensor-offset front-left.p1 0.9e6",
+            "sensor-offset front-left.p2 0.9e6",
+            "sensor-offset front-left.p3 0.9e6",
+            "sensor-offset front-left.p4 0.9e6",
+        ],
     ),
     ("valve 1 front left stuck open", &["solenoid-stuck front-left.1 open"]),
     ("valve 2 front left stuck open", &["solenoid-stuck front-left.2 open"]),

@@ -102,6 +102,8 @@ pub struct State {
     turn: Corner,
     /// Turns of the present window of `stuck` that are over at each corner before the one whose turn it is.
     window_turns: u8,
+    /// Turns of each corner since the last look at the offset of p1.
+    offset_turns: u8,
     /// A bit for each corner at which a reading failed its own check and is not believed again yet.
     restless: u8,
     /// A bit for each corner at which a comparison has found something.
@@ -118,6 +120,7 @@ impl Default for State {
             comparisons: Corners::default(),
             turn: Corner::FrontLeft,
             window_turns: 0,
+            offset_turns: 0,
             // A sensor is believed after some good samples only.
             restless: ALL,
             disagreeing: 0,
@@ -240,6 +243,9 @@ impl State {
         comparisons
             .vote
             .step(&parameters.vote, pressure, p4_follows, &mut verdict);
+        if self.offset_turns == 0 {
+            self.measured.p1_offset_pa[corner] = comparisons.vote.p1_offset_pa(&parameters.vote);
+        }
         comparisons
             .trapped
             .step(pressure, context.spring_commanded_closed, &mut verdict);
@@ -256,6 +262,11 @@ impl State {
         self.turn = turn::next(corner);
         if self.turn == Corner::FrontLeft {
             self.window_turns = (self.window_turns + 1) % stuck::WINDOW_TURNS;
+            self.offset_turns = (self.offset_turns + 1) % vote::OFFSET_TURNS;
+            let carried_m = |corner| self.comparisons[corner].oil.carried_m();
+            let right_m = carried_m(Corner::FrontRight) + carried_m(Corner::RearRight);
+            let left_m = carried_m(Corner::FrontLeft) + carried_m(Corner::RearLeft);
+            self.measured.load_to_right_m = 0.5 * (right_m - left_m);
         }
     }
 }

@@ -67,6 +67,8 @@ pub struct OilBalance {
     /// Charge that was learnt while the controller started.
     charge_at_start_pa: f32,
     residual_m: f32,
+    /// Compression of the first gas from the static position, m of stroke.
+    carried_m: f32,
     motion: OilMotion,
     wrong: u8,
     flagged: bool,
@@ -88,7 +90,8 @@ impl OilBalance {
         if measured {
             let (v1, v2) = (c.gas_volume_1_m3, c.gas_volume_2_m3);
             let least = |p: Gauge<f32>| at_least(p.absolute().pa(), LEAST_PA);
-            let s = v1 / least(pressure.p2) + v2 / least(pressure.p4);
+            let behind_valve_3 = v2 / least(pressure.p4);
+            let s = v1 / least(pressure.p2) + behind_valve_3;
             let now_pa = (v1 + v2 - c.piston_area_m2 * displacement_m) / s;
             if !self.started {
                 self.started = true;
@@ -107,6 +110,7 @@ impl OilBalance {
                 }
                 c.residual.step(&mut self.residual_m, residual);
             }
+            self.carried_m = displacement_m - (v2 - self.charge_pa * behind_valve_3) * c.per_piston_area;
             let drifted = self.charge_pa < DRIFT.0 * self.charge_at_start_pa
                 || self.charge_pa > DRIFT.1 * self.charge_at_start_pa;
             let wrong = self.residual_m.abs() > WRONG_M
@@ -131,6 +135,12 @@ impl OilBalance {
         }
         self.motion.step(motion, verdict);
         Absolute(self.charge_pa)
+    }
+
+    /// How far the first gas is compressed from the static position, m of stroke, from the displacement and p4: what the second
+    /// one has taken is not in it. As long as one of these was not measured, the last value.
+    pub fn carried_m(&self) -> f32 {
+        self.carried_m
     }
 }
 

@@ -1,6 +1,6 @@
 //! Readings that may be used, and the values that replace those that may not.
 
-use oleo_interface::{Absolute, Corners, Gauge, StrutPressures};
+use oleo_interface::{Absolute, Corner, Corners, Gauge, StrutPressures};
 
 use super::limits::DISPLACEMENT;
 use super::verdict::{Place, Verdicts};
@@ -16,6 +16,11 @@ pub struct Trusted {
     pub displacement_m: Corners<f32>,
     /// Pressures p1 to p4 of each strut, Pa, -4.9e6 to 35e6.
     pub pressure: Corners<StrutPressures<Gauge<f32>>>,
+    /// What p1 of each strut shows in the mean beyond what its other pressures say, Pa: an offset of the sensor.
+    pub p1_offset_pa: Corners<f32>,
+    /// How much further the first gas is compressed on the right than on the left, m of stroke, mean of the axles, from displacements
+    /// and p4.
+    pub load_to_right_m: f32,
     /// Gas pressure of each strut at its static position, Pa, learnt at start-up.
     pub charge: Corners<Absolute<f32>>,
     /// Health of the readings, for the mode machine.
@@ -58,9 +63,16 @@ impl Trusted {
             _ => [fl, fr, rl, rr],
         });
         self.pressure = measured.pressure;
-        for (pressure, verdict) in self.pressure.values_mut().zip(verdicts.values()) {
+        self.p1_offset_pa = measured.p1_offset_pa;
+        self.load_to_right_m = measured.load_to_right_m;
+        for corner in Corner::ALL {
+            let verdict = verdicts[corner];
             if !verdict.pressures_are_good() {
-                replace_wrong(pressure, *verdict);
+                replace_wrong(&mut self.pressure[corner], verdict);
+                if !verdict.is_good(Place::P1) {
+                    // What stands for it does not have its offset.
+                    self.p1_offset_pa[corner] = 0.0;
+                }
             }
         }
     }
@@ -88,7 +100,7 @@ fn replace_wrong(pressure: &mut StrutPressures<Gauge<f32>>, verdict: Verdicts) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use oleo_interface::{Axle, Corner, PressurePoint, Side};
+    use oleo_interface::{Axle, PressurePoint, Side};
 
     const PLACES: [Place; 4] = [Place::P1, Place::P2, Place::P3, Place::P4];
 
@@ -158,10 +170,15 @@ mod tests {
             }
             let measured = Trusted {
                 pressure: Corners::splat(last),
+                p1_offset_pa: Corners::splat(0.3e6),
                 ..Trusted::default()
             };
             let mut trusted = Trusted::default();
             trusted.substitute(&measured, &verdicts);
+            // What stands for p1 has no offset of its sensor.
+            let offset_pa = if is_missing(0) { 0.0 } else { 0.3e6 };
+            assert_eq!(trusted.p1_offset_pa[Corner::RearLeft], offset_pa, "{missing:04b}");
+            assert_eq!(trusted.p1_offset_pa[Corner::FrontLeft], 0.3e6);
             // The first of p1, p2, p3 that is measured; the last good p1 if none is.
             let stand_in = (0..3).find(|n| !is_missing(*n)).unwrap_or(0);
             for (n, point) in PressurePoint::ALL.into_iter().enumerate() {

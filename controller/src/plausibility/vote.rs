@@ -4,7 +4,11 @@
 //! while oil moves. In motion the *means* over a second still agree, except for the asymmetry of the damper packs (rebound takes
 //! about twice as much as jounce, estimated 0.4 MPa at 0.5 m/s). So lagged pressures are compared, and one that differs by more
 //! than 1 MPa from two that agree is wrong. An offset of `d` is seen after `tau ln(d / (d - 1 MPa))` and 0.2 s of
-//! confirmation, which is 1.1 s for 1.7 MPa and 0.5 s for 4 MPa. This check does not see offsets below 1 MPa.
+//! confirmation, which is 1.1 s for 1.7 MPa and 0.5 s for 4 MPa. This check calls no pressure wrong that is off by less.
+//!
+//! A p1 that is off by less is taken for what the strut carries, though, and four of them for a bend. So what p1 shows beyond the
+//! median of p1, p2 and p3 in the mean is taken off it where the force of the strut is estimated ([`Vote::p1_offset_pa`]): one of the
+//! three that is wrong never is the median of the three. What motion alone can make of it stays: [`EXPLAINED_PA`].
 
 use oleo_interface::{Gauge, PressurePoint, StrutPressures};
 
@@ -18,17 +22,26 @@ const DISAGREE_PA: f32 = 1.0e6;
 /// verdict about it stays until it can be compared again.
 const AGREE_PA: f32 = 0.6e6;
 const CONFIRM_TURNS: u8 = turns(200);
+/// Time constant of the mean in which p1 and the others agree, s. Rolling into a bend through closed dampers, p1 and p2 are 1 to
+/// 2 MPa apart for half a second, which is no offset.
+const OFFSET_S: f32 = 2.0;
+/// Turns of a corner from one look at the offset to the next: a mean over 2 s needs no more.
+pub const OFFSET_TURNS: u8 = 4;
+/// Difference of p1 in the mean that the asymmetry of the dampers explains, Pa.
+const EXPLAINED_PA: f32 = 0.1e6;
 
-/// The lag of the compared pressures.
+/// The lag of the compared pressures, and that of the offset of p1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameters {
     lag: LowPass,
+    offset: LowPass,
 }
 
 impl Default for Parameters {
     fn default() -> Self {
         Self {
             lag: LowPass::sampled(TURN_S, 1.0),
+            offset: LowPass::sampled(OFFSET_TURNS as f32 * TURN_S, OFFSET_S),
         }
     }
 }
@@ -37,6 +50,8 @@ impl Default for Parameters {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Vote {
     lagged: StrutPressures<Gauge<f32>>,
+    /// What p1 shows beyond the median, in the mean, Pa.
+    p1_beyond_pa: f32,
     outvoted: StrutPressures<u8>,
     flagged: StrutPressures<bool>,
     started: bool,
@@ -83,6 +98,20 @@ impl Vote {
             return;
         }
         *verdict = self.judge(healthy, p4_follows, wrong, *verdict);
+    }
+
+    /// One of [`OFFSET_TURNS`] turns, after the step; returns what p1 shows in the mean beyond what it measures, Pa.
+    #[inline(never)]
+    pub fn p1_offset_pa(&mut self, parameters: &Parameters) -> f32 {
+        if self.started {
+            let StrutPressures { p1, p2, p3, .. } = self.lagged;
+            let beyond_pa = p1.pa() - median(p1.pa(), p2.pa(), p3.pa());
+            parameters.offset.step(&mut self.p1_beyond_pa, beyond_pa);
+        }
+        if self.p1_beyond_pa.abs() < EXPLAINED_PA {
+            return 0.0;
+        }
+        self.p1_beyond_pa - EXPLAINED_PA.copysign(self.p1_beyond_pa)
     }
 
     /// Counts for and against each pressure, where one is or was outvoted; returns the verdict with what that leads to.
@@ -132,6 +161,18 @@ fn count_votes(count: &mut u8, flagged: &mut bool, wrong: bool, agrees: bool) {
     }
 }
 
+/// The one of three numbers that is neither the greatest nor the least.
+fn median(a: f32, b: f32, c: f32) -> f32 {
+    let (low, high) = if a < b { (a, b) } else { (b, a) };
+    if c < low {
+        low
+    } else if c > high {
+        high
+    } else {
+        c
+    }
+}
+
 /// What the lags start from: agreement at the mean of the pressures, so that a disagreement has to build up as it does after an
 /// offset begins. A single sample of a strut in motion would not do, because through closed dampers its pressures are 2 MPa
 /// apart, and the lag would need a second to forget that.
@@ -174,6 +215,59 @@ mod tests {
             let mut vote = Vote::default();
             assert_eq!(shaken(&mut vote, phase..phase + 1000, 0.0), None, "phase {phase}");
         }
+    }
+
+    /// What is taken off p1 after 30 s on a strut that is shaken through closed dampers, Pa, with an offset of each of p1 to p3.
+    fn taken_off_pa(offset_pa: [f32; 3]) -> f32 {
+        let (parameters, mut vote, mut taken_off_pa) = (Parameters::default(), Vote::default(), 0.0);
+        let [p1, p2, p3] = offset_pa.map(|offset_pa| 4.0e6 + offset_pa);
+        for turn in 0..1500_u16 {
+            let swing = 2.0e6 * libm::cosf(2.0 * core::f32::consts::PI * 8.0 * f32::from(turn) * TURN_S);
+            let pressure = StrutPressures {
+                p1: p1 + swing,
+                p2,
+                p3,
+                p4: p3,
+            };
+            let mut verdict = Verdicts::GOOD;
+            vote.step(&parameters, &pressure.map(Gauge), false, &mut verdict);
+            assert!(!outvoted(&verdict), "{offset_pa:?} in turn {turn}");
+            if turn % u16::from(OFFSET_TURNS) == 0 {
+                taken_off_pa = vote.p1_offset_pa(&parameters);
+            }
+        }
+        taken_off_pa
+    }
+
+    #[test]
+    fn a_small_offset_of_p1_is_taken_off_and_none_of_the_others() {
+        for offset_pa in [0.5e6, 0.9e6, -0.5e6, -0.9e6] {
+            let sign = f32::signum(offset_pa);
+            let off_pa = taken_off_pa([offset_pa, 0.0, 0.0]);
+            assert!(
+                (off_pa - offset_pa + sign * EXPLAINED_PA).abs() < 0.05e6,
+                "{offset_pa}: {off_pa}"
+            );
+            assert_eq!(taken_off_pa([0.0, offset_pa, 0.0]), 0.0);
+            assert_eq!(taken_off_pa([0.0, 0.0, offset_pa]), 0.0);
+            assert_eq!(taken_off_pa([offset_pa; 3]), 0.0);
+        }
+        assert_eq!(taken_off_pa([0.05e6, 0.0, 0.0]), 0.0);
+    }
+
+    #[test]
+    fn the_median_is_neither_the_greatest_nor_the_least() {
+        for [a, b, c] in [
+            [1.0, 2.0, 3.0],
+            [1.0, 3.0, 2.0],
+            [2.0, 1.0, 3.0],
+            [2.0, 3.0, 1.0],
+            [3.0, 1.0, 2.0],
+            [3.0, 2.0, 1.0],
+        ] {
+            assert_eq!(median(a, b, c), 2.0);
+        }
+        assert_eq!(median(1.0, 1.0, 5.0), 1.0);
     }
 
     #[test]

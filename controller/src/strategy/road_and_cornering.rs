@@ -8,14 +8,15 @@
 //!
 //! On a smooth road nothing has to be decided in time, because the vehicle is stiff already. On a rough one it becomes stiff as
 //! soon as the lateral acceleration stands out of what the road does ([`super::parts::cornering`]), and at once: a lean that the closing
-//! springs trap is smaller than the one that a later closing would find. How rough the road is is told by the running RMS of the
+//! springs trap is smaller than the one that a later closing would find. It stays so while the gas says that it leans
+//! ([`super::parts::load_transfer`]). How rough the road is is told by the running RMS of the
 //! body's vertical acceleration, which is not judged while the vehicle corners. Which damper level is best on which road is measured in
 //! `docs/controller.md`.
 
 use oleo_interface::{Corners, StrutValves};
 
 use super::demand::{Decide, Demand, Urgency};
-use super::parts::{cornering, rollover_guard};
+use super::parts::{cornering, load_transfer, rollover_guard};
 use crate::estimate::Estimate;
 use crate::plausibility::Trusted;
 use crate::range::{ConfigurationError, Hysteresis};
@@ -56,6 +57,7 @@ impl Default for Tuning {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RoadAndCornering {
     cornering: cornering::Parameters,
+    load_transfer: load_transfer::Parameters,
     rough_2: Hysteresis,
     very_rough_2: Hysteresis,
     guard: rollover_guard::Tuning,
@@ -65,6 +67,8 @@ pub struct RoadAndCornering {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct State {
     cornering: cornering::State,
+    load_transfer: load_transfer::State,
+    corners: bool,
     rough: bool,
     very_rough: bool,
     /// Ticks before the road may be judged again.
@@ -90,15 +94,18 @@ impl Decide for RoadAndCornering {
     fn new(_: &VehicleDescription, tuning: &Tuning) -> Self {
         Self {
             cornering: cornering::Parameters::new(&tuning.cornering),
+            load_transfer: load_transfer::Parameters::new(),
             rough_2: tuning.rough_m_s2.squared(),
             very_rough_2: tuning.very_rough_m_s2.squared(),
             guard: tuning.rollover_guard,
         }
     }
 
-    fn step(&self, state: &mut State, estimate: &Estimate, _: &Trusted) -> Demand {
+    fn step(&self, state: &mut State, estimate: &Estimate, trusted: &Trusted) -> Demand {
         let rollover_guard = state.guard.step(&self.guard, estimate);
-        let corners = state.cornering.step(&self.cornering, estimate);
+        let leans = (state.load_transfer).step(&self.load_transfer, trusted.load_to_right_m, state.corners);
+        let corners = state.cornering.step(&self.cornering, estimate, leans);
+        state.corners = corners;
         if !corners {
             self.judge_road(state, estimate.vertical_mean_square);
         }

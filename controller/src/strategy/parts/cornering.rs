@@ -11,7 +11,8 @@
 //!   measure            m   = (a_q / b_q)^2 + (a_s / b_s)^2            if both are to the same side
 //!                          = max((a_q / b_q)^2, (a_s / b_s)^2) / 2    if not
 //!   corners            m > 1:    for 0.4 s at least
-//!                      m > 1.6^2: until |a_q| < 0.6 b_q and |a_s| < 0.6 b_s for 1.5 s in all
+//!                      m > 1.6^2: until |a_q| < 0.6 b_q and |a_s| < 0.6 b_s, and the gas carries both sides alike
+//!                      ([`super::load_transfer`]), for 1.5 s in all
 //! ```
 //!
 //! The errors of the two bands are only weakly correlated, so that both together tell a bend sooner than each alone. A lane change
@@ -185,8 +186,8 @@ pub(crate) struct State {
 }
 
 impl State {
-    /// One tick; returns whether the vehicle corners.
-    pub fn step(&mut self, c: &Parameters, estimate: &Estimate) -> bool {
+    /// One tick, with whether the gas says that the vehicle leans; returns whether it corners.
+    pub fn step(&mut self, c: &Parameters, estimate: &Estimate, leans: bool) -> bool {
         let lateral = &estimate.lateral;
         let squares = lateral.acceleration_m_s2.squared();
         let witnesses = lateral.witness_m_s2.squared();
@@ -254,7 +255,7 @@ impl State {
                 WEAK_HOLD_TICKS
             };
             self.hold = self.hold.max(hold);
-        } else if quick < c.release_2 * one && slow < c.release_2 * one {
+        } else if quick < c.release_2 * one && slow < c.release_2 * one && !leans {
             self.hold = self.hold.saturating_sub(1);
         }
         self.hold > 0
@@ -291,12 +292,16 @@ mod tests {
     fn after_a_road(witness: f32, error: f32, corrected: bool, quick: f32, slow: f32) -> bool {
         let (c, mut state) = (Parameters::new(&Tuning::default()), State::default());
         for tick in 0..4_000 {
-            let now = state.step(&c, &estimate(sway(tick, error), sway(tick + 30, witness), corrected));
+            let now = state.step(
+                &c,
+                &estimate(sway(tick, error), sway(tick + 30, witness), corrected),
+                false,
+            );
             assert!(!now, "tick {tick}");
         }
         let mut asked = estimate(quick, 0.0, corrected);
         asked.lateral.acceleration_m_s2.slow = slow;
-        state.step(&c, &asked)
+        state.step(&c, &asked, false)
     }
 
     #[test]
@@ -332,15 +337,15 @@ mod tests {
         for (asked, hold) in [(0.6, WEAK_HOLD_TICKS), (0.85, HOLD_TICKS)] {
             let (c, mut state) = (Parameters::new(&Tuning::default()), State::default());
             for _ in 0..1_000 {
-                state.step(&c, &estimate(0.0, 0.0, true));
+                state.step(&c, &estimate(0.0, 0.0, true), false);
             }
             let mut begin = estimate(asked, 0.0, true);
             begin.lateral.acceleration_m_s2.slow = 0.01;
-            assert!(state.step(&c, &begin));
+            assert!(state.step(&c, &begin, false));
             for _ in 1..hold {
-                assert!(state.step(&c, &estimate(0.0, 0.0, true)), "{asked}");
+                assert!(state.step(&c, &estimate(0.0, 0.0, true), false), "{asked}");
             }
-            assert!(!state.step(&c, &estimate(0.0, 0.0, true)), "{asked}");
+            assert!(!state.step(&c, &estimate(0.0, 0.0, true), false), "{asked}");
         }
     }
 
@@ -348,20 +353,40 @@ mod tests {
     fn cornering_outlasts_the_crossing_of_a_lane_change_and_ends() {
         let (c, mut state) = (Parameters::new(&Tuning::default()), State::default());
         for _ in 0..1_000 {
-            state.step(&c, &estimate(0.0, 0.0, true));
+            state.step(&c, &estimate(0.0, 0.0, true), false);
         }
-        assert!(state.step(&c, &estimate(3.0, 0.0, true)));
+        assert!(state.step(&c, &estimate(3.0, 0.0, true), false));
         for _ in 1..HOLD_TICKS {
-            assert!(state.step(&c, &estimate(0.0, 0.0, true)));
+            assert!(state.step(&c, &estimate(0.0, 0.0, true), false));
         }
-        assert!(!state.step(&c, &estimate(0.0, 0.0, true)));
+        assert!(!state.step(&c, &estimate(0.0, 0.0, true), false));
+    }
+
+    #[test]
+    fn cornering_is_not_over_while_the_gas_leans() {
+        let (c, mut state) = (Parameters::new(&Tuning::default()), State::default());
+        for _ in 0..1_000 {
+            state.step(&c, &estimate(0.0, 0.0, true), false);
+        }
+        assert!(
+            !state.step(&c, &estimate(0.0, 0.0, true), true),
+            "a lean alone is no bend"
+        );
+        assert!(state.step(&c, &estimate(3.0, 0.0, true), false));
+        for _ in 0..2 * HOLD_TICKS {
+            assert!(state.step(&c, &estimate(0.0, 0.0, true), true));
+        }
+        for _ in 1..HOLD_TICKS {
+            assert!(state.step(&c, &estimate(0.0, 0.0, true), false));
+        }
+        assert!(!state.step(&c, &estimate(0.0, 0.0, true), false));
     }
 
     #[test]
     fn nothing_is_decided_while_the_road_is_learnt() {
         let (c, mut state) = (Parameters::new(&Tuning::default()), State::default());
         for _ in 0..LEARNING_TICKS {
-            assert!(!state.step(&c, &estimate(5.0, 0.0, false)));
+            assert!(!state.step(&c, &estimate(5.0, 0.0, false), false));
         }
     }
 }

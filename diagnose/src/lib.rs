@@ -61,6 +61,7 @@ pub mod error;
 pub mod estimation;
 pub mod excitation;
 mod experiment;
+pub mod instrument;
 pub mod json;
 pub mod locate;
 pub mod page;

@@ -205,10 +205,7 @@ pub fn strut_model(bytes: &[u8]) {
 /// A recording as `oleo diagnose` reads it, in its whole or as if it were one of very many rows. What is accepted is
 /// finite, in order of time, and every column as long as the others.
 pub fn recording(bytes: &[u8]) {
-    let spec = |name: &str, kind| ColumnSpec {
-        name: name.into(),
-        kind,
-    };
+    let spec = ColumnSpec::new;
     let columns = [
         spec("displacement_m", ColumnKind::Input),
         spec("p_Pa", ColumnKind::Output),

@@ -142,6 +142,9 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     if !diagnosis.effects.is_empty() {
         text += &page::effects_table(&diagnosis).to_string();
     }
+    for finding in campaign.specimen.instruments() {
+        text += &format!("{}\n", finding.text());
+    }
     if let Some(predictions) = &predictions {
         text += &format!("\n{}", prediction_table(predictions));
     }

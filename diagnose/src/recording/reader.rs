@@ -80,9 +80,13 @@ pub fn parse(
         .from_reader(std::io::BufReader::with_capacity(1 << 20, source));
     let header = reader.headers().map_err(|e| csv_error(path, &e))?.clone();
     let time_at = position(path, &header, "time_s")?;
-    let at: Vec<usize> = specs
+    let at: Vec<Option<usize>> = specs
         .iter()
-        .map(|s| position(path, &header, &s.name))
+        .map(|s| match position(path, &header, &s.name) {
+            Ok(at) => Ok(Some(at)),
+            Err(_) if s.optional && !is_in_another_form(&header, &s.name) => Ok(None),
+            Err(error) => Err(error),
+        })
         .collect::<Result<_, _>>()?;
     let mut thinner = Thinner::new(specs, rows);
     let mut row = csv::StringRecord::new();
@@ -117,7 +121,7 @@ pub fn parse(
         }
         last_time = time;
         for ((value, &index), spec) in values.iter_mut().zip(&at).zip(specs) {
-            *value = number(index, &spec.name)?;
+            *value = index.map_or(Ok(f64::NAN), |index| number(index, &spec.name))?;
             if spec.kind == ColumnKind::Switch && *value != 0.0 && *value != 1.0 {
                 return Err(fail(format!(
                     "{} is {value}; a switching signal is 0 (closed) or 1 (open)",
@@ -180,11 +184,7 @@ fn position(path: &Path, header: &csv::StringRecord, name: &str) -> Result<usize
             what: wrong_separator(separator),
         });
     }
-    let quantity = name.rsplit_once('_').map_or(name, |(q, _)| q);
-    let other = header
-        .iter()
-        .find(|h| h.rsplit_once('_').map_or(*h, |(q, _)| q).eq_ignore_ascii_case(quantity));
-    let what = match other {
+    let what = match in_another_unit(header, name) {
         Some(other) => format!("column '{other}' has an unknown unit; '{name}' is expected (SI, unit in the name)"),
         None => format!(
             "column '{name}' is missing; the file has: {}",
@@ -196,6 +196,18 @@ fn position(path: &Path, header: &csv::StringRecord, name: &str) -> Result<usize
         line: 1,
         what,
     })
+}
+
+/// The column that has the quantity of another column's name in another unit.
+fn in_another_unit<'h>(header: &'h csv::StringRecord, name: &str) -> Option<&'h str> {
+    let quantity = |name: &str| name.rsplit_once('_').map_or(name.len(), |(quantity, _)| quantity.len());
+    let wanted = &name[..quantity(name)];
+    header.iter().find(|h| h[..quantity(h)].eq_ignore_ascii_case(wanted))
+}
+
+/// Whether a column is there after all, in another unit or behind another separator.
+fn is_in_another_form(header: &csv::StringRecord, name: &str) -> bool {
+    other_separator(header).is_some() || in_another_unit(header, name).is_some()
 }
 
 fn cut_at_gap(recording: &mut Recording) {

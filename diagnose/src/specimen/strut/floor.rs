@@ -14,19 +14,26 @@ use crate::specimen::channel::{Channel, Series};
 /// Fixed, so that a report is the same every time.
 const SEED: u64 = 1;
 
-/// The inputs once more with displacement noise of standard deviation `noise_m`, smoothed as recordings are.
+/// Samples on either side over which a deviation is taken.
+const BESIDE: usize = 25;
+/// By how much the steps of the converter are moved, in steps: neither a whole nor a half one.
+const MOVED: f64 = 0.38;
+
+/// The inputs once more with displacement noise of standard deviation `noise_m`, smoothed as recordings are. Where the converter has
+/// coarse steps, m, the noise is what steps at other positions make: it stands still while the strut does.
 #[must_use]
-pub fn jittered(inputs: &Inputs, noise_m: f64) -> Inputs {
+pub fn jittered(inputs: &Inputs, noise_m: f64, step_m: Option<f64>) -> Inputs {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let motion = &inputs.motion;
     // Smoothing adds up many samples, so plus or minus one standard deviation is as good as a normal number.
     let noisy: Vec<f64> = std::iter::once(motion.start_m)
         .chain(motion.segments.iter().map(|s| s.to_m))
         .map(|x| {
-            if rng.next_u32() & 1 == 0 {
-                x + noise_m
-            } else {
-                x - noise_m
+            let up = rng.next_u32() & 1 == 0;
+            match step_m {
+                Some(step) => step * ((x / step + MOVED).round() - MOVED),
+                None if up => x + noise_m,
+                None => x - noise_m,
             }
         })
         .collect();
@@ -48,6 +55,22 @@ pub fn excess(
         count += difference.len();
     }
     Some((sum, count))
+}
+
+/// Root mean square of a series around each sample.
+#[must_use]
+pub fn local_deviation(series: &[f64]) -> Vec<f64> {
+    let mut sums = Vec::with_capacity(series.len() + 1);
+    sums.push(0.0);
+    for v in series {
+        sums.push(sums[sums.len() - 1] + v * v);
+    }
+    (0..series.len())
+        .map(|k| {
+            let (from, to) = (k.saturating_sub(BESIDE), (k + BESIDE + 1).min(series.len()));
+            ((sums[to] - sums[from]).max(0.0) / (to - from) as f64).sqrt()
+        })
+        .collect()
 }
 
 /// What two motions make different, every recorded channel, in the unit of its column; `None` if the model cannot be simulated.
@@ -82,7 +105,7 @@ mod tests {
             })
             .collect();
         let mean = |noise| {
-            excess(&model, &inputs, &jittered(&inputs, noise), Layout::RIG, &channels).map(|(s, n)| s / n as f64)
+            excess(&model, &inputs, &jittered(&inputs, noise, None), Layout::RIG, &channels).map(|(s, n)| s / n as f64)
         };
         let (none, some, more) = (mean(0.0).unwrap(), mean(5e-6).unwrap(), mean(2e-5).unwrap());
         // A motion that was smooth is changed a little by being smoothed once more, also without noise.

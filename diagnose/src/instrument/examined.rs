@@ -5,7 +5,7 @@ use super::finding::{Finding, Flaw};
 use super::hum;
 use super::jitter::{changes, jitter};
 use super::noise::{LEAST_CORRELATION, Measured, measured};
-use super::spikes::{bridge, spikes};
+use super::spikes::{Spike, spikes};
 use super::steps::step;
 use crate::recording::Recording;
 use crate::vocabulary::Column;
@@ -43,7 +43,7 @@ pub struct Examined {
     columns: Vec<Column>,
     /// Standard deviation of the noise of each column: as stated, or as measured where that is something else.
     pub noise: Vec<f64>,
-    /// Standard deviation of the noise of the first column, the motion, in each recording.
+    /// Standard deviation of the noise of the first column, the motion, in each recording; where jitter adds to it, at rest.
     pub noise_of_motion: Vec<f64>,
     /// Step of the converter of the motion, if it is larger than the stated noise.
     pub step_of_motion: Option<f64>,
@@ -101,11 +101,7 @@ impl Examined {
             out.count_jitter(recordings, part);
         }
         out.take_out_spikes(recordings, stated);
-        let moved = (recordings.iter()).map(|r| match part {
-            Some(part) => part * root_mean_square(&changes(&r.columns[0])),
-            None => 0.0,
-        });
-        out.noise_of_motion = moved.map(|moved| together(out.noise[0], moved)).collect();
+        out.noise_of_motion = vec![out.noise.first().copied().unwrap_or(0.0); recordings.len()];
         for (c, stated) in stated.iter().enumerate() {
             out.take_off_hum(recordings, c, stated);
         }
@@ -116,6 +112,14 @@ impl Examined {
     #[must_use]
     pub fn relative(&self, recording: usize, column: usize) -> Option<&[f64]> {
         self.relative.get(recording)?.get(column)?.as_deref()
+    }
+
+    /// Noise of the samples of the motion of a recording, where they differ: in proportion to the speed.
+    #[must_use]
+    pub fn noise_of_moving_samples(&self, recording: usize) -> Option<Vec<f64>> {
+        let noise = self.noise_of_motion[recording];
+        let relative = self.relative(recording, 0)?;
+        Some(relative.iter().map(|relative| noise * relative).collect())
     }
 
     /// Adds noise to the samples of a column of a recording, one standard deviation a sample, in the unit of the column.
@@ -146,7 +150,7 @@ impl Examined {
                     continue;
                 };
                 *readings += found[c].len();
-                found[c].iter().for_each(|&k| recording.columns[c][k] = f64::NAN);
+                (found[c].iter()).for_each(|spike| recording.columns[c][spike.sample] = f64::NAN);
             }
         }
     }
@@ -221,7 +225,7 @@ impl Examined {
 
     /// Makes missing readings of spikes.
     fn take_out_spikes(&mut self, recordings: &mut [Recording], stated: &[Stated]) {
-        let found: Vec<Vec<Vec<usize>>> = (recordings.iter().enumerate())
+        let found: Vec<Vec<Vec<Spike>>> = (recordings.iter().enumerate())
             .map(|(r, recording)| {
                 let relative = |c: usize, k: usize| self.relative(r, c).map_or(1.0, |relative| relative[k]);
                 spikes(recording, stated.len(), &|c, k| self.noise[c] * relative(c, k))
@@ -230,15 +234,11 @@ impl Examined {
         let count = |c: usize| found.iter().map(|of| of[c].len()).sum();
         let counts: Vec<usize> = (0..stated.len()).map(count).collect();
         for (recording, found) in recordings.iter_mut().zip(&found) {
-            for ((own, series), count) in found.iter().zip(&mut recording.columns).zip(&counts) {
-                if *count >= FEWEST_SPIKES {
-                    own.iter().for_each(|&k| series[k] = f64::NAN);
+            for (c, (own, series)) in found.iter().zip(&mut recording.columns).enumerate() {
+                for spike in own.iter().filter(|_| counts[c] >= FEWEST_SPIKES) {
+                    // The motion is an input and must be known everywhere.
+                    series[spike.sample] = if c == 0 { spike.instead } else { f64::NAN };
                 }
-            }
-            if let Some(motion) = recording.columns.first_mut()
-                && counts.first().is_some_and(|count| *count >= FEWEST_SPIKES)
-            {
-                bridge(motion);
             }
         }
         let of = recordings.iter().map(Recording::len).sum();
@@ -261,12 +261,13 @@ impl Examined {
             if hum::take_off(&mut recording.columns[column], interval_s, line.frequency_hz[0]) {
                 continue;
             }
+            if column == 0 {
+                self.noise_of_motion[r] = together(self.noise_of_motion[r], rest);
+                continue;
+            }
             let samples = recording.len();
             let relative = self.relative[r][column].get_or_insert_with(|| vec![1.0; samples]);
             relative.iter_mut().for_each(|v| *v = together(*v, rest / noise));
-            if column == 0 {
-                self.noise_of_motion[r] = together(self.noise_of_motion[r], rest);
-            }
         }
         self.find(stated, Flaw::MainsHum { line, noise });
     }
@@ -280,8 +281,4 @@ fn is_same_at_every_rate(found: &Measured) -> bool {
 /// Standard deviation of the sum of two independent errors; exactly the first where there is no other.
 fn together(a: f64, b: f64) -> f64 {
     if b == 0.0 { a } else { (a * a + b * b).sqrt() }
-}
-
-fn root_mean_square(values: &[f64]) -> f64 {
-    (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }

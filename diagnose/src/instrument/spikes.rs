@@ -1,17 +1,15 @@
 //! Spikes: single readings that are far off while their neighbours are not.
 //!
 //! What a specimen does shows in the neighbours too, or in another column at the same time. A reading is a spike only if a
-//! parabola through the three readings on either side, which lie on it to within the noise, misses it by far.
+//! curve through the readings on either side, which lie on it to within the noise, misses it by far.
 
-use super::differences::REACH;
+use nalgebra::{DMatrix, DVector};
+
 use crate::recording::Recording;
 
-/// Readings on either side.
-const BESIDE: usize = 3;
-/// A spike is off by this many standard deviations of the noise, and by this many times what its neighbours miss the parabola by: at a
-/// kink, which a specimen makes too, that is five times.
+/// A spike is off by this many standard deviations of the noise.
 const FAR: f64 = 8.0;
-/// Readings beside it lie on the parabola to within this many.
+/// Readings beside it lie on a curve to within this many.
 const NEAR: f64 = 2.5;
 /// A reading of another column is off at the same time if it misses its own parabola by this many.
 const ALSO: f64 = 3.0;
@@ -22,32 +20,44 @@ const PASSES: usize = 3;
 /// A column with a larger part of far readings has no spikes but something else.
 const LARGEST_PART: f64 = 0.02;
 
-/// Samples of the spikes in each of the first columns of a recording.
-pub fn spikes(recording: &Recording, columns: usize, deviation: &dyn Fn(usize, usize) -> f64) -> Vec<Vec<usize>> {
+/// A spike: its sample, and what the neighbours say of the reading there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spike {
+    /// Index of the sample.
+    pub sample: usize,
+    /// Value of the curve through the neighbours.
+    pub instead: f64,
+}
+
+/// The spikes in each of the first columns of a recording.
+pub fn spikes(recording: &Recording, columns: usize, deviation: &dyn Fn(usize, usize) -> f64) -> Vec<Vec<Spike>> {
     let mut kept: Vec<Vec<f64>> = recording.columns[..columns].to_vec();
-    let mut found: Vec<Vec<usize>> = vec![vec![]; columns];
+    let mut found: Vec<Vec<Spike>> = vec![vec![]; columns];
     for _ in 0..PASSES {
-        let far: Vec<Vec<usize>> = (kept.iter().enumerate())
-            .map(|(c, series)| off(series, &|k| deviation(c, k), FAR))
+        let far: Vec<Vec<Spike>> = (kept.iter().enumerate())
+            .map(|(c, series)| {
+                // The motion of an actuator is smooth; a pressure need not be.
+                let curves: &[Curve] = if c == 0 { &[PARABOLA, QUARTIC] } else { &[PARABOLA] };
+                off(series, curves, &|k| deviation(c, k))
+            })
             .collect();
         if far.iter().all(Vec::is_empty) {
             break;
         }
         for ((own, series), all) in far.into_iter().zip(&mut kept).zip(&mut found) {
-            own.iter().for_each(|&k| series[k] = f64::NAN);
+            own.iter().for_each(|spike| series[spike.sample] = f64::NAN);
             all.extend(own);
         }
     }
     for own in &mut found {
-        own.sort_unstable();
+        own.sort_unstable_by_key(|spike| spike.sample);
     }
     (0..columns)
         .map(|c| {
             let own = &found[c];
-            let elsewhere = own.iter().filter(|&&k| {
-                (0..columns)
-                    .any(|other| other != c && misses(&recording.columns[other], k) > ALSO * deviation(other, k))
-            });
+            let also = |k: usize, other: usize| misses(&recording.columns[other], k) > ALSO * deviation(other, k);
+            let elsewhere =
+                (own.iter()).filter(|spike| (0..columns).any(|other| other != c && also(spike.sample, other)));
             let too_many = own.len() as f64 > LARGEST_PART * recording.len() as f64;
             let physical = elsewhere.count() as f64 > BY_CHANCE * own.len() as f64;
             if too_many || physical { vec![] } else { own.clone() }
@@ -56,69 +66,84 @@ pub fn spikes(recording: &Recording, columns: usize, deviation: &dyn Fn(usize, u
 }
 
 /// Samples that are off, with neighbours that are not.
-fn off(series: &[f64], deviation: &dyn Fn(usize) -> f64, far: f64) -> Vec<usize> {
-    let last = series.len().saturating_sub(BESIDE);
-    (BESIDE..last)
-        .filter(|&k| is_off(series, k, deviation(k), far))
-        .collect()
+fn off(series: &[f64], curves: &[Curve], deviation: &dyn Fn(usize) -> f64) -> Vec<Spike> {
+    let find = |k: usize| curves.iter().find_map(|curve| spike(series, k, curve, deviation(k)));
+    (0..series.len()).filter_map(find).collect()
 }
 
-fn is_off(series: &[f64], k: usize, deviation: f64, far: f64) -> bool {
-    if k < BESIDE || k + BESIDE >= series.len() || !series[k].is_finite() {
-        return false;
-    }
+fn spike(series: &[f64], k: usize, curve: &Curve, deviation: f64) -> Option<Spike> {
+    let mut beside = curve.neighbours(series, k)?;
     // Cheap first: most readings are next to the mean of their neighbours.
     let chord = series[k] - 0.5 * (series[k - 1] + series[k + 1]);
-    if chord.abs() < 0.5 * far * deviation {
-        return false;
+    if series[k].is_nan() || chord.abs() < 0.5 * FAR * deviation {
+        return None;
     }
-    let mut beside: Vec<(f64, f64)> = (1..=BESIDE)
-        .flat_map(|i| [(-(i as f64), series[k - i]), (i as f64, series[k + i])])
-        .filter(|(_, y)| y.is_finite())
-        .collect();
-    if beside.len() < REACH {
-        return false;
-    }
-    let Some((mut middle, mut rms, worst)) = parabola(&beside) else {
-        return false;
-    };
-    if rms > NEAR * deviation && beside.len() > REACH {
+    let least = 2 * curve.beside - 1;
+    let (mut instead, mut rms, worst) = curve.through(&beside)?;
+    if rms > NEAR * deviation && beside.len() > least {
         // One of the neighbours may be a spike itself.
         beside.remove(worst);
-        let Some(again) = parabola(&beside) else { return false };
-        (middle, rms, _) = again;
+        (instead, rms, _) = curve.through(&beside)?;
     }
-    rms <= NEAR * deviation && (series[k] - middle).abs() > far * deviation.max(rms)
+    let far = (FAR * deviation).max(curve.beyond_kink * rms);
+    let is_far = beside.len() >= least && rms <= NEAR * deviation && (series[k] - instead).abs() > far;
+    is_far.then_some(Spike { sample: k, instead })
 }
 
 /// By how much a reading misses the parabola through its neighbours, whatever these do; 0 if there is none.
 fn misses(series: &[f64], k: usize) -> f64 {
-    if k < BESIDE || k + BESIDE >= series.len() || !series[k].is_finite() {
-        return 0.0;
-    }
-    let beside: Vec<(f64, f64)> = (1..=BESIDE)
-        .flat_map(|i| [(-(i as f64), series[k - i]), (i as f64, series[k + i])])
-        .filter(|(_, y)| y.is_finite())
-        .collect();
-    parabola(&beside).map_or(0.0, |(middle, ..)| (series[k] - middle).abs())
+    let beside = PARABOLA.neighbours(series, k);
+    let through = beside.and_then(|beside| PARABOLA.through(&beside));
+    through.map_or(0.0, |(instead, ..)| (series[k] - instead).abs())
 }
 
-/// Parabola through points about zero: its value there, RMS of the points about it by degrees of freedom, and the worst point.
-fn parabola(points: &[(f64, f64)]) -> Option<(f64, f64, usize)> {
-    let mean = points.iter().map(|p| p.1).sum::<f64>() / points.len() as f64;
-    let mut h = nalgebra::Matrix3::zeros();
-    let mut g = nalgebra::Vector3::zeros();
-    for &(x, y) in points {
-        let row = nalgebra::Vector3::new(1.0, x, x * x);
-        h += row * row.transpose();
-        g += row * (y - mean);
+/// A polynomial through the readings beside a sample.
+struct Curve {
+    /// Readings on either side.
+    beside: usize,
+    degree: usize,
+    /// A spike is off by this many times what the neighbours miss the curve by: more than a kink makes, which a specimen has too.
+    beyond_kink: f64,
+}
+
+/// At a kink the middle is off by 5.2 times the miss of the others.
+const PARABOLA: Curve = Curve {
+    beside: 3,
+    degree: 2,
+    beyond_kink: 8.0,
+};
+/// Follows a motion that begins. At a kink the middle is off by 8.0 times the miss of the others.
+const QUARTIC: Curve = Curve {
+    beside: 4,
+    degree: 4,
+    beyond_kink: 12.0,
+};
+
+impl Curve {
+    /// Readings beside a sample, with their distances from it; `None` at an end.
+    fn neighbours(&self, series: &[f64], k: usize) -> Option<Vec<(f64, f64)>> {
+        if k < self.beside || k + self.beside >= series.len() {
+            return None;
+        }
+        let both = (1..=self.beside).flat_map(|i| [(-(i as f64), series[k - i]), (i as f64, series[k + i])]);
+        Some(both.filter(|(_, y)| y.is_finite()).collect())
     }
-    let c = h.cholesky()?.solve(&g);
-    let residual = |&(x, y): &(f64, f64)| y - mean - c[0] - c[1] * x - c[2] * x * x;
-    let squares: f64 = points.iter().map(|p| residual(p) * residual(p)).sum();
-    let worst = (0..points.len()).max_by(|&a, &b| residual(&points[a]).abs().total_cmp(&residual(&points[b]).abs()))?;
-    let freedom = points.len().saturating_sub(3).max(1) as f64;
-    Some((mean + c[0], (squares / freedom).sqrt(), worst))
+
+    /// The curve through points about zero: its value there, RMS of what the points miss it by, and the one that misses most.
+    fn through(&self, points: &[(f64, f64)]) -> Option<(f64, f64, usize)> {
+        let mean = points.iter().map(|p| p.1).sum::<f64>() / points.len() as f64;
+        let terms = self.degree + 1;
+        let power = |x: f64, term: usize| (0..term).fold(1.0, |p, _| p * x / self.beside as f64);
+        let rows = DMatrix::from_fn(points.len(), terms, |i, term| power(points[i].0, term));
+        let values = DVector::from_iterator(points.len(), points.iter().map(|p| p.1 - mean));
+        let c = (rows.transpose() * &rows)
+            .cholesky()?
+            .solve(&(rows.transpose() * &values));
+        let missed = values - rows * &c;
+        let freedom = points.len().saturating_sub(terms).max(1) as f64;
+        let worst = (0..points.len()).max_by(|&a, &b| missed[a].abs().total_cmp(&missed[b].abs()))?;
+        Some((mean + c[0], (missed.norm_squared() / freedom).sqrt(), worst))
+    }
 }
 
 /// Puts a straight line where readings are missing. The ends repeat the nearest reading.
@@ -145,7 +170,11 @@ mod tests {
 
     fn found(columns: Vec<Vec<f64>>) -> Vec<Vec<usize>> {
         let n = columns.len();
-        spikes(&recording(0.002, columns), n, &|_, _| 1.0)
+        let found = spikes(&recording(0.002, columns), n, &|_, _| 1.0);
+        found
+            .iter()
+            .map(|own| own.iter().map(|spike| spike.sample).collect())
+            .collect()
     }
 
     #[test]

@@ -8,7 +8,7 @@ mod relations;
 
 use std::sync::OnceLock;
 
-use oleo_interface::Valve;
+use oleo_interface::{StrutValves, Valve};
 use oleo_plant_sim::model_file::InvalidValue;
 use oleo_plant_sim::strut::{COLUMNS, Inputs, StrutModel, record_column, replay, smooth_free_motion};
 use rayon::prelude::*;
@@ -79,8 +79,8 @@ impl TwoStageStrut {
             flaw: Flaw::NotRecorded,
         });
         instruments.findings.splice(0..0, absent);
-        let inputs = (recordings.iter().zip(&instruments.noise_of_motion))
-            .map(|(r, &noise)| Inputs::from_recording(&r.time_s, &r.columns[0], &layout.signals(r), noise))
+        let inputs = (recordings.iter().enumerate())
+            .map(|(k, r)| smoothed(&r.time_s, &r.columns[0], &layout.signals(r), &instruments, k))
             .collect();
         let mut strut = Self::with_layout(model, recordings, inputs, layout, instruments)?;
         strut.count_poor_motion();
@@ -131,10 +131,15 @@ impl TwoStageStrut {
     /// The inputs with the noise of the displacement once more.
     fn jittered(&self) -> &[Inputs] {
         self.jittered.get_or_init(|| {
-            let step = self.instruments.step_of_motion;
-            let inputs = self.inputs.par_iter().zip(&self.instruments.noise_of_motion);
-            inputs
-                .map(|(inputs, &noise)| floor::jittered(inputs, noise, step))
+            let instruments = &self.instruments;
+            (self.inputs.par_iter().enumerate())
+                .map(|(k, inputs)| {
+                    let uneven = instruments.noise_of_moving_samples(k);
+                    let even = instruments.noise_of_motion[k];
+                    let noise = |sample: usize| uneven.as_ref().map_or(even, |noise| noise[sample]);
+                    let drawn = floor::drawn_again(inputs, &noise, instruments.step_of_motion);
+                    smoothed(&inputs.time_s, &drawn, &inputs.signals, instruments, k)
+                })
                 .collect()
         })
     }
@@ -459,6 +464,20 @@ impl Specimen for TwoStageStrut {
             states.push(StateSeries::new(State::TimeSinceSwitching, since));
         }
         states
+    }
+}
+
+/// The inputs of a recording, its displacement smoothed by what is known of its noise.
+fn smoothed(
+    time_s: &[f64],
+    displacement_m: &[f64],
+    signals: &[StrutValves<bool>],
+    instruments: &Examined,
+    recording: usize,
+) -> Inputs {
+    match instruments.noise_of_moving_samples(recording) {
+        Some(noise) => Inputs::from_uneven_recording(time_s, displacement_m, signals, &noise),
+        None => Inputs::from_recording(time_s, displacement_m, signals, instruments.noise_of_motion[recording]),
     }
 }
 

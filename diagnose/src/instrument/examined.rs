@@ -5,7 +5,7 @@ use super::finding::{Finding, Flaw};
 use super::hum;
 use super::jitter::{changes, jitter};
 use super::noise::{LEAST_CORRELATION, Measured, measured};
-use super::spikes::{Spike, spikes};
+use super::spikes::{Course, Spike, spikes};
 use super::steps::step;
 use crate::recording::Recording;
 use crate::vocabulary::Column;
@@ -22,7 +22,7 @@ const VISIBLE_STEP: f64 = 0.5;
 const LITTLE_JITTER: f64 = 0.4;
 
 /// A few readings that look like spikes may be anything, and cost nothing.
-const FEWEST_SPIKES: usize = 4;
+const FEWEST_SPIKES: usize = 5;
 
 /// A column with the noise that the model file states.
 #[derive(Debug, Clone)]
@@ -133,26 +133,34 @@ impl Examined {
     /// the specimen does fast does not hide them there. `believed` are all columns but the first, by recording; `None` if the model
     /// cannot be simulated.
     pub fn take_out_spikes_beside(&mut self, recordings: &mut [Recording], believed: &[Option<Vec<Vec<f64>>>]) {
-        let columns = self.noise.len();
-        for (r, (recording, believed)) in recordings.iter_mut().zip(believed).enumerate() {
+        let mut beside = recordings.to_vec();
+        for (recording, believed) in beside.iter_mut().zip(believed) {
+            // What cannot be simulated says nothing new.
             let Some(believed) = believed else { continue };
-            let mut beside = recording.clone();
-            for (series, believed) in beside.columns.iter_mut().skip(1).zip(believed) {
+            for (series, believed) in recording.columns.iter_mut().skip(1).zip(believed) {
                 series.iter_mut().zip(believed).for_each(|(v, believed)| *v -= believed);
             }
-            let relative = |c: usize, k: usize| self.relative(r, c).map_or(1.0, |relative| relative[k]);
-            let found = spikes(&beside, columns, &|c, k| self.noise[c] * relative(c, k));
-            for finding in &mut self.findings {
-                let (Some(name), Flaw::Spikes { readings, .. }) = (&finding.column, &mut finding.flaw) else {
-                    continue;
-                };
-                let Some(c) = self.columns.iter().position(|column| column == name).filter(|c| *c > 0) else {
-                    continue;
-                };
+        }
+        let found = self.spikes(&beside, Course::Smooth);
+        for finding in &mut self.findings {
+            let (Some(name), Flaw::Spikes { readings, .. }) = (&finding.column, &mut finding.flaw) else {
+                continue;
+            };
+            let Some(c) = self.columns.iter().position(|column| column == name).filter(|c| *c > 0) else {
+                continue;
+            };
+            for (recording, found) in recordings.iter_mut().zip(&found) {
                 *readings += found[c].len();
                 (found[c].iter()).for_each(|spike| recording.columns[c][spike.sample] = f64::NAN);
             }
         }
+    }
+
+    /// Spikes of all columns, by recording and column.
+    fn spikes(&self, recordings: &[Recording], others: Course) -> Vec<Vec<Vec<Spike>>> {
+        spikes(recordings, self.noise.len(), others, &|r, c, k| {
+            self.noise[c] * self.relative(r, c).map_or(1.0, |relative| relative[k])
+        })
     }
 
     fn find(&mut self, stated: &Stated, flaw: Flaw) {
@@ -225,12 +233,7 @@ impl Examined {
 
     /// Makes missing readings of spikes.
     fn take_out_spikes(&mut self, recordings: &mut [Recording], stated: &[Stated]) {
-        let found: Vec<Vec<Vec<Spike>>> = (recordings.iter().enumerate())
-            .map(|(r, recording)| {
-                let relative = |c: usize, k: usize| self.relative(r, c).map_or(1.0, |relative| relative[k]);
-                spikes(recording, stated.len(), &|c, k| self.noise[c] * relative(c, k))
-            })
-            .collect();
+        let found = self.spikes(recordings, Course::WithPulses);
         let count = |c: usize| found.iter().map(|of| of[c].len()).sum();
         let counts: Vec<usize> = (0..stated.len()).map(count).collect();
         for (recording, found) in recordings.iter_mut().zip(&found) {

@@ -7,8 +7,6 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::recording::Recording;
 
-/// A spike is off by this many standard deviations of the noise.
-const FAR: f64 = 8.0;
 /// Readings beside it lie on a curve to within this many.
 const NEAR: f64 = 2.5;
 /// A reading of another column is off at the same time if it misses its own parabola by this many.
@@ -29,15 +27,61 @@ pub struct Spike {
     pub instead: f64,
 }
 
-/// The spikes in each of the first columns of a recording.
-pub fn spikes(recording: &Recording, columns: usize, deviation: &dyn Fn(usize, usize) -> f64) -> Vec<Vec<Spike>> {
+/// How a column goes from sample to sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Course {
+    /// As a force or a pressure does, with pulses when valves switch.
+    WithPulses,
+    /// As what a model leaves of it.
+    Smooth,
+}
+
+/// The spikes in each of the first columns of recordings, by recording and column. The first is the motion of an actuator, which is
+/// smooth; `others` says what the others are. `deviation` is the noise of a sample, by recording,
+/// column and sample.
+pub fn spikes(
+    recordings: &[Recording],
+    columns: usize,
+    others: Course,
+    deviation: &dyn Fn(usize, usize, usize) -> f64,
+) -> Vec<Vec<Vec<Spike>>> {
+    let mut found: Vec<Vec<Vec<Spike>>> = (recordings.iter().enumerate())
+        .map(|(r, recording)| far_readings(recording, columns, others, &|c, k| deviation(r, c, k)))
+        .collect();
+    let samples: usize = recordings.iter().map(Recording::len).sum();
+    for c in 0..columns {
+        let (mut all, mut elsewhere) = (0, 0);
+        for (r, recording) in recordings.iter().enumerate() {
+            let also = |k: usize, other: usize| misses(&recording.columns[other], k) > ALSO * deviation(r, other, k);
+            let is_elsewhere = |spike: &&Spike| (0..columns).any(|other| other != c && also(spike.sample, other));
+            all += found[r][c].len();
+            elsewhere += found[r][c].iter().filter(is_elsewhere).count();
+        }
+        let too_many = all as f64 > LARGEST_PART * samples as f64;
+        if too_many || elsewhere as f64 > BY_CHANCE * all as f64 {
+            found.iter_mut().for_each(|of| of[c].clear());
+        }
+    }
+    found
+}
+
+/// What looks like spikes in each column of a recording.
+fn far_readings(
+    recording: &Recording,
+    columns: usize,
+    others: Course,
+    deviation: &dyn Fn(usize, usize) -> f64,
+) -> Vec<Vec<Spike>> {
     let mut kept: Vec<Vec<f64>> = recording.columns[..columns].to_vec();
     let mut found: Vec<Vec<Spike>> = vec![vec![]; columns];
     for _ in 0..PASSES {
         let far: Vec<Vec<Spike>> = (kept.iter().enumerate())
             .map(|(c, series)| {
-                // The motion of an actuator is smooth; a pressure need not be.
-                let curves: &[Curve] = if c == 0 { &[PARABOLA, QUARTIC] } else { &[PARABOLA] };
+                let curves: &[Curve] = match (c, others) {
+                    (0, _) => &[PARABOLA, QUARTIC],
+                    (_, Course::WithPulses) => &[BEYOND_PULSES],
+                    (_, Course::Smooth) => &[PARABOLA],
+                };
                 off(series, curves, &|k| deviation(c, k))
             })
             .collect();
@@ -52,17 +96,7 @@ pub fn spikes(recording: &Recording, columns: usize, deviation: &dyn Fn(usize, u
     for own in &mut found {
         own.sort_unstable_by_key(|spike| spike.sample);
     }
-    (0..columns)
-        .map(|c| {
-            let own = &found[c];
-            let also = |k: usize, other: usize| misses(&recording.columns[other], k) > ALSO * deviation(other, k);
-            let elsewhere =
-                (own.iter()).filter(|spike| (0..columns).any(|other| other != c && also(spike.sample, other)));
-            let too_many = own.len() as f64 > LARGEST_PART * recording.len() as f64;
-            let physical = elsewhere.count() as f64 > BY_CHANCE * own.len() as f64;
-            if too_many || physical { vec![] } else { own.clone() }
-        })
-        .collect()
+    found
 }
 
 /// Samples that are off, with neighbours that are not.
@@ -75,7 +109,7 @@ fn spike(series: &[f64], k: usize, curve: &Curve, deviation: f64) -> Option<Spik
     let mut beside = curve.neighbours(series, k)?;
     // Cheap first: most readings are next to the mean of their neighbours.
     let chord = series[k] - 0.5 * (series[k - 1] + series[k + 1]);
-    if series[k].is_nan() || chord.abs() < 0.5 * FAR * deviation {
+    if series[k].is_nan() || chord.abs() < 0.5 * curve.far * deviation {
         return None;
     }
     let least = 2 * curve.beside - 1;
@@ -85,7 +119,7 @@ fn spike(series: &[f64], k: usize, curve: &Curve, deviation: f64) -> Option<Spik
         beside.remove(worst);
         (instead, rms, _) = curve.through(&beside)?;
     }
-    let far = (FAR * deviation).max(curve.beyond_kink * rms);
+    let far = (curve.far * deviation).max(curve.beyond_kink * rms);
     let is_far = beside.len() >= least && rms <= NEAR * deviation && (series[k] - instead).abs() > far;
     is_far.then_some(Spike { sample: k, instead })
 }
@@ -102,7 +136,9 @@ struct Curve {
     /// Readings on either side.
     beside: usize,
     degree: usize,
-    /// A spike is off by this many times what the neighbours miss the curve by: more than a kink makes, which a specimen has too.
+    /// A spike is off by this many standard deviations of the noise ...
+    far: f64,
+    /// ... and by this many times what the neighbours miss the curve by: more than a kink makes, which a specimen has too.
     beyond_kink: f64,
 }
 
@@ -110,12 +146,20 @@ struct Curve {
 const PARABOLA: Curve = Curve {
     beside: 3,
     degree: 2,
+    far: 8.0,
     beyond_kink: 8.0,
+};
+/// The same among the pulses of a pressure, a few samples long, of which some look like spikes.
+const BEYOND_PULSES: Curve = Curve {
+    far: 10.0,
+    beyond_kink: 12.0,
+    ..PARABOLA
 };
 /// Follows a motion that begins. At a kink the middle is off by 8.0 times the miss of the others.
 const QUARTIC: Curve = Curve {
     beside: 4,
     degree: 4,
+    far: 8.0,
     beyond_kink: 12.0,
 };
 
@@ -170,7 +214,7 @@ mod tests {
 
     fn found(columns: Vec<Vec<f64>>) -> Vec<Vec<usize>> {
         let n = columns.len();
-        let found = spikes(&recording(0.002, columns), n, &|_, _| 1.0);
+        let found = spikes(&[recording(0.002, columns)], n, Course::Smooth, &|_, _, _| 1.0).remove(0);
         found
             .iter()
             .map(|own| own.iter().map(|spike| spike.sample).collect())

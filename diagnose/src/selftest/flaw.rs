@@ -206,6 +206,9 @@ mod tests {
     use crate::specimen::Specimen;
     use crate::specimen::strut::TwoStageStrut;
 
+    /// Size of an effect, in units of noise.
+    const GROSS: f64 = 30.0;
+
     /// What is said of the instruments of a campaign with a complete model.
     fn said(seed: usize, flaw: Option<Flaw>) -> Vec<(&'static str, String)> {
         let name = format!("test:{seed}:{}", flaw.map_or("none", Into::into));
@@ -228,6 +231,19 @@ mod tests {
         for seed in 0..3 {
             assert_eq!(said(seed, None), []);
         }
+    }
+
+    /// Effects of the specimen and of the vocabulary's instruments are not taken for flaws.
+    #[test]
+    fn no_effect_is_taken_for_a_flaw() {
+        let mut wrong = Vec::new();
+        for term in crate::effect::in_struts() {
+            let campaign = generate(&format!("test:{term}"), &[(term, GROSS)], None).expect("a campaign");
+            let strut = TwoStageStrut::new(campaign.given, campaign.recordings).expect("a strut");
+            let findings = strut.instruments().iter();
+            wrong.extend(findings.map(|f| format!("{term}: {}", f.text())));
+        }
+        assert!(wrong.is_empty(), "{}", wrong.join("\n"));
     }
 
     #[test]

@@ -94,12 +94,8 @@ impl Layout {
     pub fn unseen(self, site: &Site) -> Option<String> {
         let only_in_force = matches!(site, Site::MainSeal | Site::EndStop);
         (only_in_force && !self.has(FORCE)).then(|| {
-            let why = if self == Self::VEHICLE {
-                "it acts on the force only, which a vehicle does not record; record the strut on a test rig"
-            } else {
-                "it acts on the force only, which is not recorded; record it with a load cell"
-            };
-            why.to_owned()
+            "it acts on the force only, which is not recorded; record the strut on a test rig with a load cell"
+                .to_owned()
         })
     }
 

@@ -34,11 +34,16 @@ use crate::vocabulary::{Branch, Column, EffectId, Place, Site, State};
 /// Fewest channels of [`CHANNELS`] from which a strut is diagnosed: with fewer an effect and its rivals look alike.
 pub const FEWEST_CHANNELS: usize = 4;
 
+/// Noise ratio that a complete model reaches where the motion is poorly known. What it leaves unknown is counted as noise, and the size of
+/// that noise, taken from one other draw, is known to about a fifth of its variance.
+const FLOOR_OF_POOR_MOTION: f64 = 1.1;
+
 /// A strut with its recordings.
 pub struct TwoStageStrut {
     model: StrutModel,
     recordings: Vec<Recording>,
     layout: Layout,
+    is_in_vehicle: bool,
     inputs: Vec<Inputs>,
     channels: Vec<Channel>,
     calibration: Vec<Calibration>,
@@ -167,6 +172,7 @@ impl TwoStageStrut {
         }
         let as_stated = Examined::default();
         let mut strut = Self::with_layout(model, recordings, inputs, Layout::VEHICLE, as_stated)?;
+        strut.is_in_vehicle = true;
         strut.add_noise_of_motion(&possible);
         Ok(strut)
     }
@@ -216,6 +222,7 @@ impl TwoStageStrut {
             model,
             recordings,
             layout,
+            is_in_vehicle: false,
             inputs,
             channels,
             calibration,
@@ -374,9 +381,12 @@ impl Specimen for TwoStageStrut {
     }
 
     fn noise_floor(&self, hypothesis: &Hypothesis) -> f64 {
-        if self.layout == Layout::VEHICLE || self.instruments.motion_is_poor {
-            // What the motion leaves unknown is part of the channels' noise.
+        // What the motion leaves unknown is part of the channels' noise.
+        if self.is_in_vehicle {
             return 1.0;
+        }
+        if self.instruments.motion_is_poor {
+            return FLOOR_OF_POOR_MOTION;
         }
         let model = self.applied(hypothesis);
         let excesses: Vec<(f64, usize)> = (self.inputs.par_iter())

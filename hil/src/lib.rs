@@ -20,7 +20,7 @@
 //!   frame.
 //! * [`strut_recording`] gives a run as a recording of one strut, for a diagnosis.
 //! * [`logs`] reads the frames of logs in any format. [`drive_log`] makes the drives of a vehicle of messages of our own database, and
-//!   [`signal_log`] of those of any other.
+//!   `signal_log` (feature `logs`) of those of any other.
 #![forbid(unsafe_code)]
 
 pub mod bit_timing;
@@ -45,6 +45,7 @@ pub mod plant_node;
 pub mod record;
 pub mod run;
 pub mod scenario;
+#[cfg(feature = "logs")]
 pub mod signal_log;
 pub mod strut_recording;
 pub mod sync;

@@ -19,6 +19,7 @@
 //! * [`metrics`] and [`output`] turn a recording into figures and files; [`bit_timing`] computes when a wire would have carried each
 //!   frame.
 //! * [`strut_recording`] gives a run as a recording of one strut, for a diagnosis.
+//! * [`drive`] drives a vehicle without a bus, with the controller called directly.
 //! * [`logs`] reads the frames of logs in any format. [`drive_log`] makes the drives of a vehicle of messages of our own database, and
 //!   `signal_log` (feature `logs`) of those of any other.
 #![forbid(unsafe_code)]
@@ -30,6 +31,7 @@ pub mod comparison;
 pub mod controller_node;
 mod deadline;
 pub mod description;
+pub mod drive;
 pub mod drive_log;
 pub mod emulator;
 pub mod frame;
@@ -41,6 +43,7 @@ pub mod metrics;
 mod newcomer;
 pub mod output;
 pub mod page;
+pub mod parameter_files;
 pub mod plant_node;
 pub mod record;
 pub mod run;

@@ -113,7 +113,6 @@ fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), Dia
         strut.leave_out(id);
     }
     let campaign = Campaign {
-        folder: std::path::PathBuf::new(),
         name: case.name.clone(),
         specimen: Box::new(strut),
         notes: vec![],

@@ -52,7 +52,7 @@ pub mod scenario;
 pub mod signal_log;
 pub mod strut_recording;
 pub mod sync;
-mod time_series;
+pub mod time_series;
 pub mod vehicle;
 
 pub use frame::Frame;

@@ -18,7 +18,7 @@ if cargo machete --version > /dev/null 2>&1 || {
     echo "   installing cargo-machete"
     cargo install --quiet --locked cargo-machete > "$OLEO_LOGS/cargo-machete.log" 2>&1
 }; then
-    for package in "$copy/oleo" interface controller plant-sim hil diagnose report "$copy/firmware" fuzz; do
+    for package in "$copy/oleo" interface controller plant-sim hil diagnose report python "$copy/firmware" fuzz; do
         check "no unused dependency in $(basename "$package")" cargo machete "$package"
     done
 else

@@ -9,7 +9,7 @@ first_command() {
     local crates
     crates=$(crates_of)
     echo "$crates crates, with every feature $(crates_of "${FEATURES[@]}")"
-    [ "$crates" -gt 50 ] && [ "$crates" -le $MOST_CRATES ]
+    [ "$crates" -gt 50 ] && [ "$crates" -le "$MOST_CRATES" ]
 }
 check "the first command builds at most $MOST_CRATES crates" first_command
 sed 's/^/   /' "$log"

@@ -11,7 +11,7 @@ small() {
     local bytes
     bytes=$(stat -c %s "$dist")
     echo "$bytes bytes"
-    [ "$bytes" -lt $MOST_BYTES ]
+    [ "$bytes" -lt "$MOST_BYTES" ]
 }
 check "smaller than $MOST_BYTES bytes" small && sed 's/^/   /' "$log"
 

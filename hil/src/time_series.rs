@@ -1,4 +1,4 @@
-//! The columns of `timeseries.csv`: one value a tick, names with units. A run with a manoeuvre has those of [`COURSE`] too.
+//! The columns of `timeseries.csv`: one value a tick, names with units. A run with a manoeuvre has some more.
 
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Corner, PressurePoint};

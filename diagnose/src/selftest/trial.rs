@@ -122,7 +122,6 @@ fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), Dia
     }
     trial.said = said(&strut);
     let campaign = Campaign {
-        folder: std::path::PathBuf::new(),
         name: case.name.clone(),
         specimen: Box::new(strut),
         notes: vec![],

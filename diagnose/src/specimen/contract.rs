@@ -38,7 +38,7 @@ pub trait BelievedModel {
 }
 
 /// A specimen: its recordings, its given model, the candidates, and the predictions of a model with some of them.
-pub trait Specimen: Sync {
+pub trait Specimen: Send + Sync {
     /// The kind of specimen.
     fn kind(&self) -> SpecimenKind;
 

@@ -159,7 +159,19 @@ fn has(group: &ChannelGroup, frame: &str, name: &str) -> bool {
     field(group, frame, name).is_some()
 }
 
-/// The fields of a frame, in the order in which they are read. The first two are in every file.
+/// The fields of a frame, in the order in which they are read; the first two are in every file.
+#[derive(Clone, Copy)]
+enum Field {
+    Id,
+    DataLength,
+    IsExtended,
+    BusChannel,
+    IsFd,
+    IsSwitched,
+    IsPassive,
+}
+
+/// Names of the fields in the file, in the order of [`Field`].
 const FIELDS: [&str; 7] = ["ID", "DataLength", "IDE", "BusChannel", "EDL", "BRS", "ESI"];
 
 /// The frames of one group.
@@ -260,14 +272,14 @@ impl<'f> GroupReader<'f> {
     }
 
     /// A field of the current record as a whole number.
-    fn number(&self, field: usize) -> Option<u64> {
-        let value = self.batch.fields.get(field)?.get(self.batch.at)?;
+    fn number(&self, field: Field) -> Option<u64> {
+        let value = self.batch.fields.get(field as usize)?.get(self.batch.at)?;
         // A conversion of the file may make anything of a number.
         (0.0..=f64::from(u32::MAX)).contains(value).then_some(*value as u64)
     }
 
     fn name_bus(&mut self) {
-        let number = self.number(3).unwrap_or(1);
+        let number = self.number(Field::BusChannel).unwrap_or(1);
         if number != self.bus_number {
             self.bus_number = number;
             self.bus = number.to_string();
@@ -280,13 +292,13 @@ impl<'f> GroupReader<'f> {
 
     /// The current record as a frame; `None` if it is none.
     fn frame(&self) -> Option<LoggedFrame> {
-        let raw = self.number(0)? as u32;
-        let is_extended = match self.number(2) {
+        let raw = self.number(Field::Id)? as u32;
+        let is_extended = match self.number(Field::IsExtended) {
             Some(flag) => flag != 0,
             None => raw & EXTENDED_FLAG != 0 || raw & ID_BITS > 0x7FF,
         };
         let id = identifier(raw & ID_BITS, is_extended)?;
-        let length = self.number(1);
+        let length = self.number(Field::DataLength);
         let Some(data) = &self.batch.data else {
             return LoggedFrame::new(id, FrameKind::Remote(length.unwrap_or(0).min(8) as u8), Payload::EMPTY);
         };
@@ -295,9 +307,9 @@ impl<'f> GroupReader<'f> {
             Some(length) => bytes.get(..usize::try_from(length).ok()?)?,
             None => bytes,
         };
-        let flag = |field: usize| self.number(field).is_some_and(|flag| flag != 0);
-        let kind = if flag(4) || bytes.len() > 8 {
-            FrameKind::Fd(u8::from(flag(5)) | u8::from(flag(6)) << 1)
+        let flag = |field: Field| self.number(field).is_some_and(|flag| flag != 0);
+        let kind = if flag(Field::IsFd) || bytes.len() > 8 {
+            FrameKind::Fd(u8::from(flag(Field::IsSwitched)) | u8::from(flag(Field::IsPassive)) << 1)
         } else {
             FrameKind::Classic
         };

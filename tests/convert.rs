@@ -72,15 +72,23 @@ fn a_drive_has_the_same_columns_in_every_format() {
         "{expected:.200}"
     );
     assert_eq!((read("b.csv"), read("c.csv")), (expected.clone(), expected.clone()));
-    // Our controller reads in single precision, the map in double.
+    if cfg!(feature = "logs") {
+        by_map_it_has_the_same_columns(folder.path(), &log, &expected);
+    }
+}
+
+/// Our controller reads in single precision, a map in double.
+fn by_map_it_has_the_same_columns(folder: &Path, log: &Path, expected: &str) {
+    let file = |name: &str| folder.join(name);
     std::fs::write(file("map.toml"), map_of_our_database()).expect("written");
     let database = Path::new(env!("CARGO_MANIFEST_DIR")).join("controller/oleo.dbc");
     let by_map = ["--dbc", path(&database), "--signals", path(&file("map.toml"))].map(str::to_owned);
     let csv = file("d.csv");
-    let mut arguments = vec!["convert", path(&log), path(&csv)];
+    let mut arguments = vec!["convert", path(log), path(&csv)];
     arguments.extend(by_map.iter().map(String::as_str));
     succeeds(&arguments);
-    let (ours, mapped) = (numbers(&expected), numbers(&read("d.csv")));
+    let mapped = std::fs::read_to_string(csv).expect("a file");
+    let (ours, mapped) = (numbers(expected), numbers(&mapped));
     assert_eq!(ours.len(), mapped.len());
     for (ours, mapped) in ours.iter().flatten().zip(mapped.iter().flatten()) {
         let is_same = (ours - mapped).abs() <= 1e-6 * ours.abs() + 1e-9 || ours.is_nan() && mapped.is_nan();
@@ -102,15 +110,9 @@ fn what_cannot_be_converted_is_refused_in_one_line() {
     assert!(refused(&[path(&file("none.log")), path(&file("b.log"))]).contains("check the path"));
     assert!(refused(&[path(&log), path(&file("b.log")), "--dbc", "a.dbc"]).contains("--signals"));
     let both = ["--dbc", "none.dbc", "--signals", "none.toml"];
-    assert!(refused(&[&[path(&log), path(&file("a.csv"))], &both[..]].concat()).contains("none.toml: cannot read"));
     assert!(refused(&[&[path(&log), path(&file("b.log"))], &both[..]].concat()).contains("leave the options out"));
     for (name, content, said) in [
         ("words.asc", &b"these are words\n"[..], "holds no frame"),
-        (
-            "cut.mf4",
-            &include_bytes!("golden/frames.mf4")[..5000],
-            "the file is damaged or was cut off",
-        ),
         ("a.blf", b"LOGG\0\0", "can_logconvert"),
     ] {
         std::fs::write(file(name), content).expect("written");
@@ -120,6 +122,26 @@ fn what_cannot_be_converted_is_refused_in_one_line() {
     // Nothing half-written, and the input as it was.
     assert!(!file("b.log").exists() && !file("a.csv").exists());
     assert_eq!(std::fs::read_to_string(&log).expect("a log"), line);
+}
+
+/// A binary with the feature reads what others write.
+#[cfg(feature = "logs")]
+#[test]
+fn logs_of_other_programs_are_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name);
+    let refused = |arguments: &[&str]| complaint(&run(&[&["convert"], arguments].concat()));
+    let (log, csv) = (file("a.log"), file("a.csv"));
+    std::fs::write(&log, "(0000000001.000000) can0 123#00\n").expect("written");
+    let none = ["--dbc", "none.dbc", "--signals", "none.toml"];
+    let arguments = [&[path(&log), path(&csv)], &none[..]].concat();
+    assert!(refused(&arguments).contains("none.toml: cannot read"));
+    std::fs::write(file("cut.mf4"), &include_bytes!("golden/frames.mf4")[..5000]).expect("written");
+    let complaint = refused(&[path(&file("cut.mf4")), path(&file("b.log"))]);
+    assert!(
+        complaint.contains("cut.mf4: ") && complaint.contains("the file is damaged or was cut off"),
+        "{complaint}"
+    );
     // Frames of an MDF 4 file, CAN FD among them.
     std::fs::write(file("whole.mf4"), include_bytes!("golden/frames.mf4")).expect("written");
     succeeds(&["convert", path(&file("whole.mf4")), path(&file("b.log"))]);
@@ -129,4 +151,30 @@ fn what_cannot_be_converted_is_refused_in_one_line() {
         (40, 10),
         "{written}"
     );
+}
+
+/// A binary without it says how to come by one.
+#[cfg(not(feature = "logs"))]
+#[test]
+fn logs_of_other_programs_are_refused_with_the_command_that_builds_their_readers() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name);
+    std::fs::write(file("whole.mf4"), include_bytes!("golden/frames.mf4")).expect("written");
+    std::fs::write(file("a.log"), "(0000000001.000000) can0 123#00\n").expect("written");
+    let (whole, log, csv) = (file("whole.mf4"), file("a.log"), file("a.csv"));
+    let by_map = ["--dbc", "car.dbc", "--signals", "map.toml"];
+    for arguments in [
+        vec!["convert", path(&whole), path(&csv)],
+        [&["convert", path(&log), path(&csv)], &by_map[..]].concat(),
+    ] {
+        let complaint = complaint(&run(&arguments));
+        let names_both = [
+            "cargo install --path . --features logs",
+            "cargo run --release --features logs -- ",
+        ]
+        .iter()
+        .all(|command| complaint.contains(command));
+        assert!(names_both, "{complaint}");
+        assert!(!csv.exists());
+    }
 }

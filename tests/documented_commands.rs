@@ -20,7 +20,12 @@ const PAGES: [&str; 5] = [
 fn commands(page: &str) -> Vec<Vec<String>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
     let text = std::fs::read_to_string(path).expect("a page");
-    let begins = ["oleo ", "target/release/oleo ", "cargo run --release -- "];
+    let begins = [
+        "oleo ",
+        "target/release/oleo ",
+        "cargo run --release -- ",
+        "cargo run --release --features logs -- ",
+    ];
     let mut found = Vec::new();
     for line in text.lines().map(str::trim) {
         let Some(rest) = begins.iter().find_map(|begin| line.strip_prefix(begin)) else {

@@ -192,7 +192,7 @@ fn bad_input_is_one_line_and_nothing_written() {
                 "--out",
                 "o",
             ],
-            "--driver: the ride model",
+            "--driver has nothing to steer in the ride model",
         ),
         (&["study", "optimise", "--ride", "-1", "--out", "o"], "--ride"),
     ] {

@@ -126,6 +126,7 @@ fn asc() {
     drive(targets::asc, &[log]);
 }
 
+#[cfg(feature = "logs")]
 #[test]
 fn mf4() {
     drive(
@@ -137,6 +138,7 @@ fn mf4() {
     );
 }
 
+#[cfg(feature = "logs")]
 #[test]
 fn can_database() {
     let text = b"VERSION \"\"\nNS_ :\nBS_:\nBU_: A\nBO_ 256 M: 8 A\n SG_ W M : 0|8@1+ (1,0) [0|0] \"\" A\n\
@@ -146,6 +148,7 @@ fn can_database() {
     drive(targets::can_database, &[text]);
 }
 
+#[cfg(feature = "logs")]
 #[test]
 fn signal_map() {
     drive(

@@ -353,3 +353,33 @@ campaigns! {
     labelled_05 = "labelled-05", labelled_06 = "labelled-06", labelled_07 = "labelled-07", labelled_08 = "labelled-08",
     labelled_09 = "labelled-09", labelled_10 = "labelled-10", labelled_11 = "labelled-11", labelled_12 = "labelled-12",
 }
+
+/// The instruments of these campaigns are as their models state: nothing is said of them, and no reading is changed.
+#[test]
+fn instruments_that_are_as_stated_are_left_alone() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/recordings");
+    let mut campaigns = Vec::new();
+    for kind in ["labelled", "blind"] {
+        let Ok(entries) = fs::read_dir(folder.join(kind)) else {
+            continue;
+        };
+        campaigns.extend(
+            entries
+                .map(|entry| entry.expect("an entry").path())
+                .filter(|path| path.is_dir()),
+        );
+    }
+    if campaigns.is_empty() {
+        println!("SKIPPED: ../shared/recordings is not beside this checkout");
+    }
+    campaigns.sort();
+    let said: Vec<String> = (campaigns.iter())
+        .flat_map(|folder| {
+            let campaign = oleo_diagnose::Campaign::open(folder).expect("a campaign");
+            let name = folder.file_name().expect("a name").to_string_lossy().into_owned();
+            let findings = campaign.specimen.instruments().iter();
+            findings.map(|f| format!("{name}: {}", f.text())).collect::<Vec<_>>()
+        })
+        .collect();
+    assert!(said.is_empty(), "{}", said.join("\n"));
+}

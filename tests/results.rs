@@ -295,11 +295,11 @@ fn what_has_no_effect_is_refused_and_errors_name_what_was_given() {
     for (arguments, says) in [
         (
             &["hil", "--damper-policy", "karnopp"][..],
-            "--damper-policy: the strategy road-and-cornering has no use",
+            "--damper-policy has no use in the strategy road-and-cornering",
         ),
         (
             &["hil", "--steer-deg", "3"],
-            "--steer-deg: the scenario belgian has no manoeuvre",
+            "--steer-deg has no use, since the scenario belgian has no manoeuvre",
         ),
         (
             &["hil", "--manoeuvre", "lane-change", "--steer-deg", "3"],
@@ -322,7 +322,7 @@ fn what_has_no_effect_is_refused_and_errors_name_what_was_given() {
                 "--handling",
                 "x.toml",
             ],
-            "--handling: the ride model does not use",
+            "--handling is not used by the ride model",
         ),
     ] {
         let line = refused(&run(folder.path(), arguments));

@@ -1,4 +1,4 @@
-//! A campaign: a folder with the recordings of one specimen and the given model.
+//! A campaign: the recordings of one specimen and the given model, from a folder or from memory.
 
 use std::path::{Path, PathBuf};
 
@@ -6,13 +6,11 @@ use oleo_plant_sim::rig::ColumnMap;
 use rayon::prelude::*;
 
 use crate::error::DiagnoseError;
-use crate::recording::{ColumnSpec, GapPolicy, MIN_SAMPLES, Recording, read, read_by};
+use crate::recording::{ColumnSpec, GapPolicy, MIN_SAMPLES, NamedColumn, Recording, of_table, read, read_by};
 use crate::specimen::{ModelFile, Specimen};
 
 /// A campaign, ready to be diagnosed.
 pub struct Campaign {
-    /// Folder of the campaign.
-    pub folder: PathBuf,
     /// Name of the specimen in its model file.
     pub name: String,
     /// The specimen: its given model and its recordings.
@@ -66,7 +64,7 @@ impl Campaign {
     /// As [`Self::open`], and what the map does not fit.
     pub fn open_by(folder: &Path, map: Option<&ColumnMap>) -> Result<Self, DiagnoseError> {
         let (model, recordings, notes) = read_folder(folder, map)?;
-        Self::of(folder, model, recordings, notes)
+        Self::of(model, recordings, notes)
     }
 
     /// As [`Self::open`], but with only what may be fitted; the second campaign holds every recording whole, with the
@@ -80,6 +78,48 @@ impl Campaign {
         map: Option<&ColumnMap>,
     ) -> Result<(Self, CompleteRecordings), DiagnoseError> {
         let (model, whole, notes) = read_folder(folder, map)?;
+        Self::in_part(folder, model, whole, notes, kept_back)
+    }
+
+    /// The campaign of recordings in memory, each with its name, as that of a folder with the same model and recordings. What is kept
+    /// back is not fitted; all recordings are then returned beside the campaign.
+    ///
+    /// # Errors
+    /// The errors of [`Self::open_in_part`]; `model_file` is the name of the model in them.
+    pub fn of_tables(
+        model_toml: &str,
+        model_file: &str,
+        tables: &[(String, Vec<NamedColumn>)],
+        kept_back: &KeptBack,
+    ) -> Result<(Self, Option<CompleteRecordings>), DiagnoseError> {
+        let model = ModelFile::read(model_toml, model_file)?;
+        let (specs, gaps) = (model.model.columns(), model.model.gap_policy());
+        let mut tables: Vec<_> = tables.iter().collect();
+        // In the order of files, so that the result is that of a folder to the last bit.
+        tables.sort_by_key(|(name, _)| format!("{name}.csv"));
+        let read = tables
+            .par_iter()
+            .map(|(name, table)| of_table(name, table, &specs, gaps))
+            .collect();
+        let (recordings, notes) = long_enough(read)?;
+        let all = Path::new("campaign");
+        if recordings.is_empty() {
+            return Err(DiagnoseError::file(all, "holds no recording; give at least one"));
+        }
+        if kept_back.is_nothing() {
+            return Ok((Self::of(model, recordings, notes)?, None));
+        }
+        let (campaign, complete) = Self::in_part(all, model, recordings, notes, kept_back)?;
+        Ok((campaign, Some(complete)))
+    }
+
+    fn in_part(
+        folder: &Path,
+        model: ModelFile,
+        whole: Vec<Recording>,
+        notes: Vec<String>,
+        kept_back: &KeptBack,
+    ) -> Result<(Self, CompleteRecordings), DiagnoseError> {
         let names = || whole.iter().map(|r| r.name.as_str()).collect::<Vec<_>>().join(", ");
         if let Some(name) = kept_back
             .recordings
@@ -111,20 +151,14 @@ impl Campaign {
                 format!("no recording is left to fit; hold out fewer of: {}", names()),
             ));
         }
-        let campaign = Self::of(folder, model, fitted, notes)?;
+        let campaign = Self::of(model, fitted, notes)?;
         Ok((campaign, CompleteRecordings { recordings: whole }))
     }
 
-    fn of(
-        folder: &Path,
-        file: ModelFile,
-        recordings: Vec<Recording>,
-        mut notes: Vec<String>,
-    ) -> Result<Self, DiagnoseError> {
+    fn of(file: ModelFile, recordings: Vec<Recording>, mut notes: Vec<String>) -> Result<Self, DiagnoseError> {
         let specimen = file.model.with_recordings(recordings)?;
         notes.extend(specimen.remarks());
         Ok(Self {
-            folder: folder.to_path_buf(),
             name: file.name,
             specimen,
             notes,
@@ -183,7 +217,6 @@ fn read_folder(
     Ok((file, recordings, notes))
 }
 
-/// A file that is too short is left out with a note as long as others remain; anything else wrong is an error.
 fn read_all(
     files: &[PathBuf],
     specs: &[ColumnSpec],
@@ -194,7 +227,11 @@ fn read_all(
         Some(map) => read_by(file, map, specs, gaps),
         None => read(file, specs, gaps),
     };
-    let read: Vec<Result<Recording, DiagnoseError>> = files.par_iter().map(one).collect();
+    long_enough(files.par_iter().map(one).collect())
+}
+
+/// A recording that is too short is left out with a note as long as others remain; anything else wrong is an error.
+fn long_enough(read: Vec<Result<Recording, DiagnoseError>>) -> Result<(Vec<Recording>, Vec<String>), DiagnoseError> {
     let (mut recordings, mut notes, mut last) = (Vec::new(), Vec::new(), None);
     for result in read {
         match result {

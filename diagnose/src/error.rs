@@ -31,12 +31,25 @@ pub enum DiagnoseError {
         /// What is wrong and what to do.
         what: String,
     },
+    /// A row of a recording in memory is wrong.
+    #[error("{recording}, row {row}: {what}")]
+    Row {
+        /// Name of the recording.
+        recording: String,
+        /// Index of the row, the first is 0.
+        row: usize,
+        /// What is wrong and what to do.
+        what: String,
+    },
     /// The model file is wrong.
     #[error(transparent)]
     ModelFile(#[from] oleo_plant_sim::model_file::ModelFileError),
     /// A recording of another program cannot be read by its map of columns.
     #[error(transparent)]
     ColumnMap(#[from] oleo_plant_sim::rig::ColumnMapError),
+    /// A recording cannot be replayed.
+    #[error(transparent)]
+    Recording(#[from] oleo_plant_sim::rig::RecordingError),
     /// The model cannot be used with these recordings; the text says why.
     #[error("{0}")]
     Model(String),

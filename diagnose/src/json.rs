@@ -7,6 +7,7 @@ use crate::campaign::Campaign;
 use crate::diagnosis::{Diagnosis, Estimate};
 use crate::locate::condition::Region;
 use crate::specimen::Specimen;
+use crate::vocabulary::Column;
 
 /// The report as a value. `runtime_s` is the only number that differs from run to run.
 #[must_use]
@@ -76,8 +77,23 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
         "relations_changed_alone": changed,
         "calibration": calibration,
         "correlated": correlations,
+        "instruments": instruments(specimen),
         "notes": campaign.notes,
     })
+}
+
+/// What the instruments do that the model file does not state.
+fn instruments(specimen: &dyn Specimen) -> Vec<Value> {
+    (specimen.instruments().iter())
+        .map(|finding| {
+            let numbers = finding.flaw.numbers().into_iter();
+            let numbers: Map<String, Value> = numbers.map(|(key, number)| (key.to_owned(), json!(number))).collect();
+            json!({
+                "column": finding.column.as_ref().map(Column::as_str), "flaw": finding.flaw.name(),
+                "numbers": numbers, "text": finding.text(),
+            })
+        })
+        .collect()
 }
 
 /// Candidates that were tested and are not in the model, the strongest first, with the figures that reject them.

@@ -5,19 +5,23 @@
 //! root package (mutated valid files, seconds, every test run).
 
 mod fault_plan;
+#[cfg(feature = "logs")]
+mod foreign_logs;
 
 use oleo_controller::{Configuration, Node, PlantEnd, SensorMessage};
 use oleo_diagnose::recording::{ColumnKind, ColumnSpec, GapPolicy, parse};
 use oleo_hil::bus::{SlcanDecoder, slcan_encode};
 use oleo_hil::logs::candump::{parse_line, write_line};
 use oleo_hil::logs::{FrameKind, in_memory};
-use oleo_hil::signal_log::{Database, Selection, SignalMap};
 use oleo_interface::StrutValves;
 use oleo_plant_sim::road::{Road, crg, profile_from_csv};
 use oleo_plant_sim::specimen::{CylinderModel, DamperModel, DriveModel, GasSpringModel, smooth_motion, specimen_name};
 use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::VehicleParameters;
 use std::path::Path;
+
+#[cfg(feature = "logs")]
+pub use foreign_logs::{can_database, mf4, signal_map};
 
 /// A bus full of strangers: frames of any identifier, length and content, ticks in between.
 ///
@@ -107,40 +111,6 @@ pub fn asc(bytes: &[u8]) {
     frames_of(&[b"base hex  timestamps absolute\n", bytes].concat());
 }
 
-/// An MDF 4 file, and whatever else a log may be.
-pub fn mf4(bytes: &[u8]) {
-    frames_of(bytes);
-}
-
-/// A CAN database. A signal that is found has finite values in every frame.
-pub fn can_database(bytes: &[u8]) {
-    let database = match Database::from_bytes(bytes, "any.dbc") {
-        Ok(database) => database,
-        Err(error) => return assert!(!error.is_empty() && !error.contains('\n'), "{error}"),
-    };
-    for name in ["M.S", "S", "M.T", "T"] {
-        match database.signal(name) {
-            Ok(signal) => {
-                for data in [&[][..], &[0xFF; 8], &[0x5A; 64]] {
-                    assert!(signal.decoder.value(data).is_none_or(f64::is_finite));
-                }
-            }
-            Err(error) => assert!(!error.is_empty() && !error.contains('\n'), "{error}"),
-        }
-    }
-}
-
-/// A map of signals, with a database in which it may find them.
-pub fn signal_map(bytes: &[u8]) {
-    let Ok(text) = std::str::from_utf8(bytes) else { return };
-    let database = include_bytes!("../../hil/src/signal_log/invented_car.dbc");
-    let database = Database::from_bytes(database, "car.dbc").expect("a database");
-    let selection = SignalMap::from_toml(text, "any.toml").and_then(|map| Selection::of(&map, &database, "any.toml"));
-    if let Err(error) = selection {
-        assert!(!error.is_empty() && !error.contains('\n'), "{error}");
-    }
-}
-
 /// A candump log as `oleo diagnose` reads it. A drive that is accepted has samples, all of them finite or missing.
 pub fn drive_log(bytes: &[u8]) {
     match oleo_hil::drive_log::parse(bytes) {
@@ -205,10 +175,7 @@ pub fn strut_model(bytes: &[u8]) {
 /// A recording as `oleo diagnose` reads it, in its whole or as if it were one of very many rows. What is accepted is
 /// finite, in order of time, and every column as long as the others.
 pub fn recording(bytes: &[u8]) {
-    let spec = |name: &str, kind| ColumnSpec {
-        name: name.into(),
-        kind,
-    };
+    let spec = ColumnSpec::new;
     let columns = [
         spec("displacement_m", ColumnKind::Input),
         spec("p_Pa", ColumnKind::Output),

@@ -19,8 +19,9 @@
 //! * [`metrics`] and [`output`] turn a recording into figures and files; [`bit_timing`] computes when a wire would have carried each
 //!   frame.
 //! * [`strut_recording`] gives a run as a recording of one strut, for a diagnosis.
+//! * [`drive`] drives a vehicle without a bus, with the controller called directly.
 //! * [`logs`] reads the frames of logs in any format. [`drive_log`] makes the drives of a vehicle of messages of our own database, and
-//!   [`signal_log`] of those of any other.
+//!   `signal_log` (feature `logs`) of those of any other.
 #![forbid(unsafe_code)]
 
 pub mod bit_timing;
@@ -30,6 +31,7 @@ pub mod comparison;
 pub mod controller_node;
 mod deadline;
 pub mod description;
+pub mod drive;
 pub mod drive_log;
 pub mod emulator;
 pub mod frame;
@@ -41,14 +43,16 @@ pub mod metrics;
 mod newcomer;
 pub mod output;
 pub mod page;
+pub mod parameter_files;
 pub mod plant_node;
 pub mod record;
 pub mod run;
 pub mod scenario;
+#[cfg(feature = "logs")]
 pub mod signal_log;
 pub mod strut_recording;
 pub mod sync;
-mod time_series;
+pub mod time_series;
 pub mod vehicle;
 
 pub use frame::Frame;

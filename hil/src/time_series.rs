@@ -1,4 +1,4 @@
-//! The columns of `timeseries.csv`: one value a tick, names with units. A run with a manoeuvre has those of [`COURSE`] too.
+//! The columns of `timeseries.csv`: one value a tick, names with units. A run with a manoeuvre has some more.
 
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Corner, PressurePoint};
@@ -28,7 +28,7 @@ const COURSE: [(&str, Quantity); 11] = [
 ];
 
 /// The columns of words: mode and first cause as the controller's last status message says them, empty before the first.
-pub(crate) fn words(metrics: &Metrics) -> [(&'static str, Vec<&'static str>); 2] {
+pub fn words(metrics: &Metrics) -> [(&'static str, Vec<&'static str>); 2] {
     let account = metrics.account.iter();
     [
         (
@@ -46,7 +46,7 @@ pub(crate) fn words(metrics: &Metrics) -> [(&'static str, Vec<&'static str>); 2]
 }
 
 /// Name and values of each column of `timeseries.csv`, a value for each tick.
-pub(crate) fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<f64>)> {
+pub fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<f64>)> {
     let samples = &outcome.plant.recording.samples;
     let steps = outcome.plant.recording.seat_acceleration_m_s2.len() / samples.len().max(1);
     let mut columns: Vec<(String, Vec<f64>)> = Vec::with_capacity(64);

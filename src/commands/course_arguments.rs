@@ -1,6 +1,7 @@
 //! Options that describe a course, the same for every command that drives one.
 
-use oleo_plant_sim::course::{CourseSettings, DriverStyle, ManoeuvreKind};
+use oleo_hil::run::RunError;
+use oleo_plant_sim::course::{CourseChanges, DriverStyle};
 use oleo_plant_sim::model_file::InvalidValue;
 use oleo_plant_sim::vehicle::Load;
 
@@ -38,37 +39,25 @@ pub struct CourseArgs {
 }
 
 impl CourseArgs {
-    /// The settings of a manoeuvre without any before.
-    pub fn settings(&self, kind: ManoeuvreKind) -> CourseSettings {
-        self.changed(CourseSettings::new(kind))
-    }
-
-    /// The settings, changed by what was given.
-    pub fn changed(&self, before: CourseSettings) -> CourseSettings {
-        CourseSettings {
-            kind: before.kind,
-            driver: self.driver.or(before.driver),
-            entry_m: self.entry_m.or(before.entry_m),
-            radius_m: self.radius_m.or(before.radius_m),
-            steer_deg: self.steer_deg.or(before.steer_deg),
-            change_m_s2: self.change_m_s2.or(before.change_m_s2),
-            begin_s: self.begin_s.or(before.begin_s),
-            side_slope_percent: self.side_slope_percent.or(before.side_slope_percent),
+    /// What was given of the manoeuvre.
+    pub fn changes(&self) -> CourseChanges {
+        CourseChanges {
+            driver: self.driver,
+            entry_m: self.entry_m,
+            radius_m: self.radius_m,
+            steer_deg: self.steer_deg,
+            change_m_s2: self.change_m_s2,
+            begin_s: self.begin_s,
+            side_slope_percent: self.side_slope_percent,
         }
     }
+}
 
-    /// The first option that was given of those that need a manoeuvre.
-    pub fn first_of_manoeuvre(&self) -> Option<&'static str> {
-        let given = [
-            ("--driver", self.driver.is_some()),
-            ("--side-slope-percent", self.side_slope_percent.is_some()),
-            ("--entry-m", self.entry_m.is_some()),
-            ("--radius-m", self.radius_m.is_some()),
-            ("--steer-deg", self.steer_deg.is_some()),
-            ("--change-m-s2", self.change_m_s2.is_some()),
-            ("--begin-s", self.begin_s.is_some()),
-        ];
-        given.into_iter().find(|(_, given)| *given).map(|(option, _)| option)
+/// A run that did not come about. A complaint about a setting becomes one about its option.
+pub fn run_failure(error: RunError) -> Failure {
+    match error {
+        RunError::Course(invalid) => option_failure(&invalid),
+        error => error.into(),
     }
 }
 

@@ -8,9 +8,8 @@ use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use oleo_diagnose::estimation::LeastSquares;
-use oleo_diagnose::{Campaign, Diagnosis, KeptBack, MODEL_FILE, Predictions, json, page};
-use oleo_report::{Cell, Column, Progress, Table};
+use oleo_diagnose::{Campaign, Findings, KeptBack, MODEL_FILE};
+use oleo_report::Progress;
 
 use super::column_map::column_map;
 use super::vehicle_log::DatabaseArgs;
@@ -104,51 +103,16 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         out.refuse(MODEL_FILE)?;
     }
     let stop = AtomicBool::new(false);
-    let problem = LeastSquares::new(&*campaign.specimen, &stop);
     let progress = Progress::new(&campaign.name, STEPS);
-    let diagnosis = Diagnosis::of(&problem, &|phase, part| {
+    let findings = Findings::of(campaign, complete.as_ref(), kept_back, begun, &stop, &|phase, part| {
         progress.phase(phase);
         progress.set((part * STEPS as f64) as u64);
     })?;
-    let predictions = (complete.as_ref())
-        .map(|complete| Predictions::of(&problem, &diagnosis, complete, &kept_back))
-        .transpose()?;
     drop(progress);
-    let runtime_s = begun.elapsed().as_secs_f64();
-    let mut report = json::report(&campaign, &diagnosis, runtime_s);
-    let mut page = page::page(&campaign, &diagnosis, &command_line(), runtime_s);
-    if let Some(predictions) = &predictions {
-        report["kept_back"] = predictions.json(&kept_back);
-        page.section("Prediction of held-out data");
-        page.text(
-            "Noise ratios. Every model was fitted to the same part of the recordings and then simulated freely over all of them. \
-             A ratio of 1 means that the error is no larger than the sensor's noise; lower is better.",
-        )
-        .table(prediction_table(predictions));
-    }
     if let Some(out) = &mut out {
-        // The diagnosis draws nothing at random.
-        out.summary("report.json", None, &report)?;
-        out.page(&page)?;
-        out.write(MODEL_FILE, &diagnosis.model_toml)?;
+        findings.write(out, None, &command_line())?;
     }
-    let mut text = format!(
-        "{}: {}. The held-out noise ratio is {:.2} for the recalibrated and {:.2} for the improved model.\n",
-        campaign.name,
-        diagnosis.verdict(),
-        diagnosis.selection.calibrated_ratio,
-        diagnosis.selection.improved_ratio
-    );
-    if !diagnosis.effects.is_empty() {
-        text += &page::effects_table(&diagnosis).to_string();
-    }
-    if let Some(predictions) = &predictions {
-        text += &format!("\n{}", prediction_table(predictions));
-    }
-    if let Some(next) = &diagnosis.next_experiment {
-        text += &format!("\n{next}\n");
-    }
-    args.results.publish(out, &text)?;
+    args.results.publish(out, &findings.text())?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -196,23 +160,4 @@ fn inputs(folder: &Path) -> Vec<PathBuf> {
     let mut inputs: Vec<PathBuf> = files.map(|entry| entry.path()).filter(read).collect();
     inputs.sort();
     inputs
-}
-
-/// Noise ratios of every model on the fitted and on the held-out part.
-fn prediction_table(predictions: &Predictions) -> Table {
-    let mut columns = vec![Column::text("Model")];
-    for channel in &predictions.channels {
-        columns.push(Column::number(&format!("{channel}, fitted")));
-        columns.push(Column::number(&format!("{channel}, held out")));
-    }
-    let mut table = Table::new(columns);
-    for model in &predictions.models {
-        let mut row = vec![Cell::from(model.model.as_str())];
-        for (fitted, kept_back) in model.fitted.iter().zip(&model.kept_back) {
-            row.push(Cell::from(format!("{fitted:.2}")));
-            row.push(Cell::from(format!("{kept_back:.2}")));
-        }
-        table.row(row);
-    }
-    table
 }

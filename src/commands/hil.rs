@@ -15,10 +15,9 @@ use oleo_hil::output::{self, Summary};
 use oleo_hil::record::command_hash;
 use oleo_hil::run::{self, ControllerOutcome, Outcome};
 use oleo_hil::scenario::file::DEFENDER;
-use oleo_hil::scenario::{self, Clock, FaultKind, Scenario};
+use oleo_hil::scenario::{self, Clock, FaultKind, Overrides, Scenario};
 use oleo_hil::{page, sync::Role};
-use oleo_interface::tick::TICK_S;
-use oleo_plant_sim::course::{CourseSettings, ManoeuvreKind};
+use oleo_plant_sim::course::ManoeuvreKind;
 use oleo_plant_sim::road;
 use oleo_report::interrupt::{self, Graceful};
 use oleo_report::{Column, OutputDirectory, Progress, Table, significant};
@@ -26,10 +25,10 @@ use strum::VariantNames;
 
 use self::record::{Recorded, record, recorded};
 use super::course_arguments::{CourseArgs, option_failure};
-use super::parameter_files::Parameters;
 use super::show::{DBC, scenarios};
 use crate::failure::Failure;
 use crate::results::{ResultsArgs, command_line, say};
+use oleo_hil::parameter_files::Parameters;
 
 /// Drive the vehicle with controller and plant communicating only through CAN frames.
 ///
@@ -212,68 +211,30 @@ fn suits_image(scenario: &Scenario) -> Result<(), Failure> {
 
 /// The scenario, with the changes of the command line.
 fn chosen(args: &Args) -> Result<Scenario, Failure> {
+    let bus = (args.bus.as_ref())
+        .map(|bus| {
+            bus.parse::<BusAddress>()
+                .map_err(|e| Failure::new(format!("--bus: {e}")))
+        })
+        .transpose()?;
+    let overrides = Overrides {
+        bus,
+        clock: args.clock,
+        road: args.road.clone(),
+        manoeuvre: args.manoeuvre,
+        course: args.course.changes(),
+        load: args.course.load,
+        speed_km_h: args.speed_km_h,
+        duration_s: args.duration_s,
+        strategy: args.strategy,
+        damper_policy: args.damper_policy,
+        strut: args.strut.clone(),
+        vehicle: args.vehicle.clone(),
+        handling: args.handling.clone(),
+        seed: args.seed,
+    };
     let written = scenario::named(&args.scenario)?;
-    let mut chosen = written.clone();
-    let own = |given: &Option<String>, value: &mut String| {
-        if let Some(given) = given {
-            value.clone_from(given);
-        }
-    };
-    own(&args.road, &mut chosen.road);
-    own(&args.strut, &mut chosen.strut);
-    own(&args.vehicle, &mut chosen.vehicle);
-    own(&args.handling, &mut chosen.handling);
-    chosen.load = args.course.load.unwrap_or(chosen.load);
-    if let Some(bus) = &args.bus {
-        chosen.bus = bus
-            .parse::<BusAddress>()
-            .map_err(|e| Failure::new(format!("--bus: {e}")))?;
-    }
-    chosen.clock = args.clock.unwrap_or(chosen.clock);
-    chosen.strategy = args.strategy.unwrap_or(chosen.strategy);
-    chosen.damper_policy = args.damper_policy.unwrap_or(chosen.damper_policy);
-    if let Some(speed_km_h) = args.speed_km_h {
-        chosen.speed_m_s = within("--speed-km-h", speed_km_h, 0.0, scenario::file::FASTEST_KM_H)? / 3.6;
-    }
-    if let Some(duration_s) = args.duration_s {
-        chosen.ticks = (within("--duration-s", duration_s, TICK_S, scenario::file::LONGEST_S)? / TICK_S).round() as u32;
-    }
-    if let Some(seed) = args.seed {
-        chosen.seed = seed;
-    }
-    chosen.course = course(args, chosen.course.take())?;
-    if let Some(settings) = &chosen.course {
-        let manoeuvre = settings.manoeuvre(chosen.speed_m_s, Some(chosen.duration_s()));
-        manoeuvre.map_err(|invalid| option_failure(&invalid))?;
-    }
-    if args.damper_policy.is_some() && chosen.strategy != Strategy::RideHandling {
-        return Err(Failure::new(format!(
-            "--damper-policy: the strategy {} has no use for it: add --strategy {}, or leave it out",
-            chosen.strategy.name(),
-            Strategy::RideHandling.name()
-        )));
-    }
-    chosen.changes = scenario::changes(&written, &chosen);
-    Ok(chosen)
-}
-
-/// The manoeuvre with its settings, from the scenario's and the options.
-fn course(args: &Args, of_scenario: Option<CourseSettings>) -> Result<Option<CourseSettings>, Failure> {
-    let before = match args.manoeuvre {
-        Some(kind) => Some(match of_scenario {
-            Some(settings) if settings.kind == kind => settings,
-            _ => CourseSettings::new(kind),
-        }),
-        None => of_scenario,
-    };
-    match (before, args.course.first_of_manoeuvre()) {
-        (Some(settings), _) => Ok(Some(args.course.changed(settings))),
-        (None, None) => Ok(None),
-        (None, Some(option)) => Err(Failure::new(format!(
-            "{option}: the scenario {} has no manoeuvre, and the ride model drives straight ahead: add --manoeuvre straight or another",
-            args.scenario
-        ))),
-    }
+    overrides.of(&written).map_err(|invalid| option_failure(&invalid))
 }
 
 /// Reads an enum of a library by the names that the library gives its variants.
@@ -282,13 +243,6 @@ where
     T: VariantNames + FromStr<Err = strum::ParseError> + Clone + Send + Sync + 'static,
 {
     PossibleValuesParser::new(T::VARIANTS).try_map(|name| name.parse())
-}
-
-fn within(option: &str, value: f64, low: f64, high: f64) -> Result<f64, Failure> {
-    if (low..=high).contains(&value) {
-        return Ok(value);
-    }
-    Err(Failure::new(format!("{option} {value}: must be from {low} to {high}")))
 }
 
 fn report(

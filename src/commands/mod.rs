@@ -8,7 +8,6 @@ mod course_arguments;
 pub mod diagnose;
 pub mod drive;
 pub mod hil;
-mod parameter_files;
 pub mod predict;
 mod prediction;
 pub mod rig;

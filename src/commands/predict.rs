@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use oleo_diagnose::free_run::Channel;
 use oleo_report::{Column, OutputDirectory, OutputFile, Table};
 
 use super::column_map::column_map;
-use super::prediction::{Channel, Prediction, predict};
+use super::prediction::predict;
 use crate::failure::Failure;
 use crate::results::{default_path, origin, say};
 
@@ -39,19 +40,11 @@ pub struct Args {
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let map = args.columns.as_deref().map(column_map).transpose()?;
     let target = Target::of(&args)?;
-    let Prediction { inputs, channels } = predict(&args.model, &args.recording, map.as_ref())?;
+    let free_run = predict(&args.model, &args.recording, map.as_ref())?;
 
-    // The columns are in the order of a recording: time and displacement, predicted channels, other inputs.
-    let (before, after) = inputs.split_at(2.min(inputs.len()));
-    let mut columns: Vec<(&str, &[f64])> = before.iter().map(borrowed).collect();
-    columns.extend(
-        channels
-            .iter()
-            .map(|channel| (channel.name.as_str(), channel.predicted.as_slice())),
-    );
-    columns.extend(after.iter().map(borrowed));
+    let columns: Vec<(&str, &[f64])> = free_run.columns().collect();
     let written = target.write(&columns)?;
-    let table = compare(&channels);
+    let table = compare(&free_run.channels);
     let table = if table.is_empty() {
         String::new()
     } else {
@@ -59,10 +52,6 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     };
     say(&format!("{table}{}\n", written.display()))?;
     Ok(ExitCode::SUCCESS)
-}
-
-fn borrowed(column: &(String, Vec<f64>)) -> (&str, &[f64]) {
-    (&column.0, &column.1)
 }
 
 /// Noise ratio of each channel that was recorded.
@@ -74,9 +63,7 @@ fn compare(channels: &[Channel]) -> Table {
         Column::number("Noise ratio"),
     ]);
     for channel in channels {
-        let Some(recorded) = &channel.recorded else { continue };
-        let pairs = recorded.iter().zip(&channel.predicted);
-        let rms = (pairs.map(|(a, b)| (a - b) * (a - b)).sum::<f64>() / recorded.len() as f64).sqrt();
+        let Some(rms) = channel.rms() else { continue };
         let noise = channel.noise.filter(|noise| *noise > 0.0);
         table.row([
             channel.name.clone(),

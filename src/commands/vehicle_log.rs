@@ -1,15 +1,25 @@
 //! Reads the log of a vehicle: with our own database, or with any other by a map of signals.
 
+#[cfg(feature = "logs")]
+mod by_map;
+mod content;
+#[cfg(not(feature = "logs"))]
+mod without_map;
+
 use std::path::{Path, PathBuf};
 
 use oleo_controller::Reading;
 use oleo_controller::can::{DISPLACEMENT_STEP_M, PRESSURE_STEP_PA};
 use oleo_diagnose::vehicle::{Drive, Resolution, StrutSamples};
 use oleo_hil::drive_log::{self, LogAccount, LoggedDrive};
-use oleo_hil::logs::Account;
-use oleo_hil::signal_log::{self, Database, Selection, SignalAccount, SignalDrive, SignalMap};
 use oleo_interface::tick::{TICK_MS, TICK_S};
 use oleo_interface::{Corner, Corners, PressurePoint, StrutPressures};
+
+#[cfg(feature = "logs")]
+use by_map::ByMap;
+use content::{VehicleLog, others, plural};
+#[cfg(not(feature = "logs"))]
+use without_map::ByMap;
 
 use crate::failure::Failure;
 
@@ -37,40 +47,15 @@ impl DatabaseArgs {
 
     /// The reader for the logs.
     pub fn reader(&self) -> Result<Reader, Failure> {
-        let (Some(dbc), Some(signals)) = (&self.dbc, &self.signals) else {
-            return Ok(Reader(None));
-        };
-        let read = |path: &Path, what: &str| {
-            let cannot = |e| {
-                Failure::new(format!(
-                    "{}: cannot read the {what}: {e}; check the path",
-                    path.display()
-                ))
-            };
-            std::fs::read(path).map_err(cannot)
-        };
-        let map_file = signals.display().to_string();
-        let text = String::from_utf8(read(signals, "map of signals")?)
-            .map_err(|_| Failure::new(format!("{map_file}: is not text in UTF-8; save it as such")))?;
-        let map = SignalMap::from_toml(&text, &map_file).map_err(Failure::new)?;
-        let database =
-            Database::from_bytes(&read(dbc, "database")?, &dbc.display().to_string()).map_err(Failure::new)?;
-        Ok(Reader(Some(
-            Selection::of(&map, &database, &map_file).map_err(Failure::new)?,
-        )))
+        Ok(Reader(match (&self.dbc, &self.signals) {
+            (Some(dbc), Some(signals)) => Some(ByMap::of(dbc, signals)?),
+            _ => None,
+        }))
     }
 }
 
 /// Reads logs.
-pub struct Reader(Option<Selection>);
-
-/// What a log holds.
-pub struct VehicleLog {
-    /// The drives in the order of the log, at least one.
-    pub drives: Vec<Drive>,
-    /// What was read, in one sentence.
-    pub in_words: String,
-}
+pub struct Reader(Option<ByMap>);
 
 impl Reader {
     /// Reads a log. Its first drive is named as the log is.
@@ -91,15 +76,7 @@ impl Reader {
                         .collect(),
                 }
             }
-            Some(selection) => {
-                let log = signal_log::read(path, selection).map_err(failed)?;
-                VehicleLog {
-                    in_words: by_map_in_words(&log.account, &log.drives),
-                    drives: (log.drives.into_iter().enumerate())
-                        .map(|(k, d)| of_map(named(k), k == 0, d))
-                        .collect(),
-                }
-            }
+            Some(by_map) => by_map.read(path, named)?,
         })
     }
 
@@ -110,10 +87,7 @@ impl Reader {
                 displacement_m: DISPLACEMENT_STEP_M.into(),
                 pressure_pa: StrutPressures::splat(PRESSURE_STEP_PA.into()),
             }),
-            Some(selection) => selection.steps.map(|steps| Resolution {
-                displacement_m: steps.displacement_m,
-                pressure_pa: steps.pressure_pa,
-            }),
+            Some(by_map) => by_map.resolution(),
         }
     }
 }
@@ -130,10 +104,6 @@ fn name_of(path: &Path) -> String {
     end.and_then(|(end, _)| name.get(..name.len() - end.len()))
         .unwrap_or(name)
         .to_owned()
-}
-
-fn plural(n: usize) -> &'static str {
-    if n == 1 { "" } else { "s" }
 }
 
 /// What was read of a log with our own database, in one sentence.
@@ -153,28 +123,6 @@ fn in_words(account: &LogAccount, drives: usize) -> String {
     )
 }
 
-/// What was read of a log by a map, in one sentence.
-fn by_map_in_words(account: &SignalAccount, drives: &[SignalDrive]) -> String {
-    format!(
-        "{} drive{} with a sample every {:.1} ms, {} frames of the map; {} without a reading, {} repeated, {} outside the drives; {}.",
-        drives.len(),
-        plural(drives.len()),
-        drives.first().map_or(0.0, |drive| 1e3 * drive.period_s),
-        account.total(|m| m.received),
-        account.total(|m| m.without_reading),
-        account.total(|m| m.repeated),
-        account.total(|m| m.outside),
-        others(account.foreign_frames, &account.log),
-    )
-}
-
-fn others(foreign_frames: u64, log: &Account) -> String {
-    format!(
-        "{foreign_frames} frames of other devices, {} error frames, {} unreadable entries",
-        log.error_frames, log.unreadable
-    )
-}
-
 /// A drive read with our own database as series, strut by strut.
 fn of_our_database(name: String, is_first: bool, logged: &LoggedDrive) -> Drive {
     let number = |reading: Reading| reading.value().map_or(f64::NAN, f64::from);
@@ -191,19 +139,5 @@ fn of_our_database(name: String, is_first: bool, logged: &LoggedDrive) -> Drive 
         is_first,
         period_s: TICK_S,
         struts: Corners::from_fn(strut),
-    }
-}
-
-/// A drive read by a map.
-fn of_map(name: String, is_first: bool, drive: SignalDrive) -> Drive {
-    Drive {
-        name,
-        is_first,
-        period_s: drive.period_s,
-        struts: drive.struts.map(|strut| StrutSamples {
-            displacement_m: strut.displacement_m,
-            pressure_pa: strut.pressure_pa.into_array(),
-            valves: strut.valves,
-        }),
     }
 }

@@ -9,7 +9,7 @@ emulated_board_builds() {
     local release=$FIRMWARE_TARGET/$BOARD/release
     emulated_image=$release/oleo-firmware-slcan
     check "image for the emulated board builds" cross_cargo build --release --features slcan || return 1
-    check "oleo builds" cargo build --locked --quiet --release || return 1
+    check "oleo builds" cargo build "${FEATURES[@]}" --locked --quiet --release || return 1
     check "the image is sealed" "$oleo" seal "$release/oleo-firmware" --out "$emulated_image" || return 1
     check "image for the vehicle builds" cross_cargo build --release || return 1
     check "benchmark builds for the board" cross_cargo build --release -p oleo-bench || return 1

@@ -7,6 +7,10 @@ set -u
 export CARGO_TARGET_DIR OLEO_STEP OLEO_LOGS OLEO_TALLY
 mkdir -p "$OLEO_LOGS"
 
+# One build serves all steps, so it has every feature; only `dependencies` looks at what the first command builds.
+# shellcheck disable=SC2034 # read by the steps
+readonly FEATURES=(--features logs)
+
 # tally passed|failed|skipped COUNT NAME [REASON]
 tally() { printf '%s\t%s\t%s\t%s\n' "$1" "$2" "$OLEO_STEP: $3" "${4:-}" >> "$OLEO_TALLY"; }
 

@@ -26,7 +26,7 @@ ORDER = [
     {"oleo-interface"},
     {"oleo-controller", "oleo-plant-sim", "oleo-report"},
     {"oleo-hil", "oleo-diagnose", "oleo-firmware", "oleo-bench"},
-    {"oleo", "oleo-fuzz"},
+    {"oleo", "oleo-fuzz", "oleo-python"},
 ]
 
 TOKEN = re.compile(

@@ -176,9 +176,9 @@ impl<'a> Evaluation<'a> {
         let weight = |c: usize| 1.0 / (self.specimen.channels()[c].noise * moved.step);
         Ok((there.iter().zip(shown).enumerate())
             .map(|(c, (a, b))| {
-                (a.iter().zip(b).zip(self.specimen.measured(recording, c)))
-                    .map(|((a, b), measured)| if measured.is_nan() { 0.0 } else { (a - b) * weight(c) })
-                    .collect()
+                let changes = (a.iter().zip(b).zip(self.specimen.measured(recording, c)))
+                    .map(|((a, b), measured)| if measured.is_nan() { 0.0 } else { (a - b) * weight(c) });
+                self.weighed(recording, c, changes.collect())
             })
             .collect())
     }
@@ -198,11 +198,19 @@ impl<'a> Evaluation<'a> {
         (self.specimen.channels().iter().enumerate())
             .map(|(c, channel)| {
                 let weight = 1.0 / channel.noise;
-                (self.specimen.measured(recording, c).iter().zip(&predicted[c]))
-                    .map(|(m, p)| if m.is_nan() { 0.0 } else { (m - p) * weight })
-                    .collect()
+                let residual = (self.specimen.measured(recording, c).iter().zip(&predicted[c]))
+                    .map(|(m, p)| if m.is_nan() { 0.0 } else { (m - p) * weight });
+                self.weighed(recording, c, residual.collect())
             })
             .collect()
+    }
+
+    /// A series in units of its channel's noise in units of its samples' noise.
+    fn weighed(&self, recording: usize, channel: usize, mut series: Vec<f64>) -> Vec<f64> {
+        if let Some(relative) = self.specimen.relative_noise(recording, channel) {
+            series.iter_mut().zip(relative).for_each(|(v, relative)| *v /= relative);
+        }
+        series
     }
 }
 

@@ -17,4 +17,4 @@ pub use corner::{Clock, corners};
 pub use cylinder::{Cylinder, pressing};
 pub use gas_spring::GasSpring;
 pub use mechanism::{Channels, Mechanism};
-pub use strut::Strut;
+pub use strut::{Strut, StrutColumns};

@@ -11,8 +11,14 @@ const BEYOND_NOISE: f64 = 10.0;
 /// The displacement's noise is taken to be at least this, m: a recording of a perfect sensor may still be rounded.
 const LEAST_NOISE_M: f64 = 1e-6;
 
-/// Number of pressures that a recording holds before its switching signals.
-const PRESSURES: usize = 4;
+/// Where the columns of a recording of a strut are; the displacement is the first.
+#[derive(Debug, Clone, Copy)]
+pub struct StrutColumns {
+    /// Force and p1 to p4, where they are recorded.
+    pub channels: [Option<usize>; 5],
+    /// The first of the three switching signals.
+    pub valves: usize,
+}
 
 /// Extremes and events over all recordings of a strut.
 #[derive(Debug, Clone, Default)]
@@ -47,11 +53,10 @@ impl Strut {
         measured
     }
 
-    /// Goes through all recordings once. Their columns are the displacement, the force where there is one, p1 to p4 and the three
-    /// switching signals. `pressure_noise` is the larger of the standard deviations of p3 and p4, Pa; `displacement_noise` is
-    /// that of the displacement, m.
+    /// Goes through all recordings once. What is not recorded departs from nothing and has no drop. `pressure_noise` is the larger
+    /// of the standard deviations of p3 and p4, Pa; `displacement_noise` is that of the displacement, m.
     #[must_use]
-    pub fn of(recordings: &[Recording], pressure_noise: f64, displacement_noise: f64) -> Self {
+    pub fn of(recordings: &[Recording], columns: &StrutColumns, pressure_noise: f64, displacement_noise: f64) -> Self {
         let mut e = Self {
             interval_s: f64::INFINITY,
             displacement_m: (f64::MAX, f64::MIN),
@@ -63,24 +68,23 @@ impl Strut {
                 e.displacement_m = (e.displacement_m.0.min(x), e.displacement_m.1.max(x));
                 e.moves |= (x - first).abs() > BEYOND_NOISE * displacement_noise.max(LEAST_NOISE_M);
             }
-            let valves = r.columns.len() - e.edges.len();
-            let p1 = valves - PRESSURES;
-            // Without a force its departure stays zero.
-            for (column, departure) in (1..valves).rev().zip(e.departure.iter_mut().rev()) {
-                let series = &r.columns[column];
+            for (column, departure) in columns.channels.iter().zip(e.departure.iter_mut()) {
+                let Some(series) = column.map(|column| &r.columns[column]) else {
+                    continue;
+                };
                 let rest = series.iter().copied().find(|v| v.is_finite()).unwrap_or(0.0);
                 *departure = series.iter().fold(*departure, |m, v| m.max((v - rest).abs()));
             }
-            for (edges, signal) in e.edges.iter_mut().zip(&r.columns[valves..]) {
+            for (edges, signal) in e.edges.iter_mut().zip(&r.columns[columns.valves..]) {
                 *edges += signal.windows(2).filter(|w| w[0] != w[1]).count();
             }
             let interval = r.interval_s();
             let apart = BEYOND_NOISE * pressure_noise;
             for k in 0..r.len() {
-                let p = |number: usize| r.columns[p1 + number - 1][k];
+                let p = |number: usize| columns.channels[number].map_or(f64::NAN, |column| r.columns[column][k]);
                 e.drop_pa[0] = e.drop_pa[0].max((p(1) - p(2)).abs());
                 e.drop_pa[1] = e.drop_pa[1].max((p(1) - p(3)).abs());
-                if r.columns[valves + 2][k] < 0.5 && (p(3) - p(4)).abs() > apart {
+                if r.columns[columns.valves + 2][k] < 0.5 && (p(3) - p(4)).abs() > apart {
                     e.valve3_holding_s += interval;
                 }
             }

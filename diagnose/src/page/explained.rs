@@ -122,8 +122,8 @@ impl Seen {
         let channel = &specimen.channels()[c];
         let (scale, unit) = units(channel.column.unit());
         let pooled = |set: &[Series]| -> Vec<f64> {
-            let thinned = set.iter().flat_map(|r| r[c].iter().step_by(every));
-            thinned.map(|e| scale * channel.noise * e).collect()
+            let of = |(r, own): (usize, &Series)| specimen.in_units(r, c, &own[c]).into_iter().step_by(every);
+            set.iter().enumerate().flat_map(of).map(|e| scale * e).collect()
         };
         let (without, with) = (pooled(&location.without), pooled(&diagnosis.residuals.improved));
         let found = location.candidate.is_some();
@@ -153,14 +153,17 @@ impl Seen {
         let position = |column: Column| specimen.channels().iter().position(|c| c.column == column);
         let (force, p1) = (position(Column::FORCE)?, position(Column::known("p1_Pa"))?);
         let area_m2 = piston_area_m2(&diagnosis.given_toml)?;
-        let noise = |c: usize| specimen.channels()[c].noise;
         let (mut points, mut law) = (Vec::new(), Vec::new());
         for r in 0..specimen.recordings().len() {
             let (f, p) = (specimen.measured(r, force), specimen.measured(r, p1));
-            let left = &diagnosis.residuals.improved[r];
+            let left = |c: usize| specimen.in_units(r, c, &diagnosis.residuals.improved[r][c]);
+            let (left_of_force, left_of_p1) = (left(force), left(p1));
             for k in (0..f.len()).step_by(every) {
+                if (f[k] - p[k]).is_nan() {
+                    continue;
+                }
                 points.push(f[k] - area_m2 * p[k]);
-                law.push(f[k] - noise(force) * left[force][k] - area_m2 * (p[k] - noise(p1) * left[p1][k]));
+                law.push(f[k] - left_of_force[k] - area_m2 * (p[k] - left_of_p1[k]));
             }
         }
         Some(Self {

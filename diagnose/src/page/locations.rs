@@ -193,7 +193,10 @@ fn over_time(page: &mut Page, specimen: &dyn Specimen, diagnosis: &Diagnosis, lo
         }
         curves.region(location.t_s[0], location.t_s[1], "found here");
     };
-    let in_units = |residual: &[f64]| -> Vec<f64> { residual.iter().map(|e| scale * e * channel.noise).collect() };
+    let in_units = |residual: &[f64]| -> Vec<f64> {
+        let values = specimen.in_units(r, location.channel, residual).into_iter();
+        values.map(|e| scale * e).collect()
+    };
     let left = (Style::Line, "left by the improved model", in_units(with));
     let residuals = if nothing_found {
         vec![left]

@@ -44,6 +44,16 @@ pub fn page(campaign: &Campaign, diagnosis: &Diagnosis, command: &str, runtime_s
          simulation receives {} and no other measured value.",
         specimen.inputs_in_words()
     ));
+    if !specimen.instruments().is_empty() {
+        page.section("The instruments");
+        page.text(
+            "The recordings themselves show that these instruments are not as the model file states them. The noise by which residuals \
+             are judged is the one given here.",
+        );
+        for finding in specimen.instruments() {
+            page.text(&finding.text());
+        }
+    }
     evidence(&mut page, campaign, diagnosis);
     next::section(&mut page, campaign, diagnosis);
     if !campaign.notes.is_empty() {

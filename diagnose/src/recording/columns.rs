@@ -18,6 +18,8 @@ pub struct ColumnSpec {
     pub name: String,
     /// How the column is treated.
     pub kind: ColumnKind,
+    /// Whether a recording may do without it. Its readings are then missing (NaN).
+    pub optional: bool,
 }
 
 impl ColumnSpec {
@@ -27,6 +29,16 @@ impl ColumnSpec {
         Self {
             name: name.to_owned(),
             kind,
+            optional: false,
+        }
+    }
+
+    /// A compared column that a recording may do without.
+    #[must_use]
+    pub fn optional(name: &str) -> Self {
+        Self {
+            optional: true,
+            ..Self::new(name, ColumnKind::Output)
         }
     }
 }

@@ -4,15 +4,11 @@ use std::path::Path;
 
 use oleo_plant_sim::rig::{ColumnMap, other_separator, wrong_separator};
 
-use super::columns::{ColumnKind, ColumnSpec, GapPolicy};
+use super::columns::{ColumnSpec, GapPolicy};
+use super::rows::{Rows, not_finite, place, place_of};
 use super::series::Recording;
-use super::thinning::{Room, Thinner};
+use super::thinning::Room;
 use crate::error::DiagnoseError;
-
-/// Fewest samples from which anything can be concluded.
-pub const MIN_SAMPLES: usize = 50;
-/// A step this many times the usual one is a hole.
-const GAP_RATIO: f64 = 4.5;
 
 /// Reads one recording.
 ///
@@ -80,13 +76,12 @@ pub fn parse(
         .from_reader(std::io::BufReader::with_capacity(1 << 20, source));
     let header = reader.headers().map_err(|e| csv_error(path, &e))?.clone();
     let time_at = position(path, &header, "time_s")?;
-    let at: Vec<usize> = specs
+    let at: Vec<Option<usize>> = specs
         .iter()
-        .map(|s| position(path, &header, &s.name))
+        .map(|spec| position_of(path, &header, spec))
         .collect::<Result<_, _>>()?;
-    let mut thinner = Thinner::new(specs, rows);
+    let mut taken = Rows::new(specs, rows);
     let mut row = csv::StringRecord::new();
-    let mut last_time = f64::NEG_INFINITY;
     let mut values = vec![0.0; specs.len()];
     while reader.read_record(&mut row).map_err(|e| csv_error(path, &e))? {
         let line = row.position().map_or(0, csv::Position::line);
@@ -99,54 +94,21 @@ pub fn parse(
             let text = row.get(index).unwrap_or("");
             match text.parse::<f64>() {
                 Ok(v) if v.is_finite() => Ok(v),
-                _ => Err(fail(format!(
-                    "{name} is '{text}', not a finite number; repair or cut the recording there"
-                ))),
+                _ => Err(fail(not_finite(name, text))),
             }
         };
         let time = number(time_at, "time_s")?;
-        if time <= last_time {
-            let how = if time == last_time {
-                "is repeated"
-            } else {
-                "goes backwards"
-            };
-            return Err(fail(format!(
-                "time_s {how} ({time} after {last_time}); sort the rows and drop duplicates"
-            )));
-        }
-        last_time = time;
         for ((value, &index), spec) in values.iter_mut().zip(&at).zip(specs) {
-            *value = number(index, &spec.name)?;
-            if spec.kind == ColumnKind::Switch && *value != 0.0 && *value != 1.0 {
-                return Err(fail(format!(
-                    "{} is {value}; a switching signal is 0 (closed) or 1 (open)",
-                    spec.name
-                )));
-            }
+            *value = index.map_or(Ok(f64::NAN), |index| number(index, &spec.name))?;
         }
-        if thinner.push(time, &values) == Room::Full {
+        if taken.push(time, &values).map_err(fail)? == Room::Full {
             break;
         }
     }
     let name = path
         .file_stem()
         .map_or_else(|| "recording".to_owned(), |s| s.to_string_lossy().into_owned());
-    let mut recording = thinner.finish(name);
-    if gaps == GapPolicy::Cut {
-        cut_at_gap(&mut recording);
-    }
-    if recording.len() < MIN_SAMPLES {
-        let why = recording.notes.first().map_or(String::new(), |n| format!(" ({n})"));
-        return Err(DiagnoseError::TooShort {
-            path: path.to_path_buf(),
-            what: format!(
-                "there are {} usable samples{why}, but at least {MIN_SAMPLES} are needed; record longer or leave the file out",
-                recording.len()
-            ),
-        });
-    }
-    Ok(recording)
+    taken.finish(name, path, gaps)
 }
 
 fn csv_error(path: &Path, error: &csv::Error) -> DiagnoseError {
@@ -168,57 +130,34 @@ fn csv_error(path: &Path, error: &csv::Error) -> DiagnoseError {
     }
 }
 
-/// Index of a column; a column of the same quantity in another unit gets the message it deserves.
+/// Index of a column in the header.
 fn position(path: &Path, header: &csv::StringRecord, name: &str) -> Result<usize, DiagnoseError> {
-    if let Some(found) = header.iter().position(|h| h == name) {
-        return Ok(found);
-    }
-    if let Some(separator) = other_separator(header) {
-        return Err(DiagnoseError::Line {
-            path: path.to_path_buf(),
-            line: 1,
-            what: wrong_separator(separator),
-        });
-    }
-    let quantity = name.rsplit_once('_').map_or(name, |(q, _)| q);
-    let other = header
-        .iter()
-        .find(|h| h.rsplit_once('_').map_or(*h, |(q, _)| q).eq_ignore_ascii_case(quantity));
-    let what = match other {
-        Some(other) => format!("column '{other}' has an unknown unit; '{name}' is expected (SI, unit in the name)"),
-        None => format!(
-            "column '{name}' is missing; the file has: {}",
-            header.iter().collect::<Vec<_>>().join(", ")
-        ),
-    };
-    Err(DiagnoseError::Line {
-        path: path.to_path_buf(),
-        line: 1,
-        what,
-    })
+    let titles: Vec<&str> = header.iter().collect();
+    place(&titles, name).map_err(|what| in_header(path, header, what))
 }
 
-fn cut_at_gap(recording: &mut Recording) {
-    let usual = recording.interval_s();
-    if let Some(gap) = recording
-        .time_s
-        .windows(2)
-        .position(|w| w[1] - w[0] > GAP_RATIO * usual)
-    {
-        let (from, to) = (recording.time_s[gap], recording.time_s[gap + 1]);
-        let lost = recording.len() - gap - 1;
-        recording.time_s.truncate(gap + 1);
-        recording.columns.iter_mut().for_each(|c| c.truncate(gap + 1));
-        recording.notes.push(format!(
-            "there is a gap from {from} s to {to} s; the {lost} samples after it were not used"
-        ));
+/// Index of a column in the header; `None` if a recording may do without it.
+fn position_of(path: &Path, header: &csv::StringRecord, spec: &ColumnSpec) -> Result<Option<usize>, DiagnoseError> {
+    let titles: Vec<&str> = header.iter().collect();
+    match place_of(&titles, spec) {
+        // Behind another separator it may be there after all.
+        Ok(None) if other_separator(header).is_some() => position(path, header, &spec.name).map(Some),
+        found => found.map_err(|what| in_header(path, header, what)),
+    }
+}
+
+fn in_header(path: &Path, header: &csv::StringRecord, what: String) -> DiagnoseError {
+    DiagnoseError::Line {
+        path: path.to_path_buf(),
+        line: 1,
+        what: other_separator(header).map_or(what, wrong_separator),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recording::MAX_SAMPLES;
+    use crate::recording::{ColumnKind, MAX_SAMPLES};
     use std::fmt::Write as _;
 
     fn specs() -> Vec<ColumnSpec> {

@@ -13,6 +13,7 @@ use oleo_plant_sim::strut::{COLUMNS, Effects, Inputs, StrutModel, record_column,
 
 use super::draw::Draw;
 use super::excitation::{Move, moves};
+use super::flaw::{Flaw, Instruments};
 use super::hidden::{Hidden, Truth};
 use super::nominal_strut::nominal;
 use crate::error::DiagnoseError;
@@ -51,11 +52,14 @@ pub struct Generated {
     pub sizes: Vec<f64>,
 }
 
-/// Generates the campaign of this name with these effects, each of a wanted size.
+/// Generates the campaign of this name with these effects, each of a wanted size. A flaw of the instruments is in the
+/// recordings that the diagnosis gets; the others are made with instruments as the model states them, so that they judge the
+/// model.
 ///
 /// # Errors
 /// A drawn model that cannot be simulated.
-pub fn generate(name: &str, wanted: &[(EffectId, f64)]) -> Result<Generated, DiagnoseError> {
+pub fn generate(name: &str, wanted: &[(EffectId, f64)], flaw: Option<Flaw>) -> Result<Generated, DiagnoseError> {
+    let (mut flawed, mut perfect) = (Instruments::draw(name, flaw), Instruments::draw(name, None));
     let mut draw = Draw::named(name);
     let mut given = nominal(name, &mut draw);
     let seen = moves(&mut draw);
@@ -83,12 +87,12 @@ pub fn generate(name: &str, wanted: &[(EffectId, f64)]) -> Result<Generated, Dia
         sizes.push(size);
     }
     let recordings = (seen.iter())
-        .map(|m| record(&truth_model, m, &mut draw))
+        .map(|m| record(&truth_model, m, &mut draw, &mut flawed))
         .collect::<Result<_, _>>()?;
     let unseen = moves(&mut draw)
         .iter()
         .filter(|m| UNSEEN.contains(&m.name))
-        .map(|m| record(&truth_model, m, &mut draw))
+        .map(|m| record(&truth_model, m, &mut draw, &mut perfect))
         .collect::<Result<_, _>>()?;
     Ok(Generated {
         given,
@@ -166,22 +170,32 @@ fn read_displacement(effects: &Effects, inputs: &Inputs) -> Vec<f64> {
 }
 
 /// Simulates a move on the fine grid, samples it, and adds noise to every column.
-fn record(truth: &StrutModel, m: &Move, draw: &mut Draw) -> Result<Recording, DiagnoseError> {
+fn record(
+    truth: &StrutModel,
+    m: &Move,
+    draw: &mut Draw,
+    instruments: &mut Instruments,
+) -> Result<Recording, DiagnoseError> {
     let fine = m.inputs(REFINEMENT);
     let channels = run(&with_true_motion(truth), &fine, m.name)?;
     let displacement = read_displacement(&truth.effects, &fine);
-    let mut columns: Vec<Vec<f64>> = Vec::new();
-    for (name, series) in COLUMNS.iter().zip(std::iter::once(&displacement).chain(&channels)) {
-        let noise = truth.noise.get(*name).copied().unwrap_or(0.0);
-        columns.push(
-            series
-                .iter()
-                .step_by(REFINEMENT)
-                .map(|v| v + noise * draw.normal())
-                .collect(),
-        );
-    }
     let coarse = m.inputs(1);
+    let late = instruments.jitter(coarse.time_s.len());
+    let mut columns: Vec<Vec<f64>> = Vec::new();
+    for (c, (name, series)) in (COLUMNS.iter().zip(std::iter::once(&displacement).chain(&channels))).enumerate() {
+        let noise = truth.noise.get(*name).copied().unwrap_or(0.0);
+        let sampled: Vec<f64> = match &late {
+            None => series.iter().step_by(REFINEMENT).copied().collect(),
+            Some(late) => (late.iter().enumerate())
+                .map(|(k, late)| between(series, (k as f64 + late) * REFINEMENT as f64))
+                .collect(),
+        };
+        let white = sampled.iter().map(|_| draw.normal()).collect();
+        let drawn = instruments.noise(white);
+        let mut readings: Vec<f64> = sampled.iter().zip(drawn).map(|(v, drawn)| v + noise * drawn).collect();
+        instruments.record(c, noise, m.interval_s, &mut readings);
+        columns.push(readings);
+    }
     columns.extend(switching(&coarse));
     Ok(Recording {
         name: m.name.to_owned(),
@@ -189,6 +203,15 @@ fn record(truth: &StrutModel, m: &Move, draw: &mut Draw) -> Result<Recording, Di
         columns,
         notes: vec![],
     })
+}
+
+/// A series between its samples, by a straight line.
+fn between(series: &[f64], at: f64) -> f64 {
+    let last = series.len().saturating_sub(1);
+    let at = at.clamp(0.0, last as f64);
+    let before = (at as usize).min(last.saturating_sub(1));
+    let part = at - before as f64;
+    series[before] + part * (series[(before + 1).min(last)] - series[before])
 }
 
 /// Measures effects in units of noise.
@@ -314,7 +337,7 @@ mod tests {
     #[test]
     fn a_complete_campaign_is_met_by_its_own_truth_to_the_noise() {
         // The truth here is the model that is believed plus calibration: fitting that alone must reach the noise.
-        let g = generate("test:none", &[]).unwrap();
+        let g = generate("test:none", &[], None).unwrap();
         assert!(g.truth.is_empty() && g.sizes.is_empty());
         assert_eq!(g.unseen.len(), UNSEEN.len());
         let strut = TwoStageStrut::new(g.given, g.recordings).unwrap();
@@ -335,8 +358,8 @@ mod tests {
         };
         let wanted = [(EffectId::SealFriction, 1.0)];
         let (a, b) = (
-            generate("test:bits", &wanted).unwrap(),
-            generate("test:bits", &wanted).unwrap(),
+            generate("test:bits", &wanted, None).unwrap(),
+            generate("test:bits", &wanted, None).unwrap(),
         );
         assert_eq!(bits(&a), bits(&b));
         assert_eq!(a.truth, b.truth);
@@ -351,14 +374,14 @@ mod tests {
             EffectId::LineResistance,
             EffectId::ValveDelay,
         ] {
-            let g = generate(&format!("test:size:{id}"), &[(id, 1.0)]).unwrap();
+            let g = generate(&format!("test:size:{id}"), &[(id, 1.0)], None).unwrap();
             assert!((g.sizes[0] - 1.0).abs() < 0.1, "{id}: {:?} {:?}", g.sizes, g.truth);
         }
     }
 
     #[test]
     fn sensors_read_with_the_stated_noise() {
-        let g = generate("test:noise", &[]).unwrap();
+        let g = generate("test:noise", &[], None).unwrap();
         for r in &g.recordings {
             // Before anything moves only noise and offset change a reading.
             let rest = r.time_s.partition_point(|t| *t < 0.25).max(4);

@@ -13,6 +13,7 @@ mod calibrate;
 pub mod csv_rows;
 mod draw;
 mod excitation;
+mod flaw;
 mod generate;
 mod hidden;
 mod ledger;
@@ -27,6 +28,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 pub use draw::Draw;
+pub use flaw::{Flaw, UnknownFlaw};
 pub use ledger::Ledger;
 pub use nominal_strut::nominal;
 pub use page::{page, tables};

@@ -45,6 +45,9 @@ pub fn tables(s: &Summary) -> Vec<(&'static str, Table)> {
     if !s.nameless.is_empty() {
         all.push(("Effects removed from the search", nameless_table(s)));
     }
+    if !s.instruments.is_empty() {
+        all.push(("Instruments with flaws", instruments_table(s)));
+    }
     if !s.failed.is_empty() {
         let mut table = Table::new([Column::text("Campaign"), Column::text("Reason")]);
         for (name, why) in &s.failed {
@@ -191,6 +194,30 @@ fn nameless_table(s: &Summary) -> Table {
             significant(n.before, 3),
             significant(n.after, 3),
             places.join(", "),
+        ]);
+    }
+    table
+}
+
+fn instruments_table(s: &Summary) -> Table {
+    let mut table = Table::new([
+        Column::text("Flaw of the instruments"),
+        Column::number("Said"),
+        Column::number("Something else said as well or instead"),
+        Column::number("False effect reported"),
+        Column::number("Unnamed remainder reported"),
+        Column::number("Concealed effects found"),
+        Column::number("Noise ratio"),
+    ]);
+    for f in &s.instruments {
+        table.row([
+            f.flaw.to_string(),
+            fraction(f.said),
+            fraction(f.said_else),
+            fraction(f.false_effect),
+            fraction(f.remainder),
+            fraction(f.found),
+            significant(f.noise_ratio, 3),
         ]);
     }
     table

@@ -6,6 +6,7 @@ use std::str::FromStr;
 use oleo_plant_sim::model_file::names::suggestion;
 
 use super::draw::Draw;
+use super::flaw::Flaw;
 use crate::effect::in_struts;
 use crate::vocabulary::EffectId;
 
@@ -33,6 +34,8 @@ pub struct Plan {
     pub subjects: Vec<Subject>,
     /// Leave each concealed term out of the search: what is found must be `unlisted`.
     pub without_names: bool,
+    /// Flaws of the instruments, dealt out to the campaigns in turn; none if the list is empty.
+    pub flaws: Vec<Flaw>,
 }
 
 /// One campaign to make and diagnose.
@@ -44,6 +47,8 @@ pub struct Case {
     pub hidden: Vec<(EffectId, f64)>,
     /// Term that the search may not use.
     pub left_out: Option<EffectId>,
+    /// What is wrong with the instruments.
+    pub flaw: Option<Flaw>,
 }
 
 /// What is concealed in a campaign.
@@ -103,6 +108,10 @@ impl Plan {
             round += 1;
         }
         cases.truncate(self.campaigns);
+        for (case, flaw) in cases.iter_mut().zip(self.flaws.iter().cycle()) {
+            case.name += &format!(":{flaw}");
+            case.flaw = Some(*flaw);
+        }
         cases
     }
 
@@ -113,6 +122,7 @@ impl Plan {
             name: format!("{seed}:{COMPLETE}:{round}.{k}"),
             hidden: vec![],
             left_out: None,
+            flaw: None,
         });
         for (k, &term) in terms.iter().enumerate() {
             if wanted(Subject::Effect(term)) {
@@ -121,6 +131,7 @@ impl Plan {
                     name: format!("{seed}:{term}:{round}:{size}"),
                     hidden: vec![(term, size)],
                     left_out: None,
+                    flaw: None,
                 });
             }
             if k % 3 == 2 && wanted(Subject::Complete) {
@@ -142,6 +153,7 @@ impl Plan {
                     name,
                     hidden: hidden.to_vec(),
                     left_out: None,
+                    flaw: None,
                 });
             }
         }
@@ -155,6 +167,7 @@ impl Plan {
                 name: format!("{}:without:{term}:{round}:{size}", self.seed),
                 hidden: vec![(term, size)],
                 left_out: Some(term),
+                flaw: None,
             });
         }
     }
@@ -170,6 +183,7 @@ mod tests {
             campaigns,
             subjects: terms.iter().map(|t| t.parse().expect("a term")).collect(),
             without_names: false,
+            flaws: vec![],
         }
     }
 

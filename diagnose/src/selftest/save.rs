@@ -19,7 +19,7 @@ fn folder_name(case: &Case) -> String {
 /// # Errors
 /// A campaign that cannot be simulated, or a folder that cannot be written.
 pub fn save(case: &Case, into: &Path) -> Result<(), DiagnoseError> {
-    let campaign = generate(&case.name, &case.hidden)?;
+    let campaign = generate(&case.name, &case.hidden, case.flaw)?;
     let folder = into.join(folder_name(case));
     let unseen = folder.join("unseen");
     std::fs::create_dir_all(&unseen).map_err(|e| DiagnoseError::file(&unseen, e.to_string()))?;
@@ -27,6 +27,7 @@ pub fn save(case: &Case, into: &Path) -> Result<(), DiagnoseError> {
     let ids: Vec<EffectId> = case.hidden.iter().map(|(id, _)| *id).collect();
     let answer = serde_json::json!({
         "name": case.name, "hidden": ids, "sizes": campaign.sizes, "truth": campaign.truth,
+        "instruments": case.flaw,
     });
     write(&folder.join("answer.json"), &format!("{answer:#}\n"))?;
     for (recordings, to) in [(&campaign.recordings, &folder), (&campaign.unseen, &unseen)] {
@@ -44,11 +45,15 @@ fn write(path: &Path, text: &str) -> Result<(), DiagnoseError> {
 fn write_table(path: &Path, recording: &Recording) -> Result<(), DiagnoseError> {
     let fail = |e: csv::Error| DiagnoseError::file(path, e.to_string());
     let mut table = csv::Writer::from_path(path).map_err(fail)?;
-    let names = columns();
-    let header = std::iter::once("time_s").chain(names.iter().map(|c| c.name.as_str()));
+    let specs = columns();
+    // A column without a reading is not recorded.
+    let recorded: Vec<(&str, &Vec<f64>)> = (specs.iter().map(|c| c.name.as_str()).zip(&recording.columns))
+        .filter(|(_, column)| column.iter().any(|v| v.is_finite()))
+        .collect();
+    let header = std::iter::once("time_s").chain(recorded.iter().map(|(name, _)| *name));
     table.write_record(header).map_err(fail)?;
     for (k, time) in recording.time_s.iter().enumerate() {
-        let row = std::iter::once(time).chain(recording.columns.iter().map(|c| &c[k]));
+        let row = std::iter::once(time).chain(recorded.iter().map(|(_, column)| &column[k]));
         table.write_record(row.map(f64::to_string)).map_err(fail)?;
     }
     table.flush().map_err(|e| DiagnoseError::file(path, e.to_string()))

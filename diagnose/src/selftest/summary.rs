@@ -5,7 +5,10 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use strum::VariantArray;
+
 use super::calibrate::{Calibration, calibrate};
+use super::flaw::Flaw;
 use super::plan::{COMPLETE, SIZES};
 use super::trial::{Trial, covers};
 use crate::effect::in_struts;
@@ -116,6 +119,25 @@ pub struct Nameless {
     pub places: BTreeMap<String, usize>,
 }
 
+/// What was said of campaigns whose instruments have a flaw.
+#[derive(Debug, Clone, Serialize)]
+pub struct Flawed {
+    /// What is wrong with the instruments.
+    pub flaw: Flaw,
+    /// Campaigns in which that was said.
+    pub said: Rate,
+    /// Campaigns in which something else was said of an instrument.
+    pub said_else: Rate,
+    /// Campaigns in which an effect was reported that is not there, the unnamed remainder left out.
+    pub false_effect: Rate,
+    /// Campaigns in which an unnamed remainder was reported.
+    pub remainder: Rate,
+    /// Concealed effects that were found, where there are any.
+    pub found: Rate,
+    /// Median noise ratio of the improved model on held-out blocks.
+    pub noise_ratio: f64,
+}
+
 /// All tables of a self-test.
 #[derive(Debug, Clone, Serialize)]
 pub struct Summary {
@@ -148,6 +170,8 @@ pub struct Summary {
     pub calibration: Option<Calibration>,
     /// Terms left out of the search.
     pub nameless: Vec<Nameless>,
+    /// Instruments with flaws.
+    pub instruments: Vec<Flawed>,
     /// Unseen recordings of campaigns in which something was found: the model with it is better.
     pub unseen_better: Rate,
 }
@@ -204,9 +228,38 @@ impl Summary {
             reliability: reliability(&named),
             calibration: calibrate(&named),
             nameless: nameless(&sound),
+            instruments: instruments(&sound),
             unseen_better,
         }
     }
+}
+
+fn instruments(trials: &[&Trial]) -> Vec<Flawed> {
+    (Flaw::VARIANTS.iter())
+        .filter_map(|&flaw| {
+            let own: Vec<&Trial> = trials.iter().copied().filter(|t| t.flaw == Some(flaw)).collect();
+            let mut row = Flawed {
+                flaw,
+                said: Rate::default(),
+                said_else: Rate::default(),
+                false_effect: Rate::default(),
+                remainder: Rate::default(),
+                found: Rate::default(),
+                noise_ratio: median(own.iter().map(|t| t.noise_ratio.1).collect()),
+            };
+            for t in &own {
+                let is_own = |said: &&(String, String)| said.0 == flaw.is_said_as();
+                row.said.count(t.said.iter().any(|s| is_own(&s)));
+                row.said_else.count(!t.said.iter().all(|s| is_own(&s)));
+                let named = |r: &&super::trial::Reported| r.gain.is_some();
+                row.false_effect
+                    .count(t.reported.iter().filter(named).any(|r| !t.there(r)));
+                row.remainder.count(t.reported.iter().any(|r| r.gain.is_none()));
+                t.hidden_ids().iter().for_each(|id| row.found.count(t.found(*id)));
+            }
+            (!own.is_empty()).then_some(row)
+        })
+        .collect()
 }
 
 /// The grid's size nearest in the logarithm.
@@ -319,11 +372,12 @@ fn reliability(trials: &[&Trial]) -> Vec<Reliability> {
         .collect()
 }
 
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
 fn nameless(trials: &[&Trial]) -> Vec<Nameless> {
-    let median = |mut values: Vec<f64>| {
-        values.sort_by(f64::total_cmp);
-        values.get(values.len() / 2).copied().unwrap_or(0.0)
-    };
     in_struts()
         .into_iter()
         .filter_map(|term| {
@@ -377,6 +431,7 @@ mod tests {
             hidden: vec![(hidden, 1.0, 1.1)],
             truth: vec![truth],
             left_out: None,
+            flaw: None,
             reported: vec![Reported {
                 id: reported,
                 place: Site::MainSeal.into(),
@@ -392,6 +447,7 @@ mod tests {
                     high: Some(interval.1),
                 }],
             }],
+            said: vec![],
             residuals: 1000,
             noise_ratio: (1.2, 1.0),
             unseen: (1.2, 1.0),

@@ -5,6 +5,7 @@ use std::sync::atomic::AtomicBool;
 use oleo_plant_sim::strut::StrutModel;
 use serde::{Deserialize, Serialize};
 
+use super::flaw::Flaw;
 use super::generate::generate;
 use super::hidden::Truth;
 use super::plan::Case;
@@ -12,6 +13,7 @@ use crate::campaign::Campaign;
 use crate::diagnosis::{Diagnosis, Effect};
 use crate::error::DiagnoseError;
 use crate::estimation::LeastSquares;
+use crate::instrument::Finding;
 use crate::recording::Recording;
 use crate::specimen::strut::TwoStageStrut;
 use crate::specimen::{Hypothesis, Specimen};
@@ -62,8 +64,12 @@ pub struct Trial {
     pub truth: Vec<Truth>,
     /// Term that the search was not allowed.
     pub left_out: Option<EffectId>,
+    /// What is wrong with the instruments.
+    pub flaw: Option<Flaw>,
     /// Effects that the diagnosis reported.
     pub reported: Vec<Reported>,
+    /// What the diagnosis said of the instruments: name of each finding and its column, empty for all.
+    pub said: Vec<(String, String)>,
     /// Number of residuals of the campaign.
     pub residuals: usize,
     /// Held-out noise ratio of the calibrated and of the improved model.
@@ -86,7 +92,9 @@ pub fn run(case: &Case, stop: &AtomicBool) -> Result<Trial, DiagnoseError> {
         hidden: case.hidden.iter().map(|(id, size)| (*id, *size, 0.0)).collect(),
         truth: vec![],
         left_out: case.left_out,
+        flaw: case.flaw,
         reported: vec![],
+        said: vec![],
         residuals: 0,
         noise_ratio: (0.0, 0.0),
         unseen: (0.0, 0.0),
@@ -102,7 +110,7 @@ pub fn run(case: &Case, stop: &AtomicBool) -> Result<Trial, DiagnoseError> {
 }
 
 fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), DiagnoseError> {
-    let generated = generate(&case.name, &case.hidden)?;
+    let generated = generate(&case.name, &case.hidden, case.flaw)?;
     trial.truth = generated.truth;
     for (hidden, size) in trial.hidden.iter_mut().zip(generated.sizes) {
         // JSON knows no infinity: an effect that stops the simulation is as large as can be said.
@@ -112,8 +120,8 @@ fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), Dia
     if let Some(id) = case.left_out {
         strut.leave_out(id);
     }
+    trial.said = said(&strut);
     let campaign = Campaign {
-        folder: std::path::PathBuf::new(),
         name: case.name.clone(),
         specimen: Box::new(strut),
         notes: vec![],
@@ -134,6 +142,13 @@ fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), Dia
         noise_ratio(&diagnosis.model_toml, &generated.unseen)?,
     );
     Ok(())
+}
+
+/// What is said of the instruments.
+fn said(strut: &TwoStageStrut) -> Vec<(String, String)> {
+    let column = |f: &Finding| f.column.as_ref().map_or_else(String::new, ToString::to_string);
+    let findings = strut.instruments().iter();
+    findings.map(|f| (f.flaw.name().to_owned(), column(f))).collect()
 }
 
 fn reported(campaign: &Campaign, effect: &Effect) -> Reported {

@@ -9,6 +9,7 @@ use super::portrait::Portrait;
 use super::relation::MeasuredRelation;
 use crate::effect::Candidate;
 use crate::error::DiagnoseError;
+use crate::instrument::Finding;
 use crate::parameter::Parameter;
 use crate::recording::{ColumnSpec, GapPolicy, Recording};
 use crate::vocabulary::SpecimenKind;
@@ -37,7 +38,7 @@ pub trait BelievedModel {
 }
 
 /// A specimen: its recordings, its given model, the candidates, and the predictions of a model with some of them.
-pub trait Specimen: Sync {
+pub trait Specimen: Send + Sync {
     /// The kind of specimen.
     fn kind(&self) -> SpecimenKind;
 
@@ -77,6 +78,29 @@ pub trait Specimen: Sync {
     /// Measured series of a channel.
     fn measured(&self, recording: usize, channel: usize) -> &[f64] {
         &self.recordings()[recording].columns[1 + channel]
+    }
+
+    /// Noise of the readings of a channel as multiples of the channel's noise, one a sample; `None` if all are 1.
+    fn relative_noise(&self, _recording: usize, _channel: usize) -> Option<&[f64]> {
+        None
+    }
+
+    /// A series in units of the noise of its samples, in the unit of its column.
+    fn in_units(&self, recording: usize, channel: usize, series: &[f64]) -> Vec<f64> {
+        let noise = self.channels()[channel].noise;
+        match self.relative_noise(recording, channel) {
+            None => series.iter().map(|v| noise * v).collect(),
+            Some(relative) => series
+                .iter()
+                .zip(relative)
+                .map(|(v, relative)| noise * relative * v)
+                .collect(),
+        }
+    }
+
+    /// What the recordings say of their instruments that the model file does not state.
+    fn instruments(&self) -> &[Finding] {
+        &[]
     }
 
     /// Noise ratio that a complete model reaches, 1 or more; above 1 if the noise of an input affects the prediction.

@@ -15,7 +15,7 @@ use crate::vocabulary::Place;
 use crate::vocabulary::SpecimenKind;
 
 /// The trait of a kind of specimen with one compared channel.
-pub trait SingleOutput: Sync {
+pub trait SingleOutput: Send + Sync {
     /// The model file of this kind.
     type Model;
 

@@ -74,7 +74,6 @@ impl VehicleCampaign {
         let corners = specimens
             .zip(Corners::from_fn(|corner| corner))
             .map(|(specimen, corner)| Campaign {
-                folder: source.into(),
                 name: format!("{} strut", corner.name()),
                 specimen: Box::new(specimen),
                 notes: vec![],

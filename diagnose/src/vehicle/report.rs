@@ -41,7 +41,7 @@ pub fn report(campaign: &VehicleCampaign, diagnosis: &VehicleDiagnosis, runtime_
             entry
         }));
     }
-    for key in ["relations", "relations_changed_alone", "calibration"] {
+    for key in ["relations", "relations_changed_alone", "calibration", "instruments"] {
         out[key] = Value::Array(of_corners(campaign, diagnosis, key, |corner, mut entry| {
             entry["corner"] = json!(corner.name());
             entry

@@ -9,9 +9,12 @@ use flate2::read::MultiGzDecoder;
 use super::asc::Asc;
 use super::candump::Candump;
 use super::error::LogError;
+#[cfg(feature = "logs")]
 use super::mf4::Mf4;
 use super::source::FrameSource;
 use super::text::Lines;
+#[cfg(not(feature = "logs"))]
+use super::without_mf4::Mf4;
 
 /// Bytes that are read from a file at once.
 const READ_AHEAD: usize = 1 << 20;

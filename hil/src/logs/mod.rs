@@ -15,7 +15,8 @@
 //! | `text` | lines in constant memory |
 //! | `candump` | text of `candump -L`, read and written |
 //! | `asc`, `asc_writer` | Vector ASC, read and written |
-//! | `mf4` | ASAM MDF 4 with logged frames |
+//! | `mf4` | ASAM MDF 4 with logged frames (feature `logs`) |
+//! | `without_mf4` | says how to come by that reader |
 
 mod account;
 mod asc;
@@ -24,9 +25,12 @@ pub mod candump;
 mod error;
 mod format;
 mod frame;
+#[cfg(feature = "logs")]
 mod mf4;
 mod source;
 mod text;
+#[cfg(not(feature = "logs"))]
+mod without_mf4;
 
 pub use account::Account;
 pub use asc_writer::AscWriter;
@@ -34,3 +38,6 @@ pub use error::LogError;
 pub use format::{Format, in_memory, open};
 pub use frame::{Entry, FrameKind, LoggedFrame, MOST_BYTES, Payload, identifier};
 pub use source::{FrameSource, Sink};
+
+/// How to come by a program with the feature `logs`.
+pub const HOW_TO_BUILD: &str = "build it with `cargo install --path . --features logs`, or run it with `cargo run --release --features logs -- ...`";

@@ -19,9 +19,11 @@ mod definition;
 pub mod fault;
 mod fault_entry;
 pub mod file;
+mod overrides;
 
 pub use built_in::{BUILT_IN, named};
 pub use changes::changes;
 pub use check::{Check, Comparison};
 pub use definition::{Clock, OnControllerLoss, Scenario};
 pub use fault::{Fault, FaultKind};
+pub use overrides::Overrides;

@@ -9,6 +9,7 @@
 //!
 //! [`CourseSettings`] is a course as people describe it. Nothing here reads a file or knows a command line: a road is handed in.
 
+mod changes;
 mod drive;
 mod kind;
 mod manoeuvre;
@@ -23,6 +24,7 @@ mod track;
 
 use std::sync::Arc;
 
+pub use changes::CourseChanges;
 pub use drive::{Drive, NotFinite};
 pub use kind::ManoeuvreKind;
 pub use manoeuvre::{LaneChange, Manoeuvre, Phase};

@@ -24,7 +24,7 @@ pub fn wrong_separator(separator: char) -> String {
 }
 
 /// Why a recording cannot be replayed; one line: file, line, what, what to do.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, PartialEq, thiserror::Error)]
 pub enum RecordingError {
     /// A column is missing.
     #[error("{file}:1: there is no column {column}; a recording of this kind needs {needed}")]
@@ -57,6 +57,14 @@ pub enum RecordingError {
         value: String,
         /// What is needed instead.
         need: &'static str,
+    },
+    /// A column in memory lacks, or its length is another than that of the time; or a value in it is not usable.
+    #[error("{recording}: {what}")]
+    Table {
+        /// Name of the recording.
+        recording: String,
+        /// What is wrong, where, and what to do.
+        what: String,
     },
     /// The file is not a table in CSV format.
     #[error("{file}: {reason}")]
@@ -131,34 +139,73 @@ impl Columns {
         while reader.read_record(&mut row).map_err(csv_error)? {
             for ((name, &place), column) in names.iter().zip(&places).zip(&mut values) {
                 let text = row.get(place).unwrap_or("");
-                let refuse = |need| RecordingError::Value {
+                let value = text.parse().unwrap_or(f64::NAN);
+                usable(name, value, column.last()).map_err(|need| RecordingError::Value {
                     file: file.to_owned(),
                     line: row.position().map_or(0, csv::Position::line),
                     column: name.clone(),
                     value: text.to_owned(),
                     need,
-                };
-                let value = match text.parse::<f64>() {
-                    Ok(value) if value.is_finite() => value,
-                    _ => return Err(refuse("a finite number is needed")),
-                };
-                if name == "time_s" && column.last().is_some_and(|&before| value <= before) {
-                    return Err(refuse("time must increase; sort the rows and drop duplicates"));
-                }
-                if VALVES.contains(&name.as_str()) && value != 0.0 && value != 1.0 {
-                    return Err(refuse("a switching signal is 0 (closed) or 1 (open)"));
-                }
+                })?;
                 column.push(value);
             }
         }
+        Self::long_enough(file, names, values)
+    }
+
+    /// As [`Self::read`], from the names and values of columns in memory. `recording` names it in errors.
+    ///
+    /// # Errors
+    /// As [`Self::read`], and columns of different lengths; rows are counted from 0.
+    pub fn of_table(
+        table: &[(&str, &[f64])],
+        recording: &str,
+        needed: &[&str],
+        welcome: &[&str],
+    ) -> Result<Self, RecordingError> {
+        let wrong = |what: String| RecordingError::Table {
+            recording: recording.to_owned(),
+            what,
+        };
+        let (mut names, mut values) = (Vec::new(), Vec::new());
+        let wanted = std::iter::once(&"time_s").chain(needed).map(|name| (name, true));
+        for (name, must) in wanted.chain(welcome.iter().map(|name| (name, false))) {
+            let Some((_, column)) = table.iter().find(|(title, _)| title == name) else {
+                match must {
+                    true => {
+                        let needed = needed.join(", ");
+                        return Err(wrong(format!(
+                            "there is no column {name}; a recording of this kind needs time_s, {needed}"
+                        )));
+                    }
+                    false => continue,
+                }
+            };
+            for (row, value) in column.iter().enumerate() {
+                let before = row.checked_sub(1).and_then(|before| column.get(before));
+                usable(name, *value, before).map_err(|need| wrong(format!("row {row}: {name} is {value}; {need}")))?;
+            }
+            names.push((*name).to_owned());
+            values.push(column.to_vec());
+        }
         let samples = values[0].len();
-        if samples < 2 {
-            return Err(RecordingError::Short {
+        match names.iter().zip(&values).find(|(_, column)| column.len() != samples) {
+            Some((name, column)) => Err(wrong(format!(
+                "{name} has {} values and time_s {samples}; give columns of one length",
+                column.len()
+            ))),
+            None => Self::long_enough(recording, names, values),
+        }
+    }
+
+    fn long_enough(file: &str, names: Vec<String>, values: Vec<Vec<f64>>) -> Result<Self, RecordingError> {
+        match values[0].len() {
+            samples @ 0..2 => Err(RecordingError::Short {
                 file: file.to_owned(),
                 samples,
-            });
+            }),
+            _ => Ok(Self { names, values }),
         }
-        Ok(Self { names, values })
     }
 
     /// Times of the samples, s.
@@ -175,6 +222,20 @@ impl Columns {
             .position(|other| other == name)
             .map(|place| self.values[place].as_slice())
     }
+}
+
+/// Whether a value of a column can be used, behind the value before it; if not, what is needed instead.
+fn usable(name: &str, value: f64, before: Option<&f64>) -> Result<(), &'static str> {
+    if !value.is_finite() {
+        return Err("a finite number is needed");
+    }
+    if name == "time_s" && before.is_some_and(|before| value <= *before) {
+        return Err("time must increase; sort the rows and drop duplicates");
+    }
+    if VALVES.contains(&name) && value != 0.0 && value != 1.0 {
+        return Err("a switching signal is 0 (closed) or 1 (open)");
+    }
+    Ok(())
 }
 
 /// Inputs and recorded channels of a strut.
@@ -198,21 +259,29 @@ impl RecordedStrut {
     /// # Errors
     /// As [`Columns::read`].
     pub fn read(source: impl Read, file: &str) -> Result<Self, RecordingError> {
-        let needed = ["displacement_m", VALVES[0], VALVES[1], VALVES[2]];
-        let welcome = ["force_N", PRESSURES[0], PRESSURES[1], PRESSURES[2], PRESSURES[3]];
-        let columns = Columns::read(source, file, &needed, &welcome)?;
+        Columns::read(source, file, &Self::NEEDED, &Self::WELCOME).map(|columns| Self::of(&columns))
+    }
+
+    /// The inputs of a strut, which its recording must have beside the time.
+    pub const NEEDED: [&'static str; 4] = ["displacement_m", VALVES[0], VALVES[1], VALVES[2]];
+    /// Its channels, of which any may be recorded.
+    pub const WELCOME: [&'static str; 5] = ["force_N", PRESSURES[0], PRESSURES[1], PRESSURES[2], PRESSURES[3]];
+
+    /// The recording in columns that were read with [`Self::NEEDED`] and [`Self::WELCOME`].
+    #[must_use]
+    pub fn of(columns: &Columns) -> Self {
         let of = |name: &str| columns.column(name).map(<[f64]>::to_vec);
         let valves = VALVES.map(|name| of(name).unwrap_or_default());
         let signals = (0..columns.time_s().len())
             .map(|at| StrutValves::from_fn(|valve| valves[valve.index()][at] == 1.0))
             .collect();
-        Ok(Self {
+        Self {
             time_s: columns.time_s().to_vec(),
             displacement_m: of("displacement_m").unwrap_or_default(),
             signals,
             force_n: of("force_N"),
             pressure_pa: PRESSURES.map(of),
-        })
+        }
     }
 
     /// The inputs, with the displacement smoothed by its stated noise (m).
@@ -236,6 +305,42 @@ mod tests {
         assert_eq!(recording.signals[0], StrutValves::new(false, true, true));
         assert_eq!(recording.pressure_pa[0].as_deref(), Some(&[4e6, 4.1e6][..]));
         assert!(recording.force_n.is_none() && recording.pressure_pa[1].is_none());
+    }
+
+    #[test]
+    fn columns_in_memory_are_read_as_those_of_a_file() {
+        let file = Columns::read(GOOD.as_bytes(), "r.csv", &["displacement_m"], &["p1_Pa"]).expect("good");
+        let (time, x, p1) = ([0.0, 0.1], [0.0, 1e-3], [4e6, 4.1e6]);
+        let table = |time| [("p1_Pa", &p1[..]), ("time_s", time), ("displacement_m", &x[..])];
+        let read = |time, needed| Columns::of_table(&table(time), "r", &[needed], &["p1_Pa"]);
+        assert_eq!(read(&time, "displacement_m"), Ok(file));
+        for (time, needed, complaint) in [
+            (
+                &time[..],
+                "force_N",
+                "r: there is no column force_N; a recording of this kind needs time_s, force_N",
+            ),
+            (
+                &[0.0, f64::NAN],
+                "p1_Pa",
+                "r: row 1: time_s is NaN; a finite number is needed",
+            ),
+            (
+                &[0.0, 0.0],
+                "p1_Pa",
+                "r: row 1: time_s is 0; time must increase; sort the rows and drop duplicates",
+            ),
+            (
+                &[0.0],
+                "displacement_m",
+                "r: displacement_m has 2 values and time_s 1; give columns of one length",
+            ),
+        ] {
+            assert_eq!(
+                read(time, needed).map_err(|error| error.to_string()),
+                Err(complaint.to_owned())
+            );
+        }
     }
 
     #[test]

@@ -66,7 +66,7 @@ pub use motion::{Motion, Segment};
 pub use nitrogen::Nitrogen;
 pub use pressure::ATMOSPHERE_PA;
 pub use replay::{Inputs, Prediction, replay};
-pub use smoothing::{FreeMotion, smooth_displacement, smooth_free_motion};
+pub use smoothing::{FreeMotion, smooth_displacement, smooth_free_motion, smooth_uneven_displacement};
 pub use terms::{
     AccumulatorPistonFriction, BumpStop, COLUMNS, DamperLeakage, DampingFade, Effects, EntrainedAir, Equation,
     GasChargeError, GasEquation, GasHeatTransfer, LaminarLine, LawArgument, LawForm, LawPlace, LineInertance,

@@ -3,6 +3,8 @@
 
 mod item;
 mod library;
+#[cfg(any(test, not(feature = "packed")))]
+mod packing;
 mod verdict;
 
 use item::{Count, Item};
@@ -208,7 +210,7 @@ mod tests {
     use crate::{Axis, Bars, Column, Curves, Field, FieldStyle};
     use base64::Engine;
     use base64::engine::general_purpose::STANDARD;
-    use library::drawing_library;
+    use packing::drawing_library;
 
     fn example() -> Page {
         let mut page = Page::new("Rig <damping>", "oleo rig damping --out x");

@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use oleo_diagnose::free_run::FreeRun;
 use oleo_plant_sim::model_file::names::suggestion;
 use oleo_plant_sim::rig::ColumnMap;
 use serde_json::Value;
@@ -11,7 +12,7 @@ use serde_json::Value;
 use super::difference::at_places;
 use super::figures::{Figure, figures};
 use super::traces::{Trace, Traces};
-use crate::commands::prediction::{Prediction, predict};
+use crate::commands::prediction::predict;
 use crate::failure::Failure;
 
 /// A run.
@@ -226,7 +227,7 @@ fn of_recording(recording: &Path, name: String, models: &[PathBuf], map: Option<
     let mut runs: Vec<Run> = Vec::new();
     let mut noise = BTreeMap::new();
     for (model, name) in models.iter().zip(names(models)) {
-        let Prediction { inputs, channels } = predict(model, recording, map)?;
+        let FreeRun { inputs, channels } = predict(model, recording, map)?;
         // The other inputs are those of the recording, whatever the model.
         let inputs: Vec<_> = inputs.into_iter().filter(|(name, _)| name == "time_s").collect();
         if runs.is_empty() {

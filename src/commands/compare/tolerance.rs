@@ -9,8 +9,8 @@ use serde::Deserialize;
 
 use super::difference::{Difference, Size};
 use super::figures::Figure;
-use crate::commands::parameter_files;
 use crate::failure::Failure;
+use oleo_hil::parameter_files;
 
 /// A tolerance of a figure or trace.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use oleo_diagnose::selftest::{Case, Ledger, Plan, Subject, Summary, csv_rows, page, run, save, tables};
+use oleo_diagnose::selftest::{Case, Flaw, Ledger, Plan, Subject, Summary, csv_rows, page, run, save, tables};
 use oleo_report::Progress;
 
 use crate::failure::Failure;
@@ -52,6 +52,16 @@ pub struct Args {
     /// Remove each concealed term from the search, so that it can only be found as a law without a name
     #[arg(long, requires = "self_test", help_heading = "Self-test")]
     without_names: bool,
+    /// Record with instruments as they are, one of these flaws a campaign in turn: coloured_noise, twelve_bit, spikes, hum, jitter,
+    /// noise_twice, noise_half, no_force, no_pressure, or all
+    #[arg(
+        long,
+        value_name = "A,B",
+        value_delimiter = ',',
+        requires = "self_test",
+        help_heading = "Self-test"
+    )]
+    instruments: Vec<String>,
     /// Write the simulated campaigns and their answers into DIR instead of diagnosing them
     #[arg(long, requires = "self_test", help_heading = "Self-test")]
     save: bool,
@@ -88,6 +98,7 @@ pub fn run_self_test(args: &Args, results: &ResultsArgs) -> Result<ExitCode, Fai
             .map(|t| t.parse())
             .collect::<Result<Vec<Subject>, _>>()?,
         without_names: args.without_names,
+        flaws: Flaw::listed(&args.instruments)?,
     };
     if plan.without_names && plan.subjects.iter().any(|s| !matches!(s, Subject::Effect(_))) {
         return Err(Failure::new(

@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use clap::ValueEnum;
-use oleo_plant_sim::course::ManoeuvreKind;
-use strum::IntoStaticStr;
+use oleo_hil::drive::{Kind, Model, Request, Setting};
 
 use crate::commands::course_arguments::CourseArgs;
+use crate::commands::word::described;
 use crate::results::ResultsArgs;
 
 /// Drive the vehicle through a manoeuvre and report its motion, comfort and handling, with one suspension or several.
@@ -24,13 +23,13 @@ use crate::results::ResultsArgs;
 )]
 pub struct Args {
     /// Manoeuvre to drive
-    #[arg(long, value_enum)]
+    #[arg(long, value_name = "MANOEUVRE", value_parser = described(Kind::words))]
     pub manoeuvre: Kind,
     /// Vehicle model; both runs the two models on the same road and compares them
-    #[arg(long, value_enum, default_value_t = Model::Handling)]
+    #[arg(long, value_name = "MODEL", value_parser = described(Model::words), default_value = "handling")]
     pub model: Model,
     /// Suspension of the vehicle; several, separated by commas, are driven one by one and compared
-    #[arg(long, value_enum, value_delimiter = ',', default_value = "controlled")]
+    #[arg(long, value_name = "SETTING", value_parser = described(Setting::description), value_delimiter = ',', default_value = "controlled")]
     pub setting: Vec<Setting>,
     /// Speed, km/h; in constant-radius the speed at the end [default: 5 for bump, 40 for braking-in-bend and acceleration,
     /// otherwise 60]
@@ -68,126 +67,23 @@ pub struct Args {
     pub results: ResultsArgs,
 }
 
-/// The manoeuvres that can be driven.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Kind {
-    /// Straight ahead over Belgian block
-    Belgian,
-    /// Straight ahead over an APG obstacle under the left wheels
-    Bump,
-    /// Severe double lane change, ISO 3888-1
-    LaneChange,
-    /// Obstacle avoidance, ISO 3888-2
-    #[value(name = "lane-change-2")]
-    LaneChange2,
-    /// Steady circle at slowly rising speed, ISO 4138
-    ConstantRadius,
-    /// Step of the steer angle, ISO 7401
-    StepSteer,
-    /// Straight ahead over the road given by --road
-    Straight,
-    /// Braking straight ahead to a stop
-    Braking,
-    /// Braking in a bend with the steering wheel held, ISO 7975
-    BrakingInBend,
-    /// Acceleration straight ahead
-    Acceleration,
-}
-
-impl Kind {
-    /// As on the command line.
-    pub fn name(self) -> String {
-        self.to_possible_value()
-            .map_or(String::new(), |value| value.get_name().to_owned())
-    }
-
-    /// Needs the handling model: steering, brakes or drive.
-    pub fn steers(self) -> bool {
-        !matches!(self, Self::Belgian | Self::Bump | Self::Straight)
-    }
-
-    /// What is driven; the first two are straight drives over roads of their own.
-    pub fn manoeuvre(self) -> ManoeuvreKind {
-        match self {
-            Self::Belgian | Self::Bump | Self::Straight => ManoeuvreKind::Straight,
-            Self::LaneChange => ManoeuvreKind::LaneChange,
-            Self::LaneChange2 => ManoeuvreKind::LaneChange2,
-            Self::ConstantRadius => ManoeuvreKind::ConstantRadius,
-            Self::StepSteer => ManoeuvreKind::StepSteer,
-            Self::Braking => ManoeuvreKind::Braking,
-            Self::BrakingInBend => ManoeuvreKind::BrakingInBend,
-            Self::Acceleration => ManoeuvreKind::Acceleration,
-        }
-    }
-
-    /// The road that it has, whatever others are given.
-    pub fn own_road(self) -> Option<&'static str> {
-        match self {
-            Self::Belgian => Some("belgian"),
-            Self::Bump => Some("apg-left"),
-            _ => None,
-        }
-    }
-
-    /// Heading of the report.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Belgian => "Belgian block",
-            Self::Bump => "APG obstacle, left wheels",
-            _ => self.manoeuvre().title(),
-        }
-    }
-}
-
-/// Model of the vehicle.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Model {
-    /// Ride model of the report's appendix A, seven degrees of freedom
-    Ride,
-    /// Handling model with tyres and driver, fourteen degrees of freedom
-    Handling,
-    /// Both models, compared
-    Both,
-}
-
-impl Model {
-    /// As on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Ride => "ride",
-            Self::Handling => "handling",
-            Self::Both => "both",
-        }
-    }
-}
-
-/// Suspension of the vehicle.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum, IntoStaticStr)]
-#[strum(serialize_all = "kebab-case")]
-pub enum Setting {
-    /// Hydropneumatic struts with all valves open
-    Soft,
-    /// Hydropneumatic struts with all valves closed
-    Stiff,
-    /// Hydropneumatic struts whose valves the controller sets every 5 ms
-    Controlled,
-    /// Coil springs and dampers of the production vehicle
-    Baseline,
-}
-
-impl Setting {
-    /// As on the command line.
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-
-    /// What the vehicle drives with, in a sentence.
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Soft => "all valves open",
-            Self::Stiff => "all valves closed",
-            Self::Controlled => "the controller",
-            Self::Baseline => "coil springs",
+impl Args {
+    /// What is asked for.
+    pub fn request(&self) -> Request {
+        Request {
+            manoeuvre: self.manoeuvre,
+            model: self.model,
+            setting: self.setting.clone(),
+            speed_km_h: self.speed_km_h,
+            road: self.road.clone(),
+            course: self.course.changes(),
+            load: self.course.load,
+            gas_temperature_c: self.gas_temperature_c,
+            duration_s: self.duration_s,
+            score_from_s: self.score_from_s,
+            seed: self.seed,
+            has_handling: self.handling.is_some(),
+            has_strut: self.strut.is_some(),
         }
     }
 }

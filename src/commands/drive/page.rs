@@ -1,14 +1,12 @@
 //! `report.html` of a drive: the verdict of the manoeuvre first, then the plan, the response, the body, wheels and suspension. The
 //! colour of a line is the drive (its model or its suspension), its panel the quantity or the corner.
 
+use oleo_hil::drive::{Driven, Plan, column, open_valves};
 use oleo_hil::page::{Path, map, went};
 use oleo_interface::{Axle, Corner};
 use oleo_plant_sim::course::{Ending, Manoeuvre, Sample};
 use oleo_report::{Axis, Curves, Page, Style, Table, Verdict, significant};
 
-use super::columns::{column, open_valves};
-use super::driven::Driven;
-use super::plan::Plan;
 use crate::results::command_line;
 
 /// What a panel shows of a sample.

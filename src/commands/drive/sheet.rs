@@ -1,18 +1,15 @@
 //! Writes the results of a drive: tables, CSV files and the page.
 
+use oleo_hil::drive::{COLUMNS, Driven, Measure, Model, Plan, Signal, column, measures};
 use oleo_hil::page::ending_in_words;
 use oleo_plant_sim::course::Sample;
 use oleo_report::{Column, OutputDirectory, Table, significant};
 use serde_json::{Map, Value, json};
 
-use super::arguments::{Args, Model};
-use super::columns::{COLUMNS, Signal, column};
-use super::driven::Driven;
-use super::measures::{Measure, measures};
+use super::arguments::Args;
 use super::page::{page, settings, verdict};
-use super::plan::Plan;
-use crate::commands::parameter_files::Parameters;
 use crate::failure::Failure;
+use oleo_hil::parameter_files::Parameters;
 
 /// RMS of the difference over RMS of the first, at the same places of the road: the handling model's speed gives way on
 /// a rough road, the ride model's is constant.

@@ -6,9 +6,9 @@ use oleo_plant_sim::strut::StrutModel;
 use oleo_report::{OutputDirectory, Page};
 use serde_json::{Map, Value};
 
-use crate::commands::parameter_files::strut;
 use crate::failure::Failure;
 use crate::results::{ResultsArgs, command_line};
+use oleo_hil::parameter_files::strut;
 
 /// Options that all measurements share: the strut and the output folder.
 #[derive(clap::Args)]
@@ -33,7 +33,7 @@ impl Specimen {
     /// Reads the strut's model from its file, or takes the built-in one.
     pub fn model(&self) -> Result<StrutModel, Failure> {
         match &self.strut {
-            Some(path) => strut(path),
+            Some(path) => Ok(strut(path)?),
             None if self.static_load_n.is_finite() && (500.0..=40_000.0).contains(&self.static_load_n) => {
                 Ok(StrutModel::defender110(self.static_load_n))
             }

@@ -8,10 +8,10 @@ use oleo_plant_sim::vehicle::Load;
 use oleo_report::interrupt::Graceful;
 use oleo_report::{OutputDirectory, Progress};
 
-use crate::commands::parameter_files::Parameters;
 use crate::commands::word::word;
 use crate::failure::Failure;
 use crate::results::ResultsArgs;
+use oleo_hil::parameter_files::Parameters;
 
 /// What both studies drive.
 #[derive(clap::Args)]

@@ -7,9 +7,9 @@ use oleo_hil::comparison::{Bench, Setting};
 use oleo_plant_sim::study::Records;
 use oleo_report::OutputDirectory;
 
-use crate::commands::parameter_files::Parameters;
 use crate::failure::Failure;
 use crate::results::ResultsArgs;
+use oleo_hil::parameter_files::Parameters;
 
 /// The vehicle, the threads and the folder.
 #[derive(clap::Args)]

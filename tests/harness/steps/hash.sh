@@ -2,7 +2,7 @@
 # checks that the valve words are the same in debug and release, on one and two threads, and in a second run
 . tests/harness/lib.sh
 
-check "debug build" cargo build --locked --quiet && check "release build" cargo build --locked --quiet --release || exit 0
+check "debug build" cargo build "${FEATURES[@]}" --locked --quiet && check "release build" cargo build "${FEATURES[@]}" --locked --quiet --release || exit 0
 
 run() { tests/harness/hil-hash.sh "$CARGO_TARGET_DIR/$2/oleo" "$OLEO_LOGS/hil-$1"; }
 same() { if [ -z "$1" ] || [ "$1" != "$2" ]; then echo "'$1' against '$2'"; return 1; fi; }

@@ -6,7 +6,7 @@ python_packages 'asammdf, can, cantools' 'python-can>=4.4,<5' 'asammdf>=8,<9' 'c
     skip "logs of other programs" "asammdf, can, cantools cannot be installed: $(tail -n 1 "$OLEO_LOGS/pip-$OLEO_STEP.log")"
     exit 0
 }
-check "release build" cargo build --locked --quiet --release || exit 0
+check "release build" cargo build "${FEATURES[@]}" --locked --quiet --release || exit 0
 folder=$(mktemp -d)
 PYTHONPATH=$PYTHON_PACKAGES check "logs of other programs" python3 tests/logs_as_people_have_them.py "$CARGO_TARGET_DIR/release/oleo" "$folder"
 tail -n 2 "$log" | sed 's/^/   /'

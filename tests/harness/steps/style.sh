@@ -4,9 +4,9 @@
 check "host code is formatted" cargo fmt --all --check -- --color=never
 check "firmware is formatted" cargo fmt --manifest-path firmware/Cargo.toml -p oleo-firmware -p oleo-bench --check -- --color=never
 check "fuzz targets are formatted" cargo fmt --manifest-path fuzz/Cargo.toml -p oleo-fuzz --check -- --color=never
-check "clippy finds nothing" cargo clippy --workspace --all-targets --locked --keep-going --quiet -- -D warnings
+check "clippy finds nothing" cargo clippy "${FEATURES[@]}" --workspace --all-targets --locked --keep-going --quiet -- -D warnings
 RUSTDOCFLAGS="-D warnings" check "documentation builds without a warning" \
-    cargo doc --workspace --no-deps --locked --keep-going --quiet
+    cargo doc "${FEATURES[@]}" --workspace --no-deps --locked --keep-going --quiet
 
 # cargo-machete looks for each dependency (not those of tests alone) in the sources below a manifest. Two manifests are
 # looked at in a copy: the members' sources are below the root's too, and firmware/ is taken for a part of the workspace around it.
@@ -18,7 +18,7 @@ if cargo machete --version > /dev/null 2>&1 || {
     echo "   installing cargo-machete"
     cargo install --quiet --locked cargo-machete > "$OLEO_LOGS/cargo-machete.log" 2>&1
 }; then
-    for package in "$copy/oleo" interface controller plant-sim hil diagnose report "$copy/firmware" fuzz; do
+    for package in "$copy/oleo" interface controller plant-sim hil diagnose report python "$copy/firmware" fuzz; do
         check "no unused dependency in $(basename "$package")" cargo machete "$package"
     done
 else

@@ -1,5 +1,7 @@
 #!/usr/bin/env bash
 # runs the unit, property and end-to-end tests of the workspace (cargo test, dev profile)
 . tests/harness/lib.sh
-libtest "cargo test" cargo test --workspace --locked --no-fail-fast -- --show-output
+libtest "cargo test" cargo test "${FEATURES[@]}" --workspace --locked --no-fail-fast -- --show-output
+# What the first command builds, which lacks the readers of other programs' logs and says so.
+libtest "without features" cargo test --locked --test convert -- --show-output
 exit 0

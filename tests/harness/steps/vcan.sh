@@ -23,7 +23,7 @@ if ! OLEO_VCAN_BY=namespace "$with_vcan" true > /dev/null 2>&1; then
 fi
 
 # Built out here, run in there: the emulated kernel has no network and one processor.
-cargo test --locked --release --test vcan --no-run > "$OLEO_LOGS/vcan.build.log" 2>&1
+cargo test "${FEATURES[@]}" --locked --release --test vcan --no-run > "$OLEO_LOGS/vcan.build.log" 2>&1
 binary=$(sed -n 's/.*Executable tests\/vcan.rs (\(.*\))/\1/p' "$OLEO_LOGS/vcan.build.log")
 if [ -x "$binary" ]; then
     libtest "vcan tests" "$with_vcan" "$binary" --test-threads=1 --show-output
@@ -41,7 +41,7 @@ same_on_vcan() {
     echo "in process $here, on vcan0 $there"
     [ -n "$here" ] && [ "$here" = "$there" ]
 }
-check "release build" cargo build --locked --quiet --release || exit 0
+check "release build" cargo build "${FEATURES[@]}" --locked --quiet --release || exit 0
 check "hil on vcan0 commands what hil in process commands" same_on_vcan
 sed 's/^/   /' "$log"
 

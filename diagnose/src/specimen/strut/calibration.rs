@@ -2,6 +2,7 @@
 
 use oleo_plant_sim::strut::{COLUMNS, StrutModel};
 
+use super::channels::Layout;
 use crate::parameter::Parameter;
 
 /// What a calibration parameter changes.
@@ -58,13 +59,14 @@ impl Calibration {
     }
 }
 
-/// Everything that the model states a tolerance for.
+/// Everything that the model states a tolerance for, apart from the zeros of instruments that are not there.
 #[must_use]
-pub fn of(model: &StrutModel) -> (Vec<Calibration>, Vec<Parameter>) {
+pub fn of(model: &StrutModel, layout: Layout) -> (Vec<Calibration>, Vec<Parameter>) {
     let tolerance = |key: &str| model.tolerance.get(key).copied().filter(|size| *size > 0.0);
     let mut out = Vec::new();
     let mut add = |what: Calibration, key: String, tolerance: Option<f64>| {
-        if let Some(t) = tolerance {
+        let is_there = !matches!(what, Calibration::Offset(i) if i > 0 && !layout.has(i - 1));
+        if let (Some(t), true) = (tolerance, is_there) {
             let parameter = Parameter::calibration(key, t);
             let instrument = matches!(what, Calibration::Offset(i) if i > 0);
             out.push((

@@ -3,7 +3,6 @@
 use oleo_interface::StrutValves;
 
 use crate::recording::{ColumnKind, ColumnSpec, Recording};
-use crate::specimen::channel::Series;
 use crate::vocabulary::Site;
 
 /// Columns of the compared channels of a strut on a rig, in their order. A vehicle does not record the force.
@@ -19,42 +18,69 @@ pub const P3: usize = 3;
 /// Position of p4, the oil side of accumulator 2.
 pub const P4: usize = 4;
 
-/// Where the columns of a strut's recordings are: displacement, then the channels, then the three switching signals.
+/// Where the columns of a strut's recordings are: displacement, then the recorded channels, then the three switching signals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layout {
-    /// Number of channels of [`CHANNELS`] that are not recorded; they are the first ones.
-    unrecorded: usize,
+    /// Which of [`CHANNELS`] are recorded.
+    recorded: [bool; CHANNELS.len()],
 }
 
 impl Layout {
     /// A strut on a rig: all channels.
-    pub const RIG: Self = Self { unrecorded: 0 };
+    pub const RIG: Self = Self {
+        recorded: [true; CHANNELS.len()],
+    };
     /// A strut in a vehicle: no force.
-    pub const VEHICLE: Self = Self { unrecorded: P1 };
+    pub const VEHICLE: Self = Self {
+        recorded: [false, true, true, true, true],
+    };
+
+    /// The channels of which recordings with all columns hold at least one reading.
+    pub fn of_readings(recordings: &[Recording]) -> Self {
+        let recorded = std::array::from_fn(|channel| {
+            let column = Self::RIG.column(channel);
+            (recordings.iter()).any(|r| r.columns[column].iter().any(|v| v.is_finite()))
+        });
+        Self { recorded }
+    }
+
+    /// Takes the columns of channels that are not recorded out of a recording with all columns.
+    pub fn without_unrecorded(self, recording: &mut Recording) {
+        for channel in (0..CHANNELS.len()).rev().filter(|&channel| !self.has(channel)) {
+            recording.columns.remove(Self::RIG.column(channel));
+        }
+    }
 
     /// Names of the recorded channels.
-    pub fn channels(self) -> &'static [&'static str] {
-        CHANNELS.get(self.unrecorded..).unwrap_or(&[])
+    pub fn channels(self) -> Vec<&'static str> {
+        self.recorded(CHANNELS.to_vec())
+    }
+
+    /// Names of the channels that are not recorded.
+    pub fn unrecorded(self) -> impl Iterator<Item = &'static str> {
+        let all = CHANNELS.into_iter().enumerate();
+        all.filter(move |(channel, _)| !self.has(*channel))
+            .map(|(_, name)| name)
     }
 
     /// Whether a channel of [`CHANNELS`] is recorded.
     pub const fn has(self, channel: usize) -> bool {
-        channel >= self.unrecorded
+        self.recorded[channel]
     }
 
     /// Position of a recorded channel of [`CHANNELS`] among the recorded ones.
-    pub const fn channel(self, channel: usize) -> usize {
-        channel - self.unrecorded
+    pub fn channel(self, channel: usize) -> usize {
+        (0..channel).filter(|&before| self.has(before)).count()
     }
 
     /// Position of the column of a recorded channel of [`CHANNELS`].
-    pub const fn column(self, channel: usize) -> usize {
+    pub fn column(self, channel: usize) -> usize {
         1 + self.channel(channel)
     }
 
     /// Position of the first switching signal.
-    pub const fn valves(self) -> usize {
-        1 + CHANNELS.len() - self.unrecorded
+    pub fn valves(self) -> usize {
+        self.column(CHANNELS.len())
     }
 
     /// The switching signals of a recording.
@@ -68,14 +94,17 @@ impl Layout {
     pub fn unseen(self, site: &Site) -> Option<String> {
         let only_in_force = matches!(site, Site::MainSeal | Site::EndStop);
         (only_in_force && !self.has(FORCE)).then(|| {
-            "it acts on the force only, which a vehicle does not record; record the strut on a test rig".to_owned()
+            "it acts on the force only, which is not recorded; record the strut on a test rig with a load cell"
+                .to_owned()
         })
     }
 
-    /// The simulated channels of a strut that are recorded.
-    pub fn recorded(self, mut all: Series) -> Series {
-        all.drain(..self.unrecorded);
-        all
+    /// What is recorded of the channels of a strut.
+    pub fn recorded<T>(self, all: Vec<T>) -> Vec<T> {
+        let all = all.into_iter().enumerate();
+        all.filter(|(channel, _)| self.has(*channel))
+            .map(|(_, own)| own)
+            .collect()
     }
 }
 
@@ -83,7 +112,7 @@ impl Layout {
 #[must_use]
 pub fn columns() -> Vec<ColumnSpec> {
     let mut specs = vec![ColumnSpec::new("displacement_m", ColumnKind::Input)];
-    specs.extend(CHANNELS.map(|name| ColumnSpec::new(name, ColumnKind::Output)));
+    specs.extend(CHANNELS.map(ColumnSpec::optional));
     specs.extend(["valve1", "valve2", "valve3"].map(|name| ColumnSpec::new(name, ColumnKind::Switch)));
     specs
 }

@@ -14,23 +14,30 @@ use crate::specimen::channel::{Channel, Series};
 /// Fixed, so that a report is the same every time.
 const SEED: u64 = 1;
 
-/// The inputs once more with displacement noise of standard deviation `noise_m`, smoothed as recordings are.
+/// Samples on either side over which a deviation is taken.
+const BESIDE: usize = 25;
+/// By how much the steps of the converter are moved, in steps: neither a whole nor a half one.
+const MOVED: f64 = 0.38;
+
+/// The displacement with noise once more, `noise_m` its standard deviation at each sample. Where the converter has coarse steps, m, the
+/// noise is what steps at other positions make: it stands still while the strut does.
 #[must_use]
-pub fn jittered(inputs: &Inputs, noise_m: f64) -> Inputs {
+pub fn drawn_again(inputs: &Inputs, noise_m: &dyn Fn(usize) -> f64, step_m: Option<f64>) -> Vec<f64> {
     let mut rng = ChaCha8Rng::seed_from_u64(SEED);
     let motion = &inputs.motion;
     // Smoothing adds up many samples, so plus or minus one standard deviation is as good as a normal number.
-    let noisy: Vec<f64> = std::iter::once(motion.start_m)
+    std::iter::once(motion.start_m)
         .chain(motion.segments.iter().map(|s| s.to_m))
-        .map(|x| {
-            if rng.next_u32() & 1 == 0 {
-                x + noise_m
-            } else {
-                x - noise_m
+        .enumerate()
+        .map(|(k, x)| {
+            let up = rng.next_u32() & 1 == 0;
+            match step_m {
+                Some(step) => step * ((x / step + MOVED).round() - MOVED),
+                None if up => x + noise_m(k),
+                None => x - noise_m(k),
             }
         })
-        .collect();
-    Inputs::from_recording(&inputs.time_s, &noisy, &inputs.signals, noise_m)
+        .collect()
 }
 
 /// Mean square of the difference that displacement noise makes, in units of the channels' noise, and the number of values.
@@ -48,6 +55,22 @@ pub fn excess(
         count += difference.len();
     }
     Some((sum, count))
+}
+
+/// Root mean square of a series around each sample.
+#[must_use]
+pub fn local_deviation(series: &[f64]) -> Vec<f64> {
+    let mut sums = Vec::with_capacity(series.len() + 1);
+    sums.push(0.0);
+    for v in series {
+        sums.push(sums[sums.len() - 1] + v * v);
+    }
+    (0..series.len())
+        .map(|k| {
+            let (from, to) = (k.saturating_sub(BESIDE), (k + BESIDE + 1).min(series.len()));
+            ((sums[to] - sums[from]).max(0.0) / (to - from) as f64).sqrt()
+        })
+        .collect()
 }
 
 /// What two motions make different, every recorded channel, in the unit of its column; `None` if the model cannot be simulated.
@@ -81,8 +104,10 @@ mod tests {
                 noise: if *c == "force_N" { 12.0 } else { 4e3 },
             })
             .collect();
-        let mean = |noise| {
-            excess(&model, &inputs, &jittered(&inputs, noise), Layout::RIG, &channels).map(|(s, n)| s / n as f64)
+        let mean = |noise: f64| {
+            let drawn = drawn_again(&inputs, &|_| noise, None);
+            let jittered = Inputs::from_recording(&inputs.time_s, &drawn, &inputs.signals, noise);
+            excess(&model, &inputs, &jittered, Layout::RIG, &channels).map(|(s, n)| s / n as f64)
         };
         let (none, some, more) = (mean(0.0).unwrap(), mean(5e-6).unwrap(), mean(2e-5).unwrap());
         // A motion that was smooth is changed a little by being smoothed once more, also without noise.

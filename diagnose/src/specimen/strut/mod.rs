@@ -8,7 +8,7 @@ mod relations;
 
 use std::sync::OnceLock;
 
-use oleo_interface::Valve;
+use oleo_interface::{StrutValves, Valve};
 use oleo_plant_sim::model_file::InvalidValue;
 use oleo_plant_sim::strut::{COLUMNS, Inputs, StrutModel, record_column, replay, smooth_free_motion};
 use rayon::prelude::*;
@@ -25,36 +25,128 @@ use super::relation::MeasuredRelation;
 use crate::effect::{ALL, Candidate, of, sensor, unlisted};
 use crate::error::DiagnoseError;
 use crate::excitation;
+use crate::instrument::{Examined, Finding, Flaw, Stated};
 use crate::parameter::Parameter;
 use crate::recording::{ColumnSpec, GapPolicy, Recording};
 use crate::vocabulary::SpecimenKind;
 use crate::vocabulary::{Branch, Column, EffectId, Place, Site, State};
+
+/// Fewest channels of [`CHANNELS`] from which a strut is diagnosed: with fewer an effect and its rivals look alike.
+pub const FEWEST_CHANNELS: usize = 4;
+
+/// Noise ratio that a complete model reaches where the motion is poorly known. What it leaves unknown is counted as noise, and the size of
+/// that noise, taken from one other draw, is known to about a fifth of its variance.
+const FLOOR_OF_POOR_MOTION: f64 = 1.1;
 
 /// A strut with its recordings.
 pub struct TwoStageStrut {
     model: StrutModel,
     recordings: Vec<Recording>,
     layout: Layout,
+    is_in_vehicle: bool,
     inputs: Vec<Inputs>,
     channels: Vec<Channel>,
     calibration: Vec<Calibration>,
     parameters: Vec<Parameter>,
     candidates: Vec<Candidate>,
+    /// What the recordings say of the instruments, by which residuals are judged.
+    instruments: Examined,
     /// The inputs with displacement noise once more; made when somebody asks for the floor.
     jittered: OnceLock<Vec<Inputs>>,
 }
 
 impl TwoStageStrut {
-    /// Puts model and recordings together.
+    /// Puts model and recordings together. The recordings have all columns; a channel of which none holds a reading (only NaN) is
+    /// not recorded, and is not compared. What the instruments do beside what the model states is looked for, and counted.
     ///
     /// # Errors
-    /// A model whose numbers are impossible, or that states no noise for a channel.
-    pub fn new(model: StrutModel, recordings: Vec<Recording>) -> Result<Self, String> {
-        let noise = displacement_noise(&model);
-        let inputs = (recordings.iter())
-            .map(|r| Inputs::from_recording(&r.time_s, &r.columns[0], &Layout::RIG.signals(r), noise))
+    /// A model whose numbers are impossible, or that states no noise for a channel; fewer than [`FEWEST_CHANNELS`] channels.
+    pub fn new(model: StrutModel, mut recordings: Vec<Recording>) -> Result<Self, String> {
+        let layout = Layout::of_readings(&recordings);
+        if layout.channels().len() < FEWEST_CHANNELS {
+            let missing: Vec<&str> = layout.unrecorded().collect();
+            return Err(format!(
+                "the recordings hold no {}: record at least {FEWEST_CHANNELS} of {}",
+                missing.join(", "),
+                CHANNELS.join(", ")
+            ));
+        }
+        recordings.iter_mut().for_each(|r| layout.without_unrecorded(r));
+        let stated: Vec<Stated> = (std::iter::once(COLUMNS[0]).chain(layout.channels()))
+            .map(|name| Stated {
+                column: Column::known(name),
+                noise: model.noise.get(name).copied().unwrap_or(0.0),
+            })
             .collect();
-        Self::with_layout(model, recordings, inputs, Layout::RIG)
+        let mut instruments = Examined::of(&mut recordings, &stated);
+        let absent = layout.unrecorded().map(|name| Finding {
+            column: Some(Column::known(name)),
+            flaw: Flaw::NotRecorded,
+        });
+        instruments.findings.splice(0..0, absent);
+        let inputs = (recordings.iter().enumerate())
+            .map(|(k, r)| smoothed(&r.time_s, &r.columns[0], &layout.signals(r), &instruments, k))
+            .collect();
+        let mut strut = Self::with_layout(model, recordings, inputs, layout, instruments)?;
+        strut.count_poor_motion();
+        strut.take_out_more_spikes();
+        Ok(strut)
+    }
+
+    /// Counts as noise what a poorly measured motion leaves unknown of the other channels: the difference that another draw of its noise
+    /// makes in the believed model.
+    fn count_poor_motion(&mut self) {
+        if !self.instruments.motion_is_poor {
+            return;
+        }
+        let drawn: Vec<Option<Series>> = (0..self.inputs.len())
+            .into_par_iter()
+            .map(|r| floor::differences(&self.model, &self.inputs[r], &self.jittered()[r], self.layout))
+            .collect();
+        for (r, differences) in drawn.iter().enumerate() {
+            for (c, series) in differences.iter().flatten().enumerate() {
+                self.instruments.add_noise(r, 1 + c, &floor::local_deviation(series));
+            }
+        }
+    }
+
+    /// Takes out the spikes that the motion hid.
+    fn take_out_more_spikes(&mut self) {
+        let has_spikes = |f: &Finding| matches!(f.flaw, Flaw::Spikes { .. });
+        if !self.instruments.findings.iter().any(has_spikes) {
+            return;
+        }
+        let believed = self.as_given();
+        let simulated: Vec<Option<Series>> = (0..self.recordings.len())
+            .into_par_iter()
+            .map(|r| self.simulate(&believed, r).ok())
+            .collect();
+        self.instruments
+            .take_out_spikes_beside(&mut self.recordings, &simulated);
+    }
+
+    /// The model as it is given.
+    fn as_given(&self) -> Hypothesis {
+        Hypothesis {
+            calibration: vec![0.0; self.parameters.len()],
+            effects: vec![],
+        }
+    }
+
+    /// The inputs with the noise of the displacement once more.
+    fn jittered(&self) -> &[Inputs] {
+        self.jittered.get_or_init(|| {
+            let instruments = &self.instruments;
+            (self.inputs.par_iter().enumerate())
+                .map(|(k, inputs)| {
+                    let uneven = instruments.noise_of_moving_samples(k);
+                    let even = instruments.noise_of_motion[k];
+                    let noise = |sample: usize| uneven.as_ref().map_or(even, |noise| noise[sample]);
+                    let drawn = floor::drawn_again(inputs, &noise, instruments.step_of_motion);
+                    smoothed(&inputs.time_s, &drawn, &inputs.signals, instruments, k)
+                })
+                .collect()
+        })
     }
 
     /// A strut in a vehicle, whose recordings hold no force: displacement, p1 to p4, and the three switching signals. A pressure
@@ -78,7 +170,9 @@ impl TwoStageStrut {
             inputs.push(with(motion.best));
             possible.push(with(motion.possible));
         }
-        let mut strut = Self::with_layout(model, recordings, inputs, Layout::VEHICLE)?;
+        let as_stated = Examined::default();
+        let mut strut = Self::with_layout(model, recordings, inputs, Layout::VEHICLE, as_stated)?;
+        strut.is_in_vehicle = true;
         strut.add_noise_of_motion(&possible);
         Ok(strut)
     }
@@ -87,10 +181,7 @@ impl TwoStageStrut {
     /// motions; its size is measured by the second difference of the residuals, in which a model that lacks something shows next
     /// to nothing, because that changes slowly.
     fn add_noise_of_motion(&mut self, possible: &[Inputs]) {
-        let believed = Hypothesis {
-            calibration: vec![0.0; self.parameters.len()],
-            effects: vec![],
-        };
+        let believed = self.as_given();
         let mut sums = vec![Unknown::default(); self.channels.len()];
         for (r, (best, possible)) in self.inputs.iter().zip(possible).enumerate() {
             let Some(differences) = floor::differences(&self.model, best, possible, self.layout) else {
@@ -114,53 +205,61 @@ impl TwoStageStrut {
         recordings: Vec<Recording>,
         inputs: Vec<Inputs>,
         layout: Layout,
+        instruments: Examined,
     ) -> Result<Self, String> {
-        let channels: Vec<Channel> = (layout.channels())
-            .iter()
+        let mut channels: Vec<Channel> = (layout.channels().into_iter())
             .map(|c| Channel::of(Column::known(c), &model.noise))
             .collect::<Result<_, _>>()
             .map_err(|invalid| invalid.to_string())?;
+        for (channel, noise) in channels.iter_mut().zip(instruments.noise.iter().skip(1)) {
+            channel.noise = *noise;
+        }
         let displacement_noise = displacement_noise(&model);
-        let noise = |channel: usize| channels[layout.channel(channel)].noise;
-        let pressure_noise = noise(P3).max(noise(P4));
-        let (calibration, parameters) = calibration::of(&model);
+        let noises = [P3, P4].map(|c| layout.has(c).then(|| channels[layout.channel(c)].noise));
+        let pressure_noise = noises.into_iter().flatten().fold(0.0, f64::max);
+        let (calibration, parameters) = calibration::of(&model, layout);
         let mut strut = Self {
             model,
             recordings,
             layout,
+            is_in_vehicle: false,
             inputs,
             channels,
             calibration,
             parameters,
             candidates: vec![],
+            instruments,
             jittered: OnceLock::new(),
         };
-        let excited = |recordings: &[Recording]| excitation::Strut::of(recordings, pressure_noise, displacement_noise);
-        let believed = excited(&strut.as_believed()?);
-        let excitation = excitation::Strut::of_measured_or_believed(excited(&strut.recordings), &believed);
+        let excited = |recordings: &[Recording], layout: Layout| {
+            let columns = excitation::StrutColumns {
+                channels: std::array::from_fn(|c| layout.has(c).then(|| layout.column(c))),
+                valves: layout.valves(),
+            };
+            excitation::Strut::of(recordings, &columns, pressure_noise, displacement_noise)
+        };
+        let believed = excited(&strut.as_believed()?, Layout::RIG);
+        let excitation = excitation::Strut::of_measured_or_believed(excited(&strut.recordings, layout), &believed);
         strut.candidates = candidates(&strut.model, &excitation, layout);
         Ok(strut)
     }
 
-    /// The recordings as the believed model would have them. A recording that it cannot simulate is left out.
+    /// The recordings as the believed model would have them, with all columns. A recording that it cannot simulate is left out.
     ///
     /// # Errors
     /// A model that cannot simulate the first recording (that cannot even stand still), with the model's own words.
     fn as_believed(&self) -> Result<Vec<Recording>, String> {
-        let believed = Hypothesis {
-            calibration: vec![0.0; self.parameters.len()],
-            effects: vec![],
-        };
+        let believed = self.as_given();
         let simulated: Vec<Result<Series, String>> = (0..self.recordings.len())
             .into_par_iter()
-            .map(|r| self.simulate(&believed, r))
+            .map(|r| self.all_channels(&believed, r))
             .collect();
         let mut all = Vec::with_capacity(simulated.len());
         for (k, (recording, simulated)) in self.recordings.iter().zip(simulated).enumerate() {
             match simulated {
                 Ok(channels) => {
                     let mut recording = recording.clone();
-                    recording.columns.splice(1..=channels.len(), channels);
+                    recording.columns.splice(1..self.layout.valves(), channels);
                     all.push(recording);
                 }
                 Err(why) if k == 0 => return Err(why),
@@ -191,6 +290,21 @@ impl TwoStageStrut {
             }
         }
         model
+    }
+
+    /// All of [`CHANNELS`] under a hypothesis, also those that are not recorded.
+    fn all_channels(&self, hypothesis: &Hypothesis, recording: usize) -> Result<Series, String> {
+        let mut model = self.applied(hypothesis);
+        // Faults of the displacement sensor change the motion; all other instruments are applied afterwards.
+        model.effects.retain_sensor_faults(|column| column == COLUMNS[0]);
+        let p = replay(&model, &self.inputs[recording]).map_err(|e| e.to_string())?;
+        let [p1, p2, p3, p4] = p.pressure_pa;
+        let series = vec![p.force_n, p1, p2, p3, p4];
+        if series.iter().all(|s| s.iter().all(|v| v.is_finite())) {
+            Ok(series)
+        } else {
+            Err("the simulation diverged to values that are not numbers".to_owned())
+        }
     }
 
     /// What was measured, for relations that need no model.
@@ -253,46 +367,43 @@ impl Specimen for TwoStageStrut {
     }
 
     fn simulate(&self, hypothesis: &Hypothesis, recording: usize) -> Result<Series, String> {
-        let mut model = self.applied(hypothesis);
-        // Faults of the displacement sensor change the motion; all other instruments are applied afterwards.
-        model.effects.retain_sensor_faults(|column| column == COLUMNS[0]);
-        let p = replay(&model, &self.inputs[recording]).map_err(|e| e.to_string())?;
-        let [p1, p2, p3, p4] = p.pressure_pa;
-        let series = self.layout.recorded(vec![p.force_n, p1, p2, p3, p4]);
-        if series.iter().all(|s| s.iter().all(|v| v.is_finite())) {
-            Ok(series)
-        } else {
-            Err("the simulation diverged to values that are not numbers".to_owned())
-        }
+        Ok(self.layout.recorded(self.all_channels(hypothesis, recording)?))
     }
 
     fn observe(&self, hypothesis: &Hypothesis, recording: usize, truth: &Series) -> Series {
         let effects = self.applied(hypothesis).effects;
         let time_s = &self.recordings[recording].time_s;
         let mut shown = truth.clone();
-        for (column, series) in self.layout.channels().iter().zip(&mut shown) {
+        for (column, series) in self.layout.channels().into_iter().zip(&mut shown) {
             record_column(&effects, column, time_s, series);
         }
         shown
     }
 
     fn noise_floor(&self, hypothesis: &Hypothesis) -> f64 {
-        if self.layout == Layout::VEHICLE {
-            // What the motion leaves unknown is part of the channels' noise.
+        // What the motion leaves unknown is part of the channels' noise.
+        if self.is_in_vehicle {
             return 1.0;
         }
+        if self.instruments.motion_is_poor {
+            return FLOOR_OF_POOR_MOTION;
+        }
         let model = self.applied(hypothesis);
-        let noise = model.noise.get("displacement_m").copied().unwrap_or(0.0);
-        let jittered = self
-            .jittered
-            .get_or_init(|| (self.inputs.par_iter()).map(|i| floor::jittered(i, noise)).collect());
         let excesses: Vec<(f64, usize)> = (self.inputs.par_iter())
-            .zip(jittered)
+            .zip(self.jittered())
             .filter_map(|(as_is, jittered)| floor::excess(&model, as_is, jittered, self.layout, &self.channels))
             .collect();
         // Summed in order, so that the figure has the same bits on any number of threads.
         let (sum, count) = (excesses.iter()).fold((0.0, 0), |(sum, count), (s, c)| (sum + s, count + c));
         (1.0 + sum / count.max(1) as f64).sqrt()
+    }
+
+    fn relative_noise(&self, recording: usize, channel: usize) -> Option<&[f64]> {
+        self.instruments.relative(recording, 1 + channel)
+    }
+
+    fn instruments(&self) -> &[Finding] {
+        &self.instruments.findings
     }
 
     fn model_toml(&self, hypothesis: &Hypothesis) -> Result<String, String> {
@@ -321,7 +432,10 @@ impl Specimen for TwoStageStrut {
     }
 
     fn nearest_channels(&self, place: &Place) -> Vec<Column> {
-        let known = |channels: &[usize]| channels.iter().map(|&c| Column::known(CHANNELS[c])).collect();
+        let known = |channels: &[usize]| {
+            let recorded = channels.iter().filter(|&&c| self.layout.has(c));
+            recorded.map(|&c| Column::known(CHANNELS[c])).collect()
+        };
         match &place.site {
             Site::MainSeal | Site::EndStop => known(&[FORCE]),
             Site::MainChamber => known(&[P1]),
@@ -343,20 +457,37 @@ impl Specimen for TwoStageStrut {
         let motion = &self.inputs[recording].motion;
         let mut speed: Vec<f64> = motion.segments.iter().map(|s| s.to_m_s).collect();
         speed.insert(0, 0.0);
-        let column = |channel: usize| &r.columns[self.layout.column(channel)];
-        let across = |a: usize, b: usize| column(a).iter().zip(column(b)).map(|(a, b)| a - b).collect();
+        let column = |channel: usize| (self.layout.has(channel)).then(|| &r.columns[self.layout.column(channel)]);
+        let across = |state: State, a: usize, b: usize| {
+            let difference = column(a)?.iter().zip(column(b)?).map(|(a, b)| a - b).collect();
+            Some(StateSeries::new(state, difference))
+        };
         let mut states = vec![
             StateSeries::new(State::Displacement, r.columns[0].clone()),
             StateSeries::new(State::Speed, speed),
-            StateSeries::new(State::P1, column(P1).clone()),
-            StateSeries::new(State::P1MinusP2, across(P1, P2)),
-            StateSeries::new(State::P1MinusP3, across(P1, P3)),
-            StateSeries::new(State::P3MinusP4, across(P3, P4)),
         ];
+        states.extend(column(P1).map(|p1| StateSeries::new(State::P1, p1.clone())));
+        states.extend(across(State::P1MinusP2, P1, P2));
+        states.extend(across(State::P1MinusP3, P1, P3));
+        states.extend(across(State::P3MinusP4, P3, P4));
         if let Some(since) = self.since_edge(recording) {
             states.push(StateSeries::new(State::TimeSinceSwitching, since));
         }
         states
+    }
+}
+
+/// The inputs of a recording, its displacement smoothed by what is known of its noise.
+fn smoothed(
+    time_s: &[f64],
+    displacement_m: &[f64],
+    signals: &[StrutValves<bool>],
+    instruments: &Examined,
+    recording: usize,
+) -> Inputs {
+    match instruments.noise_of_moving_samples(recording) {
+        Some(noise) => Inputs::from_uneven_recording(time_s, displacement_m, signals, &noise),
+        None => Inputs::from_recording(time_s, displacement_m, signals, instruments.noise_of_motion[recording]),
     }
 }
 
@@ -420,7 +551,10 @@ fn candidates(model: &StrutModel, excitation: &excitation::Strut, layout: Layout
     });
     let nameless = of_effect(EffectId::Unlisted);
     (physics.chain(faults).chain(nameless))
-        .filter(|candidate| layout.has(FORCE) || candidate.place.sensor() != Some(&Column::FORCE))
+        .filter(|candidate| {
+            let sensor = candidate.place.sensor();
+            sensor.is_none_or(|sensor| layout.unrecorded().all(|name| *sensor != name))
+        })
         .map(|candidate| {
             let unseen = layout.unseen(&candidate.place.site);
             candidate.testable_unless(excitation.still().or(unseen))

@@ -57,21 +57,26 @@ impl<'a> Measured<'a> {
         // At rest: nothing moves, and no oil flows from one accumulator to the other after a valve has opened.
         let rest = |r: usize, k: usize| self.is_quiet(r, k) && self.is_steady(r, k);
         let open = |r: usize, k: usize, valve: Valve| self.is_held(r, k, valve, true);
-        let force_balance = self.layout.has(FORCE).then(|| {
+        let force_balance = (self.layout.has(FORCE) && self.layout.has(P1)).then(|| {
             let force_noise = (noise(FORCE) * noise(FORCE) + area * area * noise(P1) * noise(P1)).sqrt();
             self.tested("force balance: force - A p1", force_noise, |r, k| {
                 Some(m(r, FORCE, k) - area * m(r, P1, k))
             })
         });
-        let others = [
+        let both = |a: usize, b: usize| self.layout.has(a) && self.layout.has(b);
+        let valve_3 = both(P1, P3).then(|| {
             self.tested("closed valve 3: p3 = p1", difference(P1, P3), |r, k| {
                 (self.is_held(r, k, Valve::Spring, false)).then(|| m(r, P1, k) - m(r, P3, k))
-            }),
+            })
+        });
+        let path_1 = both(P1, P2).then(|| {
             self.tested(
                 "path 1 at rest and settled, valve 1 open: p1 = p2",
                 difference(P1, P2),
                 |r, k| (rest(r, k) && open(r, k, Valve::Bypass1)).then(|| m(r, P1, k) - m(r, P2, k)),
-            ),
+            )
+        });
+        let path_2 = both(P1, P4).then(|| {
             self.tested(
                 "path 2 at rest and settled, valves 2 and 3 open: p1 = p4",
                 difference(P1, P4),
@@ -79,9 +84,9 @@ impl<'a> Measured<'a> {
                     (rest(r, k) && open(r, k, Valve::Bypass2) && open(r, k, Valve::Spring))
                         .then(|| m(r, P1, k) - m(r, P4, k))
                 },
-            ),
-        ];
-        force_balance.into_iter().chain(others).collect()
+            )
+        });
+        [force_balance, valve_3, path_1, path_2].into_iter().flatten().collect()
     }
 
     /// Noise of a recorded channel of [`CHANNELS`](super::CHANNELS), in the unit of its column.
@@ -129,7 +134,7 @@ impl<'a> Measured<'a> {
         let Some(before) = sample.checked_sub((STEADY_S / interval.max(1e-6)).ceil() as usize) else {
             return false;
         };
-        [P2, P4].iter().all(|&c| {
+        [P2, P4].iter().filter(|&&c| self.layout.has(c)).all(|&c| {
             let p = &r.columns[self.layout.column(c)];
             (p[sample] - p[before]).abs() < STEADY_NOISE * self.noise(c)
         })

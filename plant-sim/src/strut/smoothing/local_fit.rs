@@ -1,6 +1,7 @@
 //! Fits polynomials over the neighbourhood of a sample, and decides how wide the neighbourhood may be.
 
 use super::chi_square::largest_chi_square;
+use super::noise::Noise;
 
 /// Window lengths that are tried to one side, samples.
 const LENGTHS: [usize; 13] = [4, 5, 6, 8, 11, 15, 20, 27, 36, 48, 64, 86, 114];
@@ -61,8 +62,8 @@ impl Basis {
         Self { columns, slopes }
     }
 
-    /// Fit `x` around point `at`, if the noise explains the residual.
-    fn fit(&self, x: &[f64], at: usize, noise: f64) -> Option<Fit> {
+    /// Fit `x` around point `at`, if noise of this variance explains the residual.
+    fn fit(&self, x: &[f64], at: usize, variance: f64) -> Option<Fit> {
         let origin = x[at];
         // The residual's square is that of the data less that of its projections (Bessel).
         let mut residual: f64 = x.iter().map(|x| (x - origin) * (x - origin)).sum();
@@ -81,7 +82,7 @@ impl Basis {
         }
         let freedom = (x.len() - self.columns.len()) as f64;
         let rounding = 1e-13 * total;
-        let limit = noise * noise * largest_chi_square(freedom.max(1.0)) + rounding;
+        let limit = variance * largest_chi_square(freedom.max(1.0)) + rounding;
         (freedom == 0.0 || residual <= limit).then_some(out)
     }
 }
@@ -102,16 +103,16 @@ impl Bases {
     }
 
     /// The fit over samples `from..to` around `at`, if the noise explains what it leaves.
-    pub fn fit(&self, x: &[f64], from: usize, to: usize, at: usize, noise: f64) -> Option<Fit> {
+    pub fn fit(&self, x: &[f64], from: usize, to: usize, at: usize, noise: &Noise) -> Option<Fit> {
         self.by_length
             .get(to - from)?
             .as_ref()?
-            .fit(x.get(from..to)?, at - from, noise)
+            .fit(x.get(from..to)?, at - from, noise.variance(from, to))
     }
 
     /// Number of samples to one side of `at` that one polynomial explains, at most. The search starts at `hint`, the
     /// neighbour's answer.
-    pub fn reach(&self, x: &[f64], at: usize, ahead: bool, noise: f64, hint: &mut usize) -> usize {
+    pub fn reach(&self, x: &[f64], at: usize, ahead: bool, noise: &Noise, hint: &mut usize) -> usize {
         let passes = |k: usize| {
             let l = LENGTHS[k];
             let range = if ahead {
@@ -150,7 +151,7 @@ mod tests {
             .collect();
         for degree in [CUBIC, QUINTIC] {
             let bases = Bases::new(degree);
-            let fit = bases.fit(&x, 3, 30, 12, 1e-9).expect("exact");
+            let fit = bases.fit(&x, 3, 30, 12, &Noise::even(1e-9)).expect("exact");
             let (t, per_sample) = (1.2, 0.1);
             assert!((fit.value - x[12]).abs() < 1e-12);
             assert!((fit.slope - per_sample * (-2.0 + 0.9 * t * t)).abs() < 1e-10);
@@ -164,7 +165,7 @@ mod tests {
             .collect();
         let bases = Bases::new(CUBIC);
         let (mut behind, mut ahead) = (0, 0);
-        assert!(bases.reach(&x, 90, true, 5e-6, &mut ahead) <= 12);
-        assert!(bases.reach(&x, 90, false, 5e-6, &mut behind) >= 60);
+        assert!(bases.reach(&x, 90, true, &Noise::even(5e-6), &mut ahead) <= 12);
+        assert!(bases.reach(&x, 90, false, &Noise::even(5e-6), &mut behind) >= 60);
     }
 }

@@ -12,6 +12,7 @@
 //! | `local_fit` | polynomials over a neighbourhood, and how wide it may be |
 //! | `chi_square` | how much noise alone can leave |
 //! | `holds` | stretches without motion, and how moves begin and end at them |
+//! | `noise` | the noise of the samples |
 //! | `samples` | what is known of each sample so far |
 //! | `smooth` | the smoothed motion |
 //! | `free_motion` | the smoothed motion of a strut in a vehicle |
@@ -20,8 +21,9 @@ mod chi_square;
 mod free_motion;
 mod holds;
 mod local_fit;
+mod noise;
 mod samples;
 mod smooth;
 
 pub use free_motion::{FreeMotion, smooth_free_motion};
-pub use smooth::smooth_displacement;
+pub use smooth::{smooth_displacement, smooth_uneven_displacement};

@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use super::holds::hold_still;
 use super::local_fit::{Bases, CUBIC, FEWEST_SAMPLES, Fit, QUINTIC};
+use super::noise::Noise;
 use super::samples::Samples;
 use crate::strut::motion::{Motion, Segment};
 
@@ -21,6 +22,21 @@ use crate::strut::motion::{Motion, Segment};
 /// ```
 #[must_use]
 pub fn smooth_displacement(displacement_m: &[f64], interval_s: f64, noise_m: f64) -> Motion {
+    smooth(displacement_m, interval_s, &Noise::even(noise_m))
+}
+
+/// The same where the samples have different noise, `noise_m` (m) one each: where the times of the samples jitter, it grows with the
+/// speed. If there are not as many as samples, the displacement stands as it is.
+#[must_use]
+pub fn smooth_uneven_displacement(displacement_m: &[f64], interval_s: f64, noise_m: &[f64]) -> Motion {
+    if noise_m.len() == displacement_m.len() {
+        smooth(displacement_m, interval_s, &Noise::of_samples(noise_m))
+    } else {
+        as_recorded(displacement_m, interval_s)
+    }
+}
+
+fn smooth(displacement_m: &[f64], interval_s: f64, noise: &Noise) -> Motion {
     let (x, n) = (displacement_m, displacement_m.len());
     if n < FEWEST_SAMPLES {
         return as_recorded(x, interval_s);
@@ -31,19 +47,19 @@ pub fn smooth_displacement(displacement_m: &[f64], interval_s: f64, noise_m: f64
         after: vec![0.0; n],
     };
     let mut hints = [[0; 2]; 2];
-    let mut smooth = Vec::with_capacity(n);
+    let mut is_smooth = Vec::with_capacity(n);
     for i in 0..n {
-        let neighbourhood = Neighbourhood::of(x, i, noise_m, &mut hints);
-        smooth.push(neighbourhood.is_wide);
+        let neighbourhood = Neighbourhood::of(x, i, noise, &mut hints);
+        is_smooth.push(neighbourhood.is_wide);
         (samples.value[i], samples.before[i], samples.after[i]) = match neighbourhood.fit {
             Some(fit) => (fit.value, fit.slope, fit.slope),
-            None => corner(x, i, noise_m, neighbourhood.cubic_reach),
+            None => corner(x, i, noise, neighbourhood.cubic_reach),
         };
     }
-    for i in (0..n).filter(|i| !smooth[*i]) {
+    for i in (0..n).filter(|i| !is_smooth[*i]) {
         keep_monotone(&mut samples, i);
     }
-    hold_still(&mut samples, x, noise_m);
+    hold_still(&mut samples, x, noise.at_rest);
     let segments = (1..n).map(|i| Segment {
         to_m: samples.value[i],
         from_m_s: samples.after[i - 1] / interval_s,
@@ -70,7 +86,7 @@ struct Neighbourhood {
 
 impl Neighbourhood {
     /// The neighbourhood of sample `i`. `hints` hold the reaches of the sample before, for both degrees and sides.
-    fn of(x: &[f64], i: usize, noise: f64, hints: &mut [[usize; 2]; 2]) -> Self {
+    fn of(x: &[f64], i: usize, noise: &Noise, hints: &mut [[usize; 2]; 2]) -> Self {
         let mut out = Self {
             fit: None,
             is_wide: false,
@@ -111,7 +127,7 @@ impl Neighbourhood {
 }
 
 /// A corner: each side on its own. Displacement, and its change per interval before and after.
-fn corner(x: &[f64], i: usize, noise: f64, [behind, ahead]: [usize; 2]) -> (f64, f64, f64) {
+fn corner(x: &[f64], i: usize, noise: &Noise, [behind, ahead]: [usize; 2]) -> (f64, f64, f64) {
     let [cubic, _] = &*BASES;
     let from_left = (behind >= 3)
         .then(|| cubic.fit(x, i - behind, i + 1, i, noise))

@@ -1,4 +1,4 @@
-//! The suspension that the command line selects: fixed valves, or the controller, which is called directly without a
+//! The suspension of a drive: fixed valves, or the controller, which is called directly without a
 //! bus.
 
 use oleo_controller::{Builder, Configuration, ConfigurationError, Inputs, State, VehicleDescription, tick};
@@ -8,7 +8,7 @@ use oleo_plant_sim::model_file::InvalidValue;
 use oleo_plant_sim::strut::{Strut, StrutOutput};
 use oleo_plant_sim::vehicle::TemperedStrut;
 
-use super::arguments::Setting;
+use super::choice::Setting;
 
 /// Where the valves' signals come from.
 pub enum Valves {

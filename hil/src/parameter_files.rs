@@ -3,15 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use oleo_plant_sim::handling::HandlingParameters;
+use oleo_plant_sim::model_file::ModelFileError;
 use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::vehicle::VehicleParameters;
-use oleo_report::OutputDirectory;
-
-use crate::failure::Failure;
+use oleo_report::{OutputDirectory, OutputError};
 
 /// Parameters as they were read, once, so that results hold what was used.
 pub struct Parameters {
+    /// Body, axles, seats.
     pub vehicle: VehicleParameters,
+    /// Steering, tyres, brakes, driver.
     pub handling: HandlingParameters,
     /// Charged for the load that its file says.
     pub strut: StrutModel,
@@ -22,11 +23,14 @@ pub struct Parameters {
 
 impl Parameters {
     /// Reads the given files, and uses the built-in defender110 if a file is not given.
+    ///
+    /// # Errors
+    /// A file cannot be read, or is wrong; one line with file, line and key.
     pub fn read(
         vehicle: Option<&PathBuf>,
         handling: Option<&PathBuf>,
         strut: Option<&PathBuf>,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, ModelFileError> {
         let given = |path: Option<&PathBuf>, what: &str, built_in: &str| match path {
             Some(path) => read(path, what),
             None => Ok((built_in.to_owned(), "presets".to_owned())),
@@ -45,31 +49,44 @@ impl Parameters {
     }
 
     /// Puts the parameters of vehicle and handling into the results, so that they can be given back.
-    pub fn keep_vehicle(&self, out: &mut OutputDirectory) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn keep_vehicle(&self, out: &mut OutputDirectory) -> Result<(), OutputError> {
         out.write("vehicle.toml", &self.vehicle_text)?;
-        Ok(out.write("handling.toml", &self.handling_text)?)
+        out.write("handling.toml", &self.handling_text)
     }
 
     /// Puts all of them into the results.
-    pub fn keep(&self, out: &mut OutputDirectory) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    /// A file cannot be written.
+    pub fn keep(&self, out: &mut OutputDirectory) -> Result<(), OutputError> {
         self.keep_vehicle(out)?;
-        Ok(out.write("strut.toml", &self.strut_text)?)
+        out.write("strut.toml", &self.strut_text)
     }
 }
 
 /// The strut in a model file, charged for the load that the file says.
-pub fn strut(path: &Path) -> Result<StrutModel, Failure> {
+///
+/// # Errors
+/// As [`Parameters::read`].
+pub fn strut(path: &Path) -> Result<StrutModel, ModelFileError> {
     let (text, name) = read(path, "model")?;
-    Ok(StrutModel::from_toml(&text, &name)?)
+    StrutModel::from_toml(&text, &name)
 }
 
 /// Text and name of a file of `what`.
-pub fn read(path: &Path, what: &str) -> Result<(String, String), Failure> {
+///
+/// # Errors
+/// The file cannot be read.
+pub fn read(path: &Path, what: &str) -> Result<(String, String), ModelFileError> {
     let name = path.display().to_string();
     match std::fs::read_to_string(path) {
         Ok(text) => Ok((text, name)),
-        Err(error) => Err(Failure::new(format!(
-            "{name}: cannot read the {what}: {error}; check the path"
-        ))),
+        Err(error) => {
+            let what = format!("cannot read the {what}: {error}; check the path");
+            Err(ModelFileError::new(&name, None, &what))
+        }
     }
 }

@@ -1,9 +1,8 @@
-//! Converts the options of the command line into a drive for either model.
+//! Converts what is asked for into a drive for either model.
 
 use std::sync::Arc;
 
 use oleo_controller::VehicleDescription;
-use oleo_hil::description::describe;
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::course::{Course, Drive, Run, Sample, Signals, Track};
@@ -15,18 +14,23 @@ use oleo_plant_sim::vehicle::{
 };
 use oleo_report::significant;
 
-use super::arguments::{Args, Kind, Model, Setting};
+use super::choice::{Kind, Setting};
+use super::request::Request;
 use super::suspension::{Valves, struts};
-use crate::commands::course_arguments::option_failure;
-use crate::commands::parameter_files::Parameters;
-use crate::failure::Failure;
+use crate::description::describe;
+use crate::parameter_files::Parameters;
+use crate::run::RunError;
 
 /// Temperature at which the struts were charged, degrees Celsius.
 const CHARGED_AT_C: f64 = 20.0;
 
+/// A manoeuvre on its road, and the vehicle for it.
 pub struct Plan {
+    /// Heading of the report.
     pub title: &'static str,
+    /// Manoeuvre, driver and road.
     pub course: Course,
+    /// The driver's line, and the cones.
     pub track: Track,
     on_struts: VehicleParameters,
     on_coil_springs: VehicleParameters,
@@ -34,46 +38,37 @@ pub struct Plan {
     struts: Corners<TemperedStrut>,
     /// What the controller knows of the vehicle.
     described: VehicleDescription,
+    /// The road in words.
     pub road_name: String,
 }
 
 impl Plan {
-    pub fn new(args: &Args, parameters: &Parameters) -> Result<Self, Failure> {
+    /// Plans a drive.
+    ///
+    /// # Errors
+    /// A setting that is out of its range or has no use; a road or vehicle that is not to be had.
+    pub fn new(request: &Request, parameters: &Parameters) -> Result<Self, RunError> {
+        request.refuse_unused()?;
+        Request::within("score_from_s", request.score_from_s, 0.0, 3600.0)?;
         let Parameters {
             vehicle,
             handling,
             strut,
             ..
         } = parameters;
-        let kind = args.manoeuvre;
-        if kind.steers() && args.model != Model::Handling {
-            return Err(Failure::new(
-                "--model: the ride model can neither steer nor brake; use --model handling for this manoeuvre",
-            ));
-        }
-        if args.model == Model::Ride && args.course.driver.is_some() {
-            return Err(Failure::new(
-                "--driver: the ride model is not steered: take --model handling, or leave it out",
-            ));
-        }
-        let own_road = kind.own_road();
-        if own_road.is_some() && args.road.is_some() {
-            return Err(Failure::new(
-                "--road: this manoeuvre has a road of its own; use --manoeuvre straight to drive over another road",
-            ));
-        }
-        let settings = args.course.settings(kind.manoeuvre());
-        let speed_m_s = args.speed_km_h.unwrap_or(match kind {
+        let kind = request.manoeuvre;
+        let settings = request.course.settings(kind.manoeuvre());
+        let speed_m_s = request.speed_km_h.unwrap_or(match kind {
             Kind::Bump => 5.0,
             _ => settings.kind.usual_speed_km_h(),
         }) / 3.6;
         // Past the obstacle with both axles, and three seconds more.
         let past_bump_s = (kind == Kind::Bump).then(|| (12.0 + vehicle.layout.wheelbase_m) / speed_m_s + 3.0);
-        let duration_s = args.duration_s.or(past_bump_s);
-        let manoeuvre = (settings.manoeuvre(speed_m_s, duration_s)).map_err(|invalid| option_failure(&invalid))?;
-        let name = own_road.or(args.road.as_deref()).unwrap_or("flat");
+        let duration_s = request.duration_s.or(past_bump_s);
+        let manoeuvre = settings.manoeuvre(speed_m_s, duration_s).map_err(RunError::Course)?;
+        let name = kind.own_road().or(request.road.as_deref()).unwrap_or("flat");
         let length_m = settings.road_length_m(&manoeuvre, vehicle);
-        let course = settings.course(manoeuvre, road::from_name_or_path(name, length_m, args.seed)?);
+        let course = settings.course(manoeuvre, road::from_name_or_path(name, length_m, request.seed)?);
         let track = course.track(vehicle);
         let mut road_name = name.to_owned();
         if let Some(measured_m) = course.road.measured_length_m() {
@@ -83,9 +78,9 @@ impl Plan {
             0.0 => {}
             percent => road_name += &format!(", side slope of {percent} %"),
         }
-        let celsius = args.gas_temperature_c.unwrap_or(CHARGED_AT_C);
-        within("--gas-temperature-c", celsius, -60.0, 120.0)?;
-        let load = args.course.load.unwrap_or_default();
+        let celsius = request.gas_temperature_c.unwrap_or(CHARGED_AT_C);
+        Request::within("gas_temperature_c", celsius, -60.0, 120.0)?;
+        let load = request.load.unwrap_or_default();
         let described = describe(vehicle, handling, strut);
         let levelled = load.at_ride_height(vehicle);
         let struts = levelled
@@ -136,8 +131,11 @@ impl Plan {
         Corners::from_fn(|corner| displacement_m[corner] - self.struts[corner].rise_m)
     }
 
-    /// With the handling model.
-    pub fn handling(&self, setting: Setting) -> Result<Run, Failure> {
+    /// Drives the handling model.
+    ///
+    /// # Errors
+    /// A vehicle that cannot stand or a motion that is not finite.
+    pub fn handling(&self, setting: Setting) -> Result<Run, RunError> {
         let (vehicle, handling) = (self.vehicle(setting), &self.handling);
         if setting == Setting::Baseline {
             let drive = Drive::begin(&self.course, vehicle, handling, CoilElement::of_vehicle(vehicle))?;
@@ -152,8 +150,11 @@ impl Plan {
         Ok(Drive::begin(&self.course, vehicle, handling, elements)?.to_end(decide, |_| {})?)
     }
 
-    /// With the ride model; straight ahead only.
-    pub fn ride(&self, setting: Setting) -> Result<Run, Failure> {
+    /// Drives the ride model, straight ahead.
+    ///
+    /// # Errors
+    /// A vehicle that cannot stand.
+    pub fn ride(&self, setting: Setting) -> Result<Run, RunError> {
         let road = Arc::clone(&self.course.road);
         let speed_m_s = self.course.manoeuvre.initial_speed_m_s();
         if setting == Setting::Baseline {
@@ -215,48 +216,4 @@ impl Plan {
         }
         run
     }
-}
-
-/// Refuses an option that nothing has a use for, before its file is read.
-pub fn refuse_unused(args: &Args) -> Result<(), Failure> {
-    if args.model == Model::Both && args.setting.len() > 1 {
-        return Err(Failure::new(
-            "--model both: two models are compared with one setting; give one --setting, or one model",
-        ));
-    }
-    if let Some(twice) = (args.setting.iter().enumerate()).find_map(|(i, s)| args.setting[..i].contains(s).then_some(s))
-    {
-        return Err(Failure::new(format!(
-            "--setting: {} is there twice; name each setting once",
-            twice.name()
-        )));
-    }
-    // The controller knows some of the handling parameters, whatever drives.
-    if args.model == Model::Ride && args.handling.is_some() && !args.setting.contains(&Setting::Controlled) {
-        return Err(Failure::new(
-            "--handling: the ride model does not use handling parameters: take --model handling, or leave it out",
-        ));
-    }
-    if args.setting == [Setting::Baseline] {
-        if args.gas_temperature_c.is_some() {
-            return Err(Failure::new(
-                "--gas-temperature-c: coil springs contain no gas; use another --setting or leave the option out",
-            ));
-        }
-        if args.strut.is_some() {
-            return Err(Failure::new(
-                "--strut: the vehicle as sold stands on coil springs; use another --setting or leave the option out",
-            ));
-        }
-    }
-    Ok(())
-}
-
-fn within(option: &str, value: f64, low: f64, high: f64) -> Result<(), Failure> {
-    if value >= low && value <= high {
-        return Ok(());
-    }
-    Err(Failure::new(format!(
-        "{option} {value}: give a value from {low} to {high}"
-    )))
 }

@@ -9,7 +9,7 @@
 //! On a smooth road nothing has to be decided in time, because the vehicle is stiff already. On a rough one it becomes stiff as
 //! soon as the lateral acceleration stands out of what the road does ([`super::parts::cornering`]), and at once: a lean that the closing
 //! springs trap is smaller than the one that a later closing would find. It stays so while the gas says that it leans
-//! ([`super::parts::load_transfer`]). How rough the road is is told by the running RMS of the
+//! (`parts::load_transfer`). How rough the road is is told by the running RMS of the
 //! body's vertical acceleration, which is not judged while the vehicle corners. Which damper level is best on which road is measured in
 //! `docs/controller.md`.
 

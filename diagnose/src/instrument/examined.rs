@@ -56,8 +56,8 @@ pub struct Examined {
 }
 
 impl Examined {
-    /// Examines the first columns of recordings, of which the very first is the displacement. Spikes become missing readings (a
-    /// straight line in the displacement, which is an input), and mains hum is taken off. Nothing else of the recordings changes.
+    /// Examines the first columns of recordings, of which the very first is the displacement. Spikes become missing readings (in
+    /// the displacement, which is an input, a fitted curve replaces them), and mains hum is taken off. Nothing else of the recordings changes.
     #[must_use]
     pub fn of(recordings: &mut [Recording], stated: &[Stated]) -> Self {
         let steps: Vec<Option<f64>> = (0..stated.len()).map(|c| step(recordings, c)).collect();

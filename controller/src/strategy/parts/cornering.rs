@@ -12,7 +12,7 @@
 //!                          = max((a_q / b_q)^2, (a_s / b_s)^2) / 2    if not
 //!   corners            m > 1:    for 0.4 s at least
 //!                      m > 1.6^2: until |a_q| < 0.6 b_q and |a_s| < 0.6 b_s, and the gas carries both sides alike
-//!                      ([`super::load_transfer`]), for 1.5 s in all
+//!                      (`load_transfer`), for 1.5 s in all
 //! ```
 //!
 //! The errors of the two bands are only weakly correlated, so that both together tell a bend sooner than each alone. A lane change

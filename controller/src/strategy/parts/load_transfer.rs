@@ -3,7 +3,7 @@
 //! [`super::cornering`] follows the lateral acceleration, which comes from p1. A p1 that reads wrong puts a bias on it, and so does a
 //! bend that lasts so long that it is learnt as a side slope. Either could end cornering in the middle of a bend: the springs would
 //! open, and the vehicle would lean much further. How far the first gas of each strut is compressed also tells how the load is
-//! shared, and follows from other sensors, the displacement and p4 ([`crate::plausibility::Trusted::load_to_right_m`]):
+//! shared, and follows from other sensors, the displacement and p4 (`Trusted::load_to_right_m`):
 //!
 //! ```text
 //!   e      = (c_fr + c_rr - c_fl - c_rl) / 2,  lagged by 0.5 s         c  compression of the first gas, m of stroke

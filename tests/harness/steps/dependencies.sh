@@ -16,7 +16,8 @@ sed 's/^/   /' "$log"
 
 if ! cargo deny --version > /dev/null 2>&1; then
     echo "   installing cargo-deny, which takes some minutes"
-    cargo install --quiet --locked cargo-deny > "$OLEO_LOGS/cargo-deny.log" 2>&1 || {
+    # Without optimisation: building takes longer than running.
+    CARGO_PROFILE_DEV_DEBUG=0 cargo install --quiet --debug --locked cargo-deny > "$OLEO_LOGS/cargo-deny.log" 2>&1 || {
         skip "licences, sources, versions and advisories" "no cargo-deny, and none to be installed"
         exit 0
     }

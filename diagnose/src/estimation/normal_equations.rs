@@ -3,7 +3,7 @@
 //! They are kept for each block, because leaving out blocks, for held-out figures and for intervals, is then a matter of
 //! not adding them.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, DVectorView};
 use rayon::prelude::*;
 
 use super::blocks::Blocks;
@@ -147,8 +147,9 @@ pub fn total_cost(blocks: &[NormalEquations]) -> f64 {
     blocks.iter().map(|n| n.cost).sum()
 }
 
+/// nalgebra adds eight sums side by side, which one processor does at once; one sum after the other took a quarter of a diagnosis.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    DVectorView::from_slice(a, a.len()).dot(&DVectorView::from_slice(b, b.len()))
 }
 
 #[cfg(test)]

@@ -18,6 +18,7 @@ pub mod crg;
 mod entry;
 mod error;
 mod grid;
+mod inverse_fft;
 pub mod iso8608;
 mod lanes;
 mod named;

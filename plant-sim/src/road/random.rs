@@ -5,13 +5,13 @@
 //! so the spectrum is met by every track and not only on average. The right track is the left one through the complex
 //! coherence `c` plus an independent rest: `R = c L + sqrt(1 - |c|^2) N`. One inverse FFT makes both.
 //!
-//! Heights are rounded to a micrometre: the FFT library takes its twiddle factors from the platform's sine, whose last
-//! bit differs between platforms, and a road must not.
+//! A road is the same to the bit on every platform (see [`super::inverse_fft`]). Heights are whole micrometres, as a survey has them.
 
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
-use rustfft::{FftPlanner, num_complex::Complex};
+use rustfft::num_complex::Complex;
 
+use super::inverse_fft::inverse_fft;
 use super::{RoadError, TwoTracks};
 
 /// Distance between samples of a synthesised road, m: the grid of the measured Belgian block.
@@ -57,7 +57,7 @@ pub fn synthesise(length_m: f64, seed: u64, spectrum: impl Fn(f64) -> TrackSpect
         both[k] = left + right * Complex::i();
         both[samples - k] = left.conj() + right.conj() * Complex::i();
     }
-    FftPlanner::new().plan_fft_inverse(samples).process(&mut both);
+    inverse_fft(&mut both);
     let heights = both.iter().map(|z| [micrometres(z.re), micrometres(z.im)]).collect();
     Ok(TwoTracks::periodic(SPACING_M, heights))
 }

@@ -39,7 +39,11 @@ fn every_manoeuvre_leaves_table_data_summary_and_page() {
             &["--model", "both", "--setting", "baseline", "--duration-s", "3"],
         ),
         ("bump", &["--model", "both", "--setting", "soft", "--speed-km-h", "10"]),
-        ("straight", &["--model", "ride", "--road", "iso-d", "--duration-s", "3"]),
+        // `hil` has the same short names.
+        (
+            "straight",
+            &["--model", "ride", "--road", "iso-d", "--duration", "3", "--speed", "50"],
+        ),
         ("braking", &["--setting", "soft", "--speed-km-h", "40"]),
         ("braking-in-bend", &["--setting", "baseline", "--road", "iso-c"]),
         ("acceleration", &["--setting", "baseline", "--duration-s", "3"]),

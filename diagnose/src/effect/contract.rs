@@ -33,6 +33,11 @@ pub trait Effect: Sync {
             .map(|(_, symbol)| *symbol)
     }
 
+    /// The same for a law without a name, whose symbols are those of its form.
+    fn symbol_in(&self, _kind: SpecimenKind, _label: &str, key: &str) -> Option<&'static str> {
+        self.symbol(key)
+    }
+
     /// The channels in which the effect shows.
     fn shows_in(&self) -> ShowsIn {
         ShowsIn::NextToItsPlace

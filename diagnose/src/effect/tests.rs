@@ -176,6 +176,25 @@ fn every_number_of_an_effect_has_a_symbol_in_its_equation() {
 }
 
 #[test]
+fn every_number_of_a_law_without_a_name_has_a_symbol_or_the_law_is_a_table() {
+    let kind = SpecimenKind::TwoStageStrut;
+    let mut closed = 0;
+    for candidate in candidates(kind).iter().filter(|c| c.is_unlisted()) {
+        let unlisted = of(candidate.id);
+        let equation = unlisted.equation_in(kind, &candidate.label).expect("an equation");
+        let is_closed = equation.text.contains('=');
+        closed += usize::from(is_closed);
+        for key in candidate.parameters.iter().map(reported_key) {
+            let symbol = unlisted.symbol_in(kind, &candidate.label, key);
+            assert_eq!(symbol.is_some(), is_closed, "{}: {key}", candidate.label);
+            let shown = symbol.is_none_or(|symbol| has_symbol(equation, symbol));
+            assert!(shown, "{}: {key} is not in {}", candidate.label, equation.text);
+        }
+    }
+    assert!(closed > 20, "{closed} laws are equations");
+}
+
+#[test]
 fn every_pair_has_an_experiment_that_says_what_each_of_the_two_does() {
     for &kind in KINDS {
         let all = candidates(kind);

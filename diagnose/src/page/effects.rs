@@ -1,6 +1,6 @@
 //! The section "What": the effects with equation and source, the rivals tested in their place, and all rejected candidates.
 
-use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
+use oleo_plant_sim::strut::{Equation, LawArgument, LawPlace, UnlistedLaw};
 use oleo_report::{Axis, Cell, Column, Curves, Page, Style, Table, significant};
 
 use super::words;
@@ -53,11 +53,11 @@ fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
         words::effect_name(e)
     ));
     if let Some(equation) = known.equation_in(kind, &e.label) {
-        page.equation(equation.text).text(&format!(
-            "{}. Source: {}.",
-            words::sentence(known.meaning()),
-            equation.source
-        ));
+        let meaning = match law(e) {
+            Some(law) if is_closed(equation) => symbols_of_a_law(&law),
+            _ => words::sentence(known.meaning()),
+        };
+        (page.equation(equation.text)).text(&format!("{meaning}. Source: {}.", equation.source));
     }
     if !e.parameters.is_empty() && has_readable_numbers(e) {
         let mut table = Table::new([
@@ -69,7 +69,7 @@ fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
         for p in &e.parameters {
             let (name, unit) = words::parameter(&p.key);
             let (value, interval) = words::value_and_interval(p.value, p.ci95);
-            let name = match known.symbol(&p.key) {
+            let name = match known.symbol_in(kind, &e.label, &p.key) {
                 None | Some("") => name,
                 Some(symbol) => format!("{name}, {symbol}"),
             };
@@ -80,6 +80,27 @@ fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
     if let Some(law) = law(e) {
         page.figure(tabulated(e, &law));
     }
+}
+
+/// Whether the text of a law is an equation, and not the words that stand for a table.
+fn is_closed(equation: Equation) -> bool {
+    equation.text.contains('=')
+}
+
+/// What value and argument of a law's equation are.
+fn symbols_of_a_law(law: &UnlistedLaw) -> String {
+    let quantity = |(name, unit): (&str, &str)| {
+        if unit.is_empty() {
+            format!("the {name}")
+        } else {
+            format!("the {name} in {unit}")
+        }
+    };
+    format!(
+        "Here y is {}, and x is {}",
+        quantity(value(law)),
+        quantity(argument(law.depends_on))
+    )
 }
 
 /// The law of an effect that was fitted as a table.
@@ -122,7 +143,7 @@ fn argument(depends_on: LawArgument) -> (&'static str, &'static str) {
         LawArgument::RelativeVolume => ("gas volume over static gas volume", ""),
         LawArgument::Reading => ("reading", ""),
         LawArgument::ReadingRate => ("rate of the reading", "1/s"),
-        LawArgument::VolumeChange => ("change of gas volume over static gas volume", ""),
+        LawArgument::VolumeChange => ("recent change of v, the gas volume over the static one", ""),
     }
 }
 
@@ -144,10 +165,10 @@ fn value(law: &UnlistedLaw) -> (&'static str, &'static str) {
         LawPlace::ValveTiming => ("time added to the response", "s"),
         LawPlace::ValveMovement => ("duration of the movement", "s"),
         LawPlace::Accumulator1 | LawPlace::Accumulator2 | LawPlace::Accumulators => ("factor on the gas pressure", ""),
-        LawPlace::InstrumentDisplacement => ("added to the reading", "m"),
-        LawPlace::InstrumentForce => ("added to the reading", "N"),
+        LawPlace::InstrumentDisplacement => ("value added to the reading", "m"),
+        LawPlace::InstrumentForce => ("value added to the reading", "N"),
         LawPlace::InstrumentP1 | LawPlace::InstrumentP2 | LawPlace::InstrumentP3 | LawPlace::InstrumentP4 => {
-            ("added to the reading", "Pa")
+            ("value added to the reading", "Pa")
         }
         LawPlace::Accumulator1Friction | LawPlace::Accumulator2Friction => ("pressure held back", "Pa"),
     }
@@ -271,6 +292,27 @@ mod tests {
                 page.equation(equation.text);
                 assert!(page.render().contains("<math "), "{id}: {}", equation.text);
             }
+        }
+    }
+
+    /// A law of a few numbers is an equation, and the page says what its symbols are.
+    #[test]
+    fn a_law_of_few_numbers_is_set_as_an_equation_with_its_quantities() {
+        let label = "opening beside pack 1 over displacement";
+        let equation = of(EffectId::Unlisted).equation_in(SpecimenKind::TwoStageStrut, label);
+        assert!(is_closed(equation.expect("an equation")));
+        let law = unlisted::table(label, &[1e-6, 0.0, 0.01]).expect("a law of the list");
+        assert_eq!(
+            symbols_of_a_law(&law),
+            "Here y is the flow coefficient in m3/s/sqrt(Pa), and x is the displacement in m"
+        );
+        for candidate in unlisted::candidates_of_struts() {
+            let equation = of(EffectId::Unlisted).equation_in(SpecimenKind::TwoStageStrut, &candidate.label);
+            let equation = equation.expect("an equation");
+            let mut page = Page::new("Equation", "oleo diagnose");
+            page.equation(equation.text);
+            let set = page.render().contains("<math ");
+            assert_eq!(set, is_closed(equation), "{}: {}", candidate.label, equation.text);
         }
     }
 

@@ -23,8 +23,7 @@ pub fn section(page: &mut Page, kind: SpecimenKind, diagnosis: &Diagnosis) {
     if !added.is_empty() {
         let mut table = Table::new([Column::text("Added to the model"), Column::text("Value")]);
         for c in added {
-            let value = c.after.parse().map_or(c.after.clone(), |v: f64| significant(v, 5));
-            table.row([c.key.clone(), value]);
+            table.row([c.key.clone(), short(&c.after)]);
         }
         page.table(table);
     }
@@ -93,6 +92,15 @@ fn calibration(page: &mut Page, diagnosis: &Diagnosis) {
     }
 }
 
+/// A value of a model file as a table of the page shows it: a list is drawn above, and stands in the file below.
+fn short(value: &str) -> String {
+    let list = (value.parse::<toml::Value>().ok()).and_then(|value| value.as_array().map(Vec::len));
+    match list {
+        Some(count) => format!("{count} values, in model.toml"),
+        None => value.parse().map_or(value.to_owned(), |v: f64| significant(v, 5)),
+    }
+}
+
 /// A value that differs between two model files.
 #[derive(Debug, PartialEq)]
 struct Change {
@@ -145,6 +153,13 @@ fn compare(key: &str, before: Option<&toml::Value>, after: &toml::Value, out: &m
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_list_is_counted_and_a_number_is_rounded() {
+        assert_eq!(short("[0.1, 0.2, 1e-81]"), "3 values, in model.toml");
+        assert_eq!(short("0.123456789"), "0.12346");
+        assert_eq!(short("\"displacement\""), "\"displacement\"");
+    }
 
     #[test]
     fn additions_and_changes_are_told_apart() {

@@ -33,7 +33,7 @@ pub struct Args {
     pub setting: Vec<Setting>,
     /// Speed, km/h; in constant-radius the speed at the end [default: 5 for bump, 40 for braking-in-bend and acceleration,
     /// otherwise 60]
-    #[arg(long, value_name = "KM_H", allow_negative_numbers = true)]
+    #[arg(long, alias = "speed", value_name = "KM_H", allow_negative_numbers = true)]
     pub speed_km_h: Option<f64>,
     /// Road: belgian, apg-left, apg-right, apg-both, iso-a .. iso-f, flat, or a .crg or .csv file [default: flat; the manoeuvres
     /// belgian and bump have a road of their own]
@@ -45,7 +45,7 @@ pub struct Args {
     #[arg(long, value_name = "CELSIUS", allow_negative_numbers = true)]
     pub gas_temperature_c: Option<f64>,
     /// Simulated time, s [default: 20; lane changes end behind the last cones, and with a time they continue straight ahead]
-    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    #[arg(long, alias = "duration", value_name = "S", allow_negative_numbers = true)]
     pub duration_s: Option<f64>,
     /// Time at the start that is left out of the comfort measures, s
     #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]

@@ -46,7 +46,21 @@ impl Effect for Unlisted {
     }
 
     fn equation_in(&self, kind: SpecimenKind, label: &str) -> Option<Equation> {
-        Some(words(kind, label).map_or(TermId::Unlisted.equation(), |law| law.equation))
+        let tabulated = TermId::Unlisted.equation();
+        Some(match kind {
+            SpecimenKind::TwoStageStrut => strut_laws::closed(label).map_or(tabulated, |closed| Equation {
+                text: closed.equation,
+                source: tabulated.source,
+            }),
+            _ => words(kind, label).map_or(tabulated, |law| law.equation),
+        })
+    }
+
+    fn symbol_in(&self, kind: SpecimenKind, label: &str, key: &str) -> Option<&'static str> {
+        match kind {
+            SpecimenKind::TwoStageStrut => strut_laws::symbol(label, key),
+            _ => self.symbol(key),
+        }
     }
 
     fn in_strut(&self) -> Option<&dyn StrutEffect> {

@@ -1,11 +1,21 @@
 //! A value that is added around one argument: `c exp(-((x - x0) / w)^2)`, a groove or a step at one position.
 
-use super::form::{Form, Grid};
+use super::form::{ClosedForm, Form, Grid};
 use crate::parameter::Parameter;
+
+/// Part of the height below which a flank is zero: a model file does not hold a groove that is 1e-80 deep.
+const NOTHING: f64 = 1e-9;
 
 pub struct Bell;
 
 impl Form for Bell {
+    fn closed(&self) -> Option<ClosedForm> {
+        Some(ClosedForm {
+            equation: "y = y_0 exp(-((x - x_0) / w)^2)",
+            symbols: &["y_0", "x_0", "w"],
+        })
+    }
+
     fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
         vec![
             Parameter::amount("flow_coefficient", grid.visible, grid.most()),
@@ -22,9 +32,11 @@ impl Form for Bell {
         let &[height, at, width] = fitted else {
             return vec![0.0; grid.knots.len()];
         };
-        let off = |x: &f64| (x - at) / width;
-        (grid.knots.iter())
-            .map(|x| height * libm::exp(-off(x) * off(x)))
-            .collect()
+        let part = |x: &f64| {
+            let off = (x - at) / width;
+            let part = libm::exp(-off * off);
+            if part < NOTHING { 0.0 } else { part }
+        };
+        grid.knots.iter().map(|x| height * part(x)).collect()
     }
 }

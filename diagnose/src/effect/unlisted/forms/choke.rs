@@ -1,11 +1,18 @@
 //! A value that multiplies what is believed: `1 / (1 + (a dp)^k)`, a flow that chokes, or a poppet that its flow pulls shut.
 
-use super::form::{Form, Grid};
+use super::form::{ClosedForm, Form, Grid};
 use crate::parameter::Parameter;
 
 pub struct Choke;
 
 impl Form for Choke {
+    fn closed(&self) -> Option<ClosedForm> {
+        Some(ClosedForm {
+            equation: "y = 1 / (1 + (a |x|)^k)",
+            symbols: &["a", "k"],
+        })
+    }
+
     fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
         vec![
             Parameter::amount("inverse_pressure_1_Pa", grid.visible, grid.most()),

@@ -23,8 +23,22 @@ impl Grid {
     }
 }
 
+/// A law of a few numbers as an equation of its value `y` and its argument `x`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ClosedForm {
+    /// The equation, as `oleo_report` sets it.
+    pub equation: &'static str,
+    /// Symbols of the fitted numbers, in their order.
+    pub symbols: &'static [&'static str],
+}
+
 /// How a table comes from fitted numbers.
 pub trait Form: Sync {
+    /// The law as an equation; `None` for a table of free points.
+    fn closed(&self) -> Option<ClosedForm> {
+        None
+    }
+
     /// The parameters that are fitted.
     fn parameters(&self, grid: &Grid) -> Vec<Parameter>;
 

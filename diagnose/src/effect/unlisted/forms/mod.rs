@@ -31,7 +31,7 @@ pub use added::Added;
 pub use bell::Bell;
 pub use choke::Choke;
 pub use factor::Factor;
-pub use form::{Form, Grid};
+pub use form::{ClosedForm, Form, Grid};
 pub use level::Level;
 pub use proportional::{Proportional, ProportionalAmount};
 pub use relaxing::Relaxing;

@@ -1,12 +1,19 @@
 //! A value that is added and is proportional to its argument: one number, of any sign or never negative.
 
-use super::form::{Form, Grid};
+use super::form::{ClosedForm, Form, Grid};
 use crate::parameter::Parameter;
 
 /// The key of its number. `visible` and this number are the value at an argument of one.
 pub struct Proportional(pub &'static str);
 
 impl Form for Proportional {
+    fn closed(&self) -> Option<ClosedForm> {
+        Some(ClosedForm {
+            equation: "y = a x",
+            symbols: &["a"],
+        })
+    }
+
     fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
         let most = grid.most();
         vec![Parameter::departure(self.0, grid.visible, (-most, most))]
@@ -21,6 +28,13 @@ impl Form for Proportional {
 pub struct ProportionalAmount(pub &'static str);
 
 impl Form for ProportionalAmount {
+    fn closed(&self) -> Option<ClosedForm> {
+        Some(ClosedForm {
+            equation: "y = a x",
+            symbols: &["a"],
+        })
+    }
+
     fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
         vec![Parameter::amount(self.0, grid.visible, grid.most())]
     }

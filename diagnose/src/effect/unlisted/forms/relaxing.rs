@@ -1,7 +1,7 @@
 //! A factor that follows what has changed lately and relaxes with one time constant: `1 + a (x - mean of x)`. It stands for a hidden state that
 //! is driven by the argument, such as a temperature.
 
-use super::form::{Form, Grid};
+use super::form::{ClosedForm, Form, Grid};
 use crate::parameter::Parameter;
 
 /// Largest size of the factor's slope.
@@ -10,6 +10,13 @@ const STEEPEST: f64 = 3.0;
 pub struct Relaxing;
 
 impl Form for Relaxing {
+    fn closed(&self) -> Option<ClosedForm> {
+        Some(ClosedForm {
+            equation: "y = 1 + a x, dx/dt = dv/dt - x / T",
+            symbols: &["a", "T"],
+        })
+    }
+
     fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
         vec![
             Parameter::departure("slope", grid.visible, (-STEEPEST, STEEPEST)),

@@ -1,7 +1,7 @@
 //! Values that settle with one time constant from what is believed: `a (1 - exp(-t / T))`, added or as the logarithm of a factor. With a
 //! time constant far beyond the recording this is a drift at a constant rate.
 
-use super::form::{Form, Grid};
+use super::form::{ClosedForm, Form, Grid};
 use crate::parameter::Parameter;
 
 /// Time constants that are tried first, s.
@@ -36,6 +36,13 @@ fn starts(grid: &Grid) -> Vec<Vec<f64>> {
 }
 
 impl Form for SettlingAdded {
+    fn closed(&self) -> Option<ClosedForm> {
+        Some(ClosedForm {
+            equation: "y = y_end (1 - exp(-x / T))",
+            symbols: &["y_end", "T"],
+        })
+    }
+
     fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
         let most = grid.most();
         vec![
@@ -54,6 +61,13 @@ impl Form for SettlingAdded {
 }
 
 impl Form for SettlingLevel {
+    fn closed(&self) -> Option<ClosedForm> {
+        Some(ClosedForm {
+            equation: "y = y_end (1 - exp(-x / T))",
+            symbols: &["y_end", "T"],
+        })
+    }
+
     fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
         vec![Parameter::amount(self.0, grid.visible, grid.most()), time_constant()]
     }
@@ -68,6 +82,13 @@ impl Form for SettlingLevel {
 }
 
 impl Form for SettlingFactor {
+    fn closed(&self) -> Option<ClosedForm> {
+        Some(ClosedForm {
+            equation: "y = exp(a (1 - exp(-x / T)))",
+            symbols: &["a", "T"],
+        })
+    }
+
     fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
         vec![
             Parameter::departure("log_end_factor", grid.visible, (-MOST_LOG, MOST_LOG)),

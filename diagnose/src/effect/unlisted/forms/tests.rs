@@ -41,6 +41,12 @@ fn a_bell_has_its_height_at_its_position_and_falls_to_a_part_in_e_at_its_half_wi
 }
 
 #[test]
+fn the_flanks_of_a_bell_end() {
+    let values = Bell.values(&GRID, &[5.0, -2.0, 0.1]);
+    assert_eq!(values, [5.0, 0.0, 0.0, 0.0, 0.0]);
+}
+
+#[test]
 fn a_choke_lets_half_pass_where_its_argument_is_the_inverse() {
     assert_eq!(Choke.values(&GRID, &[1.0, 2.5])[2..4], [1.0, 0.5]);
 }

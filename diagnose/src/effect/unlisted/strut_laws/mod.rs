@@ -12,6 +12,7 @@ mod valves;
 use law::Law;
 use oleo_plant_sim::strut::UnlistedLaw;
 
+use super::forms::ClosedForm;
 use crate::effect::candidate::Candidate;
 use crate::vocabulary::EffectId;
 
@@ -46,6 +47,20 @@ pub fn table(label: &str, fitted: &[f64]) -> Option<UnlistedLaw> {
         value: law.form.values(&law.grid(), fitted),
         time_constant_s: law.form.time_constant_s(fitted),
     })
+}
+
+/// The law of a label as an equation; `None` for a table of free points.
+#[must_use]
+pub fn closed(label: &str) -> Option<ClosedForm> {
+    laws().find(|law| law.label == label)?.form.closed()
+}
+
+/// The symbol of a fitted number in the equation of a law.
+#[must_use]
+pub fn symbol(label: &str, key: &str) -> Option<&'static str> {
+    let law = laws().find(|law| law.label == label)?;
+    let position = (law.form.parameters(&law.grid()).iter()).position(|p| p.key == key)?;
+    law.form.closed()?.symbols.get(position).copied()
 }
 
 #[cfg(test)]

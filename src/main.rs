@@ -43,6 +43,7 @@ enum Command {
     Predict(commands::predict::Args),
     Compare(commands::compare::Args),
     Convert(commands::convert::Args),
+    Fmu(commands::fmu::Args),
     Seal(commands::seal::Args),
     Show(commands::show::Args),
 }
@@ -58,6 +59,7 @@ fn main() -> ExitCode {
             Command::Predict(args) => commands::predict::run(args),
             Command::Compare(args) => commands::compare::run(&args),
             Command::Convert(args) => commands::convert::run(args),
+            Command::Fmu(args) => commands::fmu::run(args),
             Command::Seal(args) => commands::seal::run(args),
             Command::Show(args) => commands::show::run(args, CommandLine::command()),
         },

@@ -8,11 +8,12 @@ use std::process::Command;
 use support::run;
 
 /// Pages with commands.
-const PAGES: [&str; 5] = [
+const PAGES: [&str; 6] = [
     "README.md",
     "docs/start.md",
     "docs/hil.md",
     "docs/diagnose.md",
+    "docs/fmu.md",
     "docs/handling.md",
 ];
 

@@ -12,6 +12,7 @@ const BYPASS_DWELL_TICKS: u32 = ticks(100) as u32;
 
 /// State of the eight bypass signals.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Dwell {
     open: ValveCommand,
     /// Number of ticks so far. It wraps after 248 days; a valve that last moved exactly then rests once more.

@@ -198,6 +198,7 @@ impl Estimate {
 /// assert!((estimate.vertical_acceleration_m_s2 - 0.980_665).abs() < 1e-3);
 /// ```
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     speed: Corners<DerivativeState>,
     static_load_n: Corners<f32>,

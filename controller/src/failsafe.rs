@@ -68,6 +68,7 @@ pub const MODE_CHANGES_A_MINUTE: usize = 16;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, FromRepr, IntoStaticStr, VariantArray)]
 #[strum(serialize_all = "kebab-case")]
 #[repr(u8)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Mode {
     /// The controller waits for its first complete and plausible set of readings. All valves are closed.
     #[default]
@@ -104,6 +105,7 @@ impl Mode {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, FromRepr, IntoStaticStr, VariantArray)]
 #[strum(serialize_all = "kebab-case")]
 #[repr(u8)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum FaultCode {
     /// There is no fault.
     #[default]
@@ -146,6 +148,7 @@ impl FaultCode {
 
 /// Health of the inputs of one tick, as the plausibility checks found it. See [`State`] for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Health {
     /// Whether each corner has at least one reading that may not be used.
     pub affected: Corners<bool>,
@@ -186,6 +189,7 @@ fn affected_axles(affected: Corners<bool>) -> Axles<bool> {
 /// assert_eq!((0..200).map(|_| state.step(&broken)).last(), Some(Mode::Degraded));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     mode: Mode,
     first_cause: FaultCode,
@@ -200,6 +204,7 @@ pub struct State {
 
 /// How often something has happened, where a minute without it takes one away.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Recurrence {
     count: u8,
     calm: u16,
@@ -227,6 +232,7 @@ impl Recurrence {
 
 /// Whether an axle is restricted, and for how long after its last fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct AxleState {
     restricted: bool,
     /// Number of healthy ticks in a row while restricted.

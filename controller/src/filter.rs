@@ -68,6 +68,7 @@ pub struct SecondOrder {
 
 /// State of [`SecondOrder`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SecondOrderState([f32; 2]);
 
 impl SecondOrder {
@@ -124,6 +125,7 @@ pub struct Derivative {
 
 /// State of [`Derivative`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DerivativeState {
     lagged: f32,
     rate: f32,

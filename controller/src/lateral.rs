@@ -122,12 +122,14 @@ pub struct Lateral {
 
 /// States of the filters.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     body: Bessel,
     twist: Bessel,
     body_slow: SecondOrderState,
     twist_slow: SecondOrderState,
     /// Twice the front axle's share of the error in the last ticks, m/s2, in a ring.
+    #[cfg_attr(feature = "serde", serde(with = "serde_big_array::BigArray"))]
     front: [f32; HISTORY],
     now: usize,
     /// Ticks for which the delay has been known; it saturates.
@@ -155,6 +157,7 @@ impl Default for State {
 
 /// States of the fourth-order low-pass.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Bessel([SecondOrderState; 2]);
 
 impl Bessel {

@@ -116,6 +116,7 @@ impl Parameters {
 
 /// State of one spring valve.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct SpringValve {
     /// Value of [`Springs::now`] at the last change.
     changed_at: u32,
@@ -150,6 +151,7 @@ struct SpringValve {
 /// assert_eq!(tick(), ValveCommand::from_word(0b100_100_100_100));
 /// ```
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Springs {
     /// Number of ticks so far. It wraps after 248 days; a valve that last moved exactly then rests once more.
     now: u32,

@@ -19,6 +19,7 @@ const SPAN_TICKS: u32 = ticks(1_000) as u32 - 1;
 
 /// Positions of the twelve valves, and when they switched.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SwitchingLimit {
     command: ValveCommand,
     /// Number of ticks so far. It wraps after 248 days; a valve that last moved exactly then may have to wait a second.
@@ -29,6 +30,7 @@ pub struct SwitchingLimit {
 
 /// Times of the last switchings of a valve.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct History {
     times: [u32; MOST_A_SECOND - 1],
     /// Place of the oldest time.

@@ -28,6 +28,7 @@ use crate::valves::ValveCommand;
 #[derive(Clone, Debug, Default)]
 // In the order of the declaration: the checks of the readings come first, where one instruction of a Cortex-M4F reaches them.
 #[repr(C)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     plausibility: plausibility::State,
     estimate: estimate::State,

@@ -36,6 +36,7 @@ pub(crate) const SPRING_BITS: u16 = 0b100_100_100_100;
 /// assert!(!soft_front_left.is_open(Corner::FrontRight, Valve::Spring));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ValveCommand(u16);
 
 impl ValveCommand {

@@ -55,6 +55,7 @@ impl Parameters {
 
 /// One binary place of the number of agreements at every delay: bit `k` of each word is about a delay of `k` ticks.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Place {
     /// The place itself.
     sum: u128,
@@ -73,6 +74,7 @@ impl Place {
 
 /// What is known of the greatest number of agreements, while the counters are looked at from their highest place.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Judgement {
     /// Delays of which the places so far are the greatest.
     best: u128,
@@ -92,6 +94,7 @@ impl Default for Judgement {
 
 /// Signs, counters and the delay found last.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     body: Corners<f32>,
     /// Signs at the front, left and right: bit `k` is that of `k` ticks ago.

@@ -43,6 +43,7 @@ pub enum Side {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, IntoStaticStr, EnumString, VariantArray)]
 #[strum(serialize_all = "snake_case")]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Corner {
     /// The corner at the front on the left; index 0.
     FrontLeft,
@@ -142,6 +143,7 @@ impl Corner {
 /// assert_eq!(load_n.map(|n| n / 1000.0).into_array(), [4.0, 3.9, 4.0, 3.9]);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Corners<T>([T; 4]);
 
 impl<T> Corners<T> {
@@ -287,6 +289,7 @@ impl<T> IndexMut<Corner> for Corners<T> {
 /// assert_eq!(distance_m.map(|m| m > 1.4), Axles { front: false, rear: true });
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Axles<T> {
     /// Value of the front axle.
     pub front: T,

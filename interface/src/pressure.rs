@@ -18,10 +18,12 @@ pub const ATMOSPHERE_PA: f32 = 101_325.0;
 
 /// Pressure above the atmosphere, Pa; negative below it. See the [module](self) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Gauge<T>(pub T);
 
 /// Pressure above vacuum, Pa. See the [module](self) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Absolute<T>(pub T);
 
 impl<T> Gauge<T> {

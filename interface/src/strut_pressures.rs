@@ -51,6 +51,7 @@ impl PressurePoint {
 /// assert_eq!(pressure[PressurePoint::P4] - pressure.p1, 0.5e6);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StrutPressures<T> {
     /// Value at [`PressurePoint::P1`], the main chamber.
     pub p1: T,

@@ -7,6 +7,7 @@ pub mod convert;
 mod course_arguments;
 pub mod diagnose;
 pub mod drive;
+pub mod fmu;
 pub mod hil;
 pub mod predict;
 mod prediction;

@@ -26,6 +26,7 @@ ORDER = [
     {"oleo-interface"},
     {"oleo-controller", "oleo-plant-sim", "oleo-report"},
     {"oleo-hil", "oleo-diagnose", "oleo-firmware", "oleo-bench"},
+    {"oleo-fmu"},
     {"oleo", "oleo-fuzz", "oleo-python"},
 ]
 

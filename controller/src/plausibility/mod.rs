@@ -93,6 +93,7 @@ const ALL: u8 = (1 << Corner::ALL.len()) - 1;
 /// assert_eq!(trusted.displacement_m[Corner::FrontLeft], 0.01);
 /// ```
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     /// The last good readings. Nothing is wrong in its `health`.
     measured: Trusted,
@@ -144,6 +145,7 @@ pub struct Context {
 
 /// The comparisons of the readings of one strut with each other, and what they have found.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Comparisons {
     stuck: Stuck,
     vote: Vote,

@@ -62,6 +62,7 @@ impl Parameters {
 
 /// State of the balance of one strut.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OilBalance {
     charge_pa: f32,
     /// Charge that was learnt while the controller started.

@@ -27,6 +27,7 @@ const RIGHT_SHARE: f32 = 0.6;
 
 /// State of the comparison for one strut.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OilMotion {
     turns: u8,
     residual: Span,

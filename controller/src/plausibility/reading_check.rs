@@ -21,6 +21,7 @@ const _: () = assert!(
 /// State of the check. It starts as faulty: a sensor is believed after it has delivered twelve good samples. The last good value
 /// is kept by the caller.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReadingCheck {
     bad: u8,
     /// What is wrong, from the third bad sample in a row to the last one that is forgotten.
@@ -119,6 +120,7 @@ fn have_ordinary_changes(now: StrutPressures<Gauge<f32>>, last: StrutPressures<G
 
 /// The checks of the five readings of a strut.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StrutReadings {
     displacement: ReadingCheck,
     pressure: StrutPressures<ReadingCheck>,

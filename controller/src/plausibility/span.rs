@@ -2,6 +2,7 @@
 
 /// Smallest and largest value so far.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Span {
     least: f32,
     most: f32,

@@ -34,6 +34,7 @@ const PRESSURE_MOVING_ALONE_PA: f32 = 3.0e5;
 
 /// Window and verdicts of one strut.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Stuck {
     displacement: Span,
     pressure: StrutPressures<Span>,

@@ -26,6 +26,7 @@ const STILL_SHARE: f32 = 0.1;
 
 /// State of the check for one strut.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct TrappedOil {
     closed: u8,
     turns: u8,

@@ -11,6 +11,7 @@ use crate::sensor_message::MessageSet;
 /// Readings that may be used, measured or replaced: always finite and within their range.
 /// See [`State`](super::State) for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Trusted {
     /// Strut displacement from the static position, m, compression positive, -0.25 to 0.25.
     pub displacement_m: Corners<f32>,

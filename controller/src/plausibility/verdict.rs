@@ -35,6 +35,7 @@ impl Place {
 /// A cause for each reading of a strut, [`FaultCode::None`] for a good one: a few bits each, so that "nothing is wrong" is one
 /// comparison.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Verdicts(u32);
 
 impl Verdicts {

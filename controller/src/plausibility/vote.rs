@@ -48,6 +48,7 @@ impl Default for Parameters {
 
 /// State of the vote on one strut.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Vote {
     lagged: StrutPressures<Gauge<f32>>,
     /// What p1 shows beyond the median, in the mean, Pa.

@@ -98,6 +98,7 @@ macro_rules! strategies {
         /// assert_eq!(demand.valves, ValveCommand::SOFT);
         /// ```
         #[derive(Clone, Copy, Debug, Default)]
+        #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
         pub struct State {
             $($field: <$strategy as Decide>::State,)*
         }

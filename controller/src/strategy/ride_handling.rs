@@ -36,6 +36,7 @@ pub struct RideHandling {
 
 /// What the three parts remember. See [`strategy::State`](super::State) for an example.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     mode: running_rms::State,
     guard: rollover_guard::State,

@@ -65,6 +65,7 @@ pub struct RoadAndCornering {
 
 /// What the strategy remembers. See [`strategy::State`](super::State) for an example.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     cornering: cornering::State,
     load_transfer: load_transfer::State,

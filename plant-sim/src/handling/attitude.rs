@@ -1,9 +1,10 @@
 //! Attitude of the body: a unit quaternion, which is valid for any angle and is integrated without trigonometry.
 
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Attitude of the body in the world: `w + x i + y j + z k`, of length 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Attitude {
     w: f64,
     v: Vector3<f64>,

@@ -1,9 +1,10 @@
 //! Where an axle is on the body: its two coordinates, and what follows from them.
 
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// The axle's two coordinates, their rates or accelerations.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct AxleCoordinates {
     /// Along the body's z, m, towards the body positive.
     pub heave: f64,

@@ -33,6 +33,7 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use oleo_interface::{Axle, Axles, Corners};
+use serde::{Deserialize, Serialize};
 
 use super::axle::AxleGeometry;
 use super::axle_place::{AxleCoordinates, AxlePlace};
@@ -81,7 +82,7 @@ pub(super) struct Loads {
 }
 
 /// Accelerations of all coordinates, body axes; `linear` is less gravity (what an accelerometer reads).
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Accelerations {
     pub(super) linear: Vector3<f64>,
     pub(super) angular: Vector3<f64>,

@@ -27,7 +27,7 @@ mod wheel;
 
 pub use axle_place::AxleCoordinates;
 pub use magic_formula::{LoadedTyre, MagicFormula, TyreForces};
-pub use model::{HandlingModel, HandlingVehicle};
+pub use model::{HandlingModel, HandlingVehicle, VehicleSnapshot};
 pub use motion::{Controls, HandlingMotion};
 pub use parameters::{Drive, DriverParameters, Frame, Ground, HandlingAxle, HandlingParameters, Outline, Steering};
 pub use wheel::WheelState;

@@ -6,6 +6,7 @@
 //! the other.
 
 mod observe;
+mod snapshot;
 
 use std::sync::Arc;
 
@@ -25,6 +26,8 @@ use crate::road::Road;
 use crate::strut::{Strut, StrutOutput};
 use crate::vehicle::suspension::{Motion, StrutElement, SuspensionElement};
 use crate::vehicle::{GRAVITY_M_S2, RideError, VehicleParameters};
+
+pub use snapshot::VehicleSnapshot;
 
 /// A suspension may carry this much more or less than the static load at its design height.
 const STATIC_LOAD_TOLERANCE: f64 = 0.05;

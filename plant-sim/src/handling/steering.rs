@@ -12,9 +12,10 @@
 //! "steering system compliance"). Both wheels turn alike: no Ackermann, no toe, no torque from unequal drive forces.
 
 use super::parameters::Steering;
+use serde::{Deserialize, Serialize};
 
 /// Where the front wheels point.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct SteeringState {
     /// Angle that the driver sets, divided by the steering ratio, rad, left positive.
     pub(super) set_rad: f64,

@@ -16,6 +16,7 @@
 //! added damping (equation 8.128: 770 N s/m, faded in with a cosine) keeps the stopped wheel from ringing.
 
 use core::f64::consts::PI;
+use serde::{Deserialize, Serialize};
 
 use libm::{atan, cos};
 use nalgebra::{Matrix3, Vector3};
@@ -45,7 +46,7 @@ pub(super) struct Tyre {
 }
 
 /// What a wheel does now.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct WheelState {
     /// Force along the road's normal, N; 0 off the ground.
     pub load_n: f64,
@@ -70,7 +71,7 @@ pub struct WheelState {
 }
 
 /// Contact deflections: the tyre's memory.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct ContactState {
     along_m: f64,
     across_m: f64,

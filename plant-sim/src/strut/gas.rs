@@ -4,6 +4,8 @@
 //! energy equation with a thermal time constant (the term `gas_heat_transfer`); without one the gas stays at ambient
 //! temperature.
 
+use serde::{Deserialize, Serialize};
+
 use oleo_interface::Absolute;
 
 use super::nitrogen::Nitrogen;
@@ -15,7 +17,7 @@ pub const NITROGEN_R_J_KG_K: f64 = 296.8;
 pub const NITROGEN_CV_J_KG_K: f64 = 743.0;
 
 /// Volume and temperature of a gas charge.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GasState {
     /// Volume of the gas, m3.
     pub volume_m3: f64,
@@ -202,7 +204,7 @@ pub struct GasStep {
 
 /// `p = rho R T + rho^2 f`, `f` linear around a state: exact for the ideal gas (`f = 0`), and for the real one to the square
 /// of the change within a step, which the next step does not inherit.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Departure {
     density: f64,
     temperature_k: f64,

@@ -5,6 +5,8 @@
 //! stages of `gamma h`, `gamma = 1 - 1/sqrt 2`. Each stage is solved by the network. Steps end at kinks of the valves'
 //! movements, so no stage integrates across one.
 
+mod snapshot;
+
 use oleo_interface::{StrutValves, Valve};
 
 use crate::model_file::{Checked, InvalidValue};
@@ -18,6 +20,8 @@ use super::rod_forces::RodForces;
 use super::rod_state::{Acceleration, RodState};
 use super::terms::{DampingFade, LawArgument, LawPlace, Mount, ValveTransition, law_at, total_response_s};
 use super::valve::ValveMotion;
+
+pub use snapshot::StrutSnapshot;
 
 /// `1 - 1/sqrt 2`.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;

@@ -60,7 +60,7 @@ pub use flow_path::FlowPath;
 pub use friction::{PRESLIDING_STIFFNESS_N_M, advance_friction};
 pub use gas::{Gas, GasState, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K};
 pub use instruments::record_column;
-pub use integrator::{Strut, StrutOutput};
+pub use integrator::{Strut, StrutOutput, StrutSnapshot};
 pub use model::{Accumulator, Cylinder, GasCharge, Orifice, Specimen, StrutModel, Valve, ValveTiming};
 pub use motion::{Motion, Segment};
 pub use nitrogen::Nitrogen;

@@ -47,6 +47,11 @@ impl RodForces {
         self.friction_n = advance_friction(self.friction_n, stroke_m, level_n, stiffness);
     }
 
+    /// Puts the friction at a value that it had, N.
+    pub fn set_friction_n(&mut self, friction_n: f64) {
+        self.friction_n = friction_n;
+    }
+
     /// Friction, N, positive against jounce.
     pub fn friction_n(&self) -> f64 {
         self.friction_n

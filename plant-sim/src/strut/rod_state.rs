@@ -1,5 +1,7 @@
 //! Where the rod of a strut is and how it moves, for the forces on it and for laws over them.
 
+use serde::{Deserialize, Serialize};
+
 /// Where the rod is, how fast it moves, and what presses on it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RodState {
@@ -19,7 +21,7 @@ pub(super) struct RodState {
 
 /// Acceleration of the rod at the end of an interval, from the speeds gained in this interval and in the one before. It is worked out
 /// where a law asks for it only.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Acceleration {
     gained_m_s: [f64; 2],
     duration_s: [f64; 2],

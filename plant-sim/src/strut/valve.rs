@@ -4,6 +4,8 @@
 //! response is a polynomial of the pressure difference at the edge (term `valve_delay`); the way between the two points
 //! is the term `valve_transition`.
 
+use serde::{Deserialize, Serialize};
+
 use super::terms::ValveTransition;
 
 /// Movement of one valve. All times are on one clock, that of its owner.
@@ -14,7 +16,7 @@ use super::terms::ValveTransition;
 /// valve.switch(true, 10.0, 0.05, 0.02, None);
 /// assert_eq!((valve.opening(10.04), valve.opening(10.06)), (0.0, 1.0));
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ValveMotion {
     signal: bool,
     from: f64,

@@ -5,9 +5,10 @@
 //! also the one place where the extension-positive appendix meets the compression-positive rest of the project.
 
 use oleo_interface::{Corners, StrutValves};
+use serde::{Deserialize, Serialize};
 
 use super::parameters::{BaselineParameters, VehicleParameters};
-use crate::strut::{Strut, StrutOutput};
+use crate::strut::{Strut, StrutOutput, StrutSnapshot};
 
 /// Motion of one corner's suspension over a step, compression positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,6 +79,29 @@ impl StrutElement {
     pub fn strut(&self) -> &Strut {
         &self.strut
     }
+
+    /// The present state.
+    #[must_use]
+    pub fn snapshot(&self) -> StrutElementSnapshot {
+        StrutElementSnapshot {
+            strut: self.strut.snapshot(),
+            rate_m_s: self.rate_m_s,
+        }
+    }
+
+    /// Puts the element into a state that it, or another one with the same strut, was in.
+    pub fn restore(&mut self, kept: &StrutElementSnapshot) {
+        self.strut.restore(&kept.strut);
+        self.output = self.strut.output();
+        self.rate_m_s = kept.rate_m_s;
+    }
+}
+
+/// What a [`StrutElement`] carries from one step to the next.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StrutElementSnapshot {
+    strut: StrutSnapshot,
+    rate_m_s: f64,
 }
 
 impl SuspensionElement for StrutElement {

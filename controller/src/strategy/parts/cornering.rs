@@ -167,6 +167,7 @@ impl Parameters {
 
 /// Running mean squares of one band, m2/s4.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Band {
     witness: f32,
     own: f32,
@@ -174,6 +175,7 @@ struct Band {
 
 /// What is remembered.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     bands: [Band; 2],
     /// Memory of the estimate's own running RMS so far, ticks.

@@ -51,6 +51,7 @@ impl Parameters {
 
 /// What is remembered, m.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     lagged_m: f32,
     usual_m: f32,

@@ -53,6 +53,7 @@ impl Tuning {
 
 /// State of the guard.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     hold: u16,
 }

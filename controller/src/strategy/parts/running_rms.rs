@@ -66,6 +66,7 @@ impl Parameters {
 
 /// State of the mode decision.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     handling: bool,
     dwell: u16,

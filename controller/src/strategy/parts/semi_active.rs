@@ -131,12 +131,14 @@ impl Parameters {
 
 /// State of the four corners.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     corners: Corners<CornerState>,
 }
 
 /// State of one corner.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct CornerState {
     speed_m_s: f32,
     acceleration_m_s2: f32,

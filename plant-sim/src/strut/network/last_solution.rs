@@ -1,5 +1,7 @@
 //! The solution of the previous stage, from which the start value of the next one is predicted.
 
+use serde::{Deserialize, Serialize};
+
 use super::bounded::bounded;
 use crate::strut::gas::Departure;
 
@@ -7,7 +9,7 @@ use crate::strut::gas::Departure;
 ///
 /// Drops follow the piston's flow within a millisecond, so they are predicted by the last Jacobian's answer to the change
 /// of that flow, which is known. What the flow does not explain (gas and chamber filling) goes on at its last rate.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub(in crate::strut) struct LastSolution {
     /// Drops across packs 1 and 2, Pa.
     pub drop: [f64; 2],

@@ -1,9 +1,11 @@
 //! The state of the network: what an integrator carries from one step to the next.
 
+use serde::{Deserialize, Serialize};
+
 use crate::strut::gas::GasState;
 
 /// The differential states of the network.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(in crate::strut) struct State {
     /// Gauge pressure of the main chamber, Pa.
     pub p1_pa: f64,

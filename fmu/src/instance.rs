@@ -1,0 +1,413 @@
+//! One running model: which call is permitted when, the values, the time, and states to go back to.
+//!
+//! ```text
+//!   Instantiated --enter--> Initializing --exit--> Stepping --terminate--> Terminated
+//!        ^                                                                     |
+//!        +------------------------------- reset ------------------------------+   (from every phase)
+//! ```
+//!
+//! Both versions of FMI call the same functions here. Nothing here is unsafe, and nothing prints.
+
+use std::path::Path;
+
+use crc::{CRC_32_ISCSI, Crc};
+use serde::{Deserialize, Serialize};
+
+use crate::complaint::Complaint;
+use crate::definition::Definition;
+use crate::model::Model;
+use crate::resources::Resources;
+use crate::variable::{Kind, Role, Variable};
+
+/// The longest step, s: a longer one is an error of the tool.
+const LONGEST_STEP_S: f64 = 10.0;
+/// The shortest step, s.
+const SHORTEST_STEP_S: f64 = 1e-6;
+/// How far a step may be from a multiple of the tick, as a fraction of the tick: what adding up of times in doubles can make of it.
+const TICK_TOLERANCE: f64 = 1e-6;
+/// How far the tool's time may be from the model's, s.
+const TIME_TOLERANCE_S: f64 = 1e-7;
+/// Place of time in every table.
+const TIME: usize = 0;
+/// Guards a state that was written to a file.
+const CHECKSUM: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
+
+/// Where an instance is in its life.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+enum Phase {
+    Instantiated,
+    Initializing,
+    Stepping,
+    Terminated,
+}
+
+/// A type of values as FMI asks for them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Asked {
+    /// Numbers.
+    Real,
+    /// Switches.
+    Switch,
+    /// Words, as numbers from 0.
+    Word,
+    /// A type of which no variable is, by its name.
+    Other(&'static str),
+}
+
+/// An instance of an FMU.
+pub struct Instance {
+    definition: Definition,
+    token: String,
+    model: Box<dyn Model>,
+    phase: Phase,
+    values: Vec<f64>,
+    /// The model has begun with the values as they are.
+    has_begun: bool,
+    start_s: f64,
+}
+
+/// A state: what is to be known beside the resources to go on.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    phase: Phase,
+    has_begun: bool,
+    start_s: f64,
+    values: Vec<f64>,
+    model: Vec<u8>,
+}
+
+impl Instance {
+    /// An instance of the FMU whose resources are in a folder. The token is that of the file; another one belongs to another version.
+    ///
+    /// # Errors
+    /// The resources are wrong, or the token does not belong to them.
+    pub fn new(token: &str, resources: &Path) -> Result<Self, Complaint> {
+        let (definition, model) = Resources::read(resources)?.build()?;
+        let own = definition.token();
+        if token != own {
+            return Err(Complaint::new(format!(
+                "the token (guid) is {token} and that of the resources is {own}: the FMU was written by another version of oleo; write it \
+                 again with `oleo fmu`"
+            )));
+        }
+        Ok(Self {
+            values: definition.start(),
+            token: own,
+            definition,
+            model,
+            phase: Phase::Instantiated,
+            has_begun: false,
+            start_s: 0.0,
+        })
+    }
+
+    /// Sets the time at which the simulation begins, s.
+    ///
+    /// # Errors
+    /// The time is not finite, or it is too late to set it.
+    pub fn set_up(&mut self, start_s: f64) -> Result<(), Complaint> {
+        self.only_in(&[Phase::Instantiated], "the start time is set")?;
+        if !start_s.is_finite() {
+            return Err(Complaint::new(format!(
+                "the start time is {start_s}: give a finite time"
+            )));
+        }
+        self.start_s = start_s;
+        self.values[TIME] = start_s;
+        Ok(())
+    }
+
+    /// Enters the initialization mode.
+    ///
+    /// # Errors
+    /// It is not the time for it.
+    pub fn enter_initialization(&mut self) -> Result<(), Complaint> {
+        self.only_in(&[Phase::Instantiated], "the initialization mode begins")?;
+        self.phase = Phase::Initializing;
+        Ok(())
+    }
+
+    /// Leaves the initialization mode: the model begins with the values that it has been given.
+    ///
+    /// # Errors
+    /// It is not the time for it, or the parameters do not make a possible model.
+    pub fn exit_initialization(&mut self) -> Result<(), Complaint> {
+        self.only_in(&[Phase::Initializing], "the initialization mode ends")?;
+        self.begin()?;
+        self.phase = Phase::Stepping;
+        Ok(())
+    }
+
+    /// Ends the simulation.
+    ///
+    /// # Errors
+    /// It is not the time for it.
+    pub fn terminate(&mut self) -> Result<(), Complaint> {
+        self.only_in(&[Phase::Stepping], "a simulation is terminated")?;
+        self.phase = Phase::Terminated;
+        Ok(())
+    }
+
+    /// Everything as after the instantiation.
+    pub fn reset(&mut self) {
+        self.values = self.definition.start();
+        self.phase = Phase::Instantiated;
+        self.has_begun = false;
+        self.start_s = 0.0;
+    }
+
+    /// The values of variables of a type.
+    ///
+    /// # Errors
+    /// No variable has this reference and type, or the model cannot begin with its parameters.
+    pub fn get(&mut self, asked: Asked, references: &[u32]) -> Result<Vec<f64>, Complaint> {
+        let places: Vec<usize> = (references.iter())
+            .map(|reference| self.place(asked, *reference))
+            .collect::<Result<_, _>>()?;
+        let asks_outputs = || {
+            places
+                .iter()
+                .any(|place| self.definition.variables[*place].role == Role::Output)
+        };
+        if self.phase == Phase::Initializing && !self.has_begun && asks_outputs() {
+            self.begin()?;
+        }
+        Ok(places.into_iter().map(|place| self.values[place]).collect())
+    }
+
+    /// Sets variables of a type: all of them, or none.
+    ///
+    /// # Errors
+    /// No variable has this reference and type, it may not be set now, or not to this value.
+    pub fn set(&mut self, asked: Asked, references: &[u32], values: &[f64]) -> Result<(), Complaint> {
+        if references.len() != values.len() {
+            return Err(Complaint::new(format!(
+                "{} variables are set to {} values: give one value for each",
+                references.len(),
+                values.len()
+            )));
+        }
+        let places: Vec<usize> = (references.iter())
+            .map(|reference| self.place(asked, *reference))
+            .collect::<Result<_, _>>()?;
+        for (place, value) in places.iter().zip(values) {
+            let variable = &self.definition.variables[*place];
+            self.may_set(variable)?;
+            if let Some(refused) = variable.refuses(*value) {
+                return Err(Complaint::new(refused));
+            }
+            if let Kind::Word { list, words } = &variable.kind
+                && !(0..words.len()).any(|word| word as f64 == *value)
+            {
+                let last = words.len() - 1;
+                return Err(Complaint::new(format!(
+                    "{} is {value}: must be a word of {list}, 0 to {last}",
+                    variable.name
+                )));
+            }
+        }
+        for (place, value) in places.into_iter().zip(values) {
+            self.values[place] = *value;
+        }
+        if self.phase == Phase::Initializing {
+            self.has_begun = false;
+        }
+        Ok(())
+    }
+
+    /// Goes on from a time (s) by a step (s). Returns the time reached.
+    ///
+    /// # Errors
+    /// It is not the time for it, the times are wrong, a parameter is, or what comes out is not finite.
+    pub fn step(&mut self, from_s: f64, step_s: f64) -> Result<f64, Complaint> {
+        self.only_in(&[Phase::Stepping], "a step is made")?;
+        let now_s = self.values[TIME];
+        let tolerance_s = TIME_TOLERANCE_S.max(1e-12 * now_s.abs());
+        let follows = (from_s - now_s).abs() <= tolerance_s;
+        if !follows {
+            return Err(Complaint::new(format!(
+                "the step begins at {from_s} s and the model is at {now_s} s: steps follow on each other; set an earlier state to go back"
+            )));
+        }
+        if !(SHORTEST_STEP_S..=LONGEST_STEP_S).contains(&step_s) {
+            return Err(Complaint::new(format!(
+                "the step is {step_s} s: must be from {SHORTEST_STEP_S:e} to {LONGEST_STEP_S} s"
+            )));
+        }
+        let duration_s = match self.definition.tick_s {
+            None => step_s,
+            Some(tick_s) => {
+                let ticks = (step_s / tick_s).round();
+                if ticks < 1.0 || (step_s / tick_s - ticks).abs() > TICK_TOLERANCE {
+                    return Err(Complaint::new(format!(
+                        "the step is {step_s} s: must be a multiple of the model's own step, {tick_s} s"
+                    )));
+                }
+                ticks * tick_s
+            }
+        };
+        self.model.step(&self.values, duration_s)?;
+        self.model.outputs(&mut self.values);
+        self.values[TIME] = from_s + step_s;
+        match self.not_finite() {
+            None => Ok(self.values[TIME]),
+            Some(variable) => Err(Complaint::new(format!(
+                "{} is not finite at {} s: set an earlier state or reset, and check inputs and parameters",
+                variable.name, self.values[TIME]
+            ))),
+        }
+    }
+
+    /// The time that the model has reached, s.
+    pub fn time_s(&self) -> f64 {
+        self.values[TIME]
+    }
+
+    /// The state as bytes, with what tells whether they are whole.
+    ///
+    /// # Errors
+    /// The model cannot be saved.
+    pub fn save(&self) -> Result<Vec<u8>, Complaint> {
+        let kept = Kept {
+            phase: self.phase,
+            has_begun: self.has_begun,
+            start_s: self.start_s,
+            values: self.values.clone(),
+            model: if self.has_begun { self.model.save()? } else { Vec::new() },
+        };
+        let body = postcard::to_allocvec(&kept).map_err(Complaint::new)?;
+        let mut bytes = self.token.clone().into_bytes();
+        bytes.extend(CHECKSUM.checksum(&body).to_le_bytes());
+        bytes.extend(body);
+        Ok(bytes)
+    }
+
+    /// Goes back to a state of this FMU, of this instance or another.
+    ///
+    /// # Errors
+    /// The bytes are not whole, or are of another FMU. The instance is then as it was.
+    pub fn load(&mut self, bytes: &[u8]) -> Result<(), Complaint> {
+        let kept = self.kept(bytes)?;
+        if kept.has_begun {
+            self.model.load(&kept.values, &kept.model)?;
+        }
+        self.values = kept.values;
+        self.phase = kept.phase;
+        self.has_begun = kept.has_begun;
+        self.start_s = kept.start_s;
+        Ok(())
+    }
+
+    /// Whether bytes are a state of this FMU.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn check_state(&self, bytes: &[u8]) -> Result<(), Complaint> {
+        self.kept(bytes).map(drop)
+    }
+
+    fn kept(&self, bytes: &[u8]) -> Result<Kept, Complaint> {
+        let damaged =
+            || Complaint::new("the serialized state is damaged or cut off: give the bytes as they were written");
+        let Some(rest) = bytes.strip_prefix(self.token.as_bytes()) else {
+            return Err(Complaint::new(
+                "the serialized state is of another FMU: give one that this file has written",
+            ));
+        };
+        let (checksum, body) = rest.split_first_chunk().ok_or_else(damaged)?;
+        if CHECKSUM.checksum(body) != u32::from_le_bytes(*checksum) {
+            return Err(damaged());
+        }
+        let kept: Kept = postcard::from_bytes(body).map_err(|_| damaged())?;
+        if kept.values.len() == self.values.len() {
+            Ok(kept)
+        } else {
+            Err(damaged())
+        }
+    }
+
+    fn begin(&mut self) -> Result<(), Complaint> {
+        if self.has_begun {
+            return Ok(());
+        }
+        self.model.begin(&self.values)?;
+        self.model.outputs(&mut self.values);
+        self.has_begun = true;
+        Ok(())
+    }
+
+    fn not_finite(&self) -> Option<&Variable> {
+        let variables = self.definition.variables.iter();
+        (variables.zip(&self.values)).find_map(|(variable, value)| (!value.is_finite()).then_some(variable))
+    }
+
+    fn only_in(&self, permitted: &[Phase], what: &str) -> Result<(), Complaint> {
+        if permitted.contains(&self.phase) {
+            return Ok(());
+        }
+        let (now, when) = (self.phase.words(), permitted.first().map_or("", |phase| phase.words()));
+        Err(Complaint::new(format!("{what} {when}: the instance is {now}")))
+    }
+
+    fn place(&self, asked: Asked, reference: u32) -> Result<usize, Complaint> {
+        let place = usize::try_from(reference).unwrap_or(usize::MAX);
+        let Some(variable) = self.definition.variables.get(place) else {
+            return Err(Complaint::new(format!(
+                "value reference {reference} is unknown: they go from 0 to {}",
+                self.definition.variables.len() - 1
+            )));
+        };
+        let own = match &variable.kind {
+            Kind::Real { .. } => Asked::Real,
+            Kind::Switch => Asked::Switch,
+            Kind::Word { .. } => Asked::Word,
+        };
+        if own == asked {
+            return Ok(place);
+        }
+        Err(Complaint::new(format!(
+            "{} (value reference {reference}) is {}, not {}: use the function of its type",
+            variable.name,
+            own.words(),
+            asked.words()
+        )))
+    }
+
+    fn may_set(&self, variable: &Variable) -> Result<(), Complaint> {
+        let may = match variable.role {
+            Role::Input | Role::Tunable => self.phase != Phase::Terminated,
+            Role::Fixed => matches!(self.phase, Phase::Instantiated | Phase::Initializing),
+            Role::Time | Role::Output => false,
+        };
+        if may {
+            return Ok(());
+        }
+        let name = &variable.name;
+        Err(Complaint::new(match variable.role {
+            Role::Time | Role::Output => format!("{name} cannot be set: the model computes it"),
+            _ => format!("{name} cannot be set now: the instance is {}", self.phase.words()),
+        }))
+    }
+}
+
+impl Phase {
+    fn words(self) -> &'static str {
+        match self {
+            Self::Instantiated => "before the initialization mode",
+            Self::Initializing => "in the initialization mode",
+            Self::Stepping => "between the initialization mode and the end",
+            Self::Terminated => "after the end",
+        }
+    }
+}
+
+impl Asked {
+    fn words(self) -> &'static str {
+        match self {
+            Self::Real => "a floating-point number",
+            Self::Switch => "a boolean",
+            Self::Word => "an enumeration",
+            Self::Other(name) => name,
+        }
+    }
+}

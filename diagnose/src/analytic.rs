@@ -43,6 +43,9 @@ pub const FIRST_OF_PAIR: usize = 9;
 /// Nearly the opposite, with a little of another vibration: where both are true, either alone explains 2.5 % of the misfit.
 pub const SECOND_OF_PAIR: usize = 10;
 
+/// A law without a name: a friction of the first output whose level swings; amplitude, phase (rad) and frequency (Hz).
+pub const SWING: usize = 11;
+
 /// Frequency of the vibration, rad/s.
 pub const FREQUENCY: f64 = 2.3;
 /// Ends of the table's pieces.
@@ -109,7 +112,7 @@ impl Analytic {
 impl Recipe {
     /// Makes the specimen: simulates the truth and adds noise.
     pub fn make(&self) -> Analytic {
-        let mut candidates: Vec<Candidate> = (0..=SECOND_OF_PAIR).map(candidate).collect();
+        let mut candidates: Vec<Candidate> = (0..=SWING).map(candidate).collect();
         for (k, c) in candidates.iter_mut().enumerate() {
             if !self.candidates.contains(&k) {
                 c.untestable = Some("not part of this test".to_owned());
@@ -209,6 +212,15 @@ fn candidate(index: usize) -> Candidate {
             Site::MainChamber.into(),
             TABLE_M.map(|x| amount(&format!("at_{x}"))).to_vec(),
         ),
+        SWING => (
+            EffectId::Unlisted,
+            Site::MainSeal.into(),
+            vec![
+                positive("amplitude_N"),
+                Parameter::linear("phase_rad", 0.0, 0.3, (-9.0, 9.0)),
+                Parameter::linear("frequency_Hz", 1.0, 0.01, (1e-3, 9.0)),
+            ],
+        ),
         FRAGILE => (EffectId::BumpStop, Site::EndStop.into(), vec![positive("stress")]),
         FIRST_OF_PAIR => (EffectId::DampingFade, Site::Mount.into(), vec![amount("first")]),
         SECOND_OF_PAIR => (EffectId::EntrainedAir, Site::Mount.into(), vec![amount("second")]),
@@ -220,14 +232,15 @@ fn candidate(index: usize) -> Candidate {
     };
     Candidate {
         group: (id == EffectId::SealFriction).then_some(ExclusionGroup(EffectId::SealFriction)),
-        label: if index == TABLE {
-            "force over displacement".into()
-        } else {
-            String::new()
+        label: match index {
+            TABLE => "force over displacement".into(),
+            SWING => "friction over time, periodic".into(),
+            _ => String::new(),
         },
         starts: vec![],
         takes_from: None,
         becomes: None,
+        oscillates: index == SWING,
         untestable: None,
         id,
         place,
@@ -254,6 +267,10 @@ fn law(index: usize, v: &[f64], t: f64, x: f64, speed: f64) -> Result<[f64; 2], 
                 .zip(TABLE_M)
                 .map(|(c, at)| c * (1.0 - (x - at).abs() / 0.4).max(0.0))
                 .sum(),
+            0.0,
+        ],
+        SWING => [
+            v[0] * libm::sin(std::f64::consts::TAU * v[2] * t + v[1]) * direction,
             0.0,
         ],
         FRAGILE if v[0] > 1.0 => return Err("broken".to_owned()),

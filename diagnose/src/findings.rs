@@ -104,6 +104,9 @@ impl Findings {
         if !diagnosis.effects.is_empty() {
             let _ = write!(text, "{}", page::effects_table(diagnosis));
         }
+        for equation in page::equations(diagnosis) {
+            let _ = writeln!(text, "{equation}");
+        }
         for finding in self.campaign.specimen.instruments() {
             let _ = writeln!(text, "{}", finding.text());
         }

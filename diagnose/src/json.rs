@@ -26,11 +26,15 @@ pub fn report(campaign: &Campaign, diagnosis: &Diagnosis, runtime_s: f64) -> Val
         .collect();
     let effects: Vec<Value> = (diagnosis.effects.iter())
         .map(|e| {
-            json!({
+            let mut effect = json!({
                 "id": e.id, "place": e.place.as_reported(), "confidence": rounded(e.confidence),
                 "parameters": parameters(&e.parameters), "law": e.law,
                 "held_out_noise_ratio": { "without": rounded(e.ratio_without), "with": rounded(e.ratio_with) },
-            })
+            });
+            if let Some(equation) = &e.equation {
+                effect["equation"] = json!(equation);
+            }
+            effect
         })
         .collect();
     let mut channels = Map::new();

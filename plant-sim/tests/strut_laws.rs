@@ -17,6 +17,7 @@ fn law(place: LawPlace, depends_on: LawArgument, argument: [f64; 2], value: [f64
         argument: argument.to_vec(),
         value: value.to_vec(),
         time_constant_s: None,
+        frequency_hz: None,
     }
 }
 
@@ -69,6 +70,7 @@ fn a_choking_valve_3_passes_what_its_law_leaves_even_where_more_drop_means_less_
         argument,
         value,
         time_constant_s: None,
+        frequency_hz: None,
     }];
     let mut strut = Strut::at_rest(&model, STIFF).unwrap();
     slowly(&mut strut, 0.03, STIFF);
@@ -159,6 +161,80 @@ fn laws_over_time_and_acceleration() {
         let (at, from, to) = (1.5 * to * to, 3.0 * from, 3.0 * to);
         let [heavy, light] = [&mut heavy, &mut light].map(|s| s.advance_with_speeds(at, from, to, 0.01, STIFF).force_n);
         close(heavy - light, 36.0, 1e-9);
+    }
+}
+
+/// A law that swings about a middle with an amplitude, at 0.5 Hz, from the middle upwards.
+fn swinging(place: LawPlace, middle: f64, amplitude: f64) -> UnlistedLaw {
+    let argument: Vec<f64> = (0..=200).map(|k| f64::from(k) / 200.0).collect();
+    let value = argument
+        .iter()
+        .map(|turns| middle + amplitude * libm::sin(std::f64::consts::TAU * turns))
+        .collect();
+    UnlistedLaw {
+        place,
+        depends_on: LawArgument::Phase,
+        argument,
+        value,
+        time_constant_s: None,
+        frequency_hz: Some(0.5),
+    }
+}
+
+#[test]
+fn laws_over_the_phase_of_an_oscillation() {
+    let with = |law: UnlistedLaw| {
+        let mut model = bare();
+        model.effects.unlisted = vec![law];
+        Strut::at_rest(&model, STIFF).unwrap()
+    };
+    // 0.5 Hz: half a second after each full turn it is at its highest.
+    let mut pushed = with(swinging(LawPlace::MainSeal, 0.0, 100.0));
+    for _ in 0..3 {
+        let up = pushed.advance(0.0, 0.5, STIFF);
+        let down = pushed.advance(0.0, 1.0, STIFF);
+        close(beside_pressure(&bare(), &up), 100.0, 1e-3);
+        close(beside_pressure(&bare(), &down), -100.0, 1e-3);
+        pushed.advance(0.0, 0.5, STIFF);
+    }
+    // At rest p1 is the swinging gas pressure, also where a sample is half a turn.
+    let static_pa = absolute(slow_pressure(&bare(), 0.0, STIFF));
+    for place in [LawPlace::Accumulator1, LawPlace::Accumulators] {
+        let mut gas = with(swinging(place, 1.0, 0.05));
+        let up = gas.advance(0.0, 0.5, STIFF);
+        close(absolute(up.pressure_pa[0]), 1.05 * static_pa, 1e-3);
+        let down = gas.advance(0.0, 1.0, STIFF);
+        close(absolute(down.pressure_pa[0]), 0.95 * static_pa, 1e-3);
+    }
+    // What flows out in the first half of a turn is the integral of half a sine, and comes back in the second.
+    let mut pump = with(swinging(LawPlace::MainChamberLoss, 0.0, 1e-7));
+    let before = pump.gas()[0].volume_m3;
+    pump.advance(0.0, 1.0, STIFF);
+    close(
+        pump.gas()[0].volume_m3 - before,
+        1e-7 * 2.0 / std::f64::consts::PI,
+        1e-2,
+    );
+    pump.advance(0.0, 1.0, STIFF);
+    assert!((pump.gas()[0].volume_m3 - before).abs() < 1e-9);
+    // A pack of half its strength passes at half the drop what it passed before.
+    let strong = steady_drop(&bare(), 0.1, CLOSED).0;
+    let mut model = bare();
+    model.effects.unlisted = vec![UnlistedLaw {
+        frequency_hz: Some(1e-3),
+        ..swinging(LawPlace::Pack1, 0.5, 0.0)
+    }];
+    assert!(steady_drop(&model, 0.1, CLOSED).0 < 0.9 * strong);
+    // A valve that passes half has more than the drop, in each of the ways to name it.
+    for place in [LawPlace::Valve1, LawPlace::Valves] {
+        let mut model = bare();
+        let whole = steady_drop(&model, 0.02, BYPASS_1).0;
+        model.effects.unlisted = vec![UnlistedLaw {
+            frequency_hz: Some(1e-3),
+            ..swinging(place, 0.5, 0.0)
+        }];
+        let half = steady_drop(&model, 0.02, BYPASS_1).0;
+        assert!(half > 1.5 * whole, "{half} {whole}");
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::estimate::Estimate;
 use crate::confidence::Evidence;
-use crate::effect::of;
+use crate::effect::{of, unlisted};
 use crate::estimation::LeastSquares;
 use crate::search::{SelectedEffect, Selection};
 use crate::vocabulary::{EffectId, Place, Site};
@@ -27,6 +27,8 @@ pub struct Effect {
     pub parameters: Vec<Estimate>,
     /// The law without a name, where one was fitted.
     pub law: Option<serde_json::Value>,
+    /// The same as an equation with its numbers, where its form is one.
+    pub equation: Option<String>,
     /// Held-out noise ratio of the best model without it.
     pub ratio_without: f64,
     /// Held-out noise ratio of the improved model.
@@ -54,6 +56,7 @@ pub(super) fn effects(problem: &LeastSquares<'_>, selection: &Selection, estimat
             confidence: REMAINDER_CONFIDENCE,
             parameters: vec![],
             law: None,
+            equation: None,
             ratio_without: selection.improved_ratio,
             ratio_with: selection.improved_ratio,
         });
@@ -75,6 +78,9 @@ fn modelled(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Esti
         let law = (candidate.is_unlisted())
             .then(|| specimen.law(selected.candidate, &hypothesis.effects[position].1))
             .flatten();
+        let equation = (candidate.is_unlisted())
+            .then(|| unlisted::equation(&candidate.label, &hypothesis.effects[position].1))
+            .flatten();
         let evidence = Evidence {
             gain: (selected.gain.total, selected.gain.standard_error),
             lead: selected.rival.map(|r| (r.lead.total, r.lead.standard_error)),
@@ -88,6 +94,7 @@ fn modelled(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Esti
                 confidence: evidence.confidence(),
                 parameters: numbers.iter().map(|&k| own[k].clone()).collect(),
                 law: law.clone(),
+                equation: equation.clone(),
                 ratio_without: selected.ratio_without,
                 ratio_with: selection.improved_ratio,
             });

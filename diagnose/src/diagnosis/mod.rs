@@ -163,6 +163,7 @@ fn next_experiment(specimen: &dyn Specimen, selection: &Selection, locations: &[
         .filter_map(|effect| effect.ambiguous_rival().map(|rival| (effect.candidate, rival)))
         .map(|(effect, rival)| experiment::separate(specimen.kind(), &all[effect], &all[rival]))
         .collect();
+    sentences.extend(experiment::at_another_frequency(&selection.of_excitation_hz));
     if let Some(left) = locations.iter().find(|l| l.candidate.is_none()) {
         sentences.push(experiment::isolate(specimen, left));
     }

@@ -22,6 +22,9 @@ pub struct Candidate {
     pub becomes: Option<EffectId>,
     /// Candidates of the same group exclude each other.
     pub group: Option<ExclusionGroup>,
+    /// Whether it swings in time at a frequency that is looked for in the residual. Its parameters are then amplitude, phase, rad, and
+    /// frequency, Hz.
+    pub oscillates: bool,
     /// Why the recordings cannot show the candidate; `None` if they can.
     pub untestable: Option<String>,
 }
@@ -43,6 +46,7 @@ impl Candidate {
             takes_from: None,
             becomes: None,
             group: None,
+            oscillates: false,
             untestable: None,
         }
     }
@@ -87,6 +91,12 @@ impl Candidate {
             group: Some(ExclusionGroup(id)),
             ..self
         }
+    }
+
+    /// The candidate as one that swings in time.
+    #[must_use]
+    pub fn oscillating(self, oscillates: bool) -> Self {
+        Self { oscillates, ..self }
     }
 
     /// The candidate with a reason why the recordings cannot show it, if there is one. A later reason replaces an earlier one.

@@ -65,6 +65,17 @@ pub fn asked(specimen: &dyn Specimen, selection: &Selection, locations: &[Locati
     out
 }
 
+/// What to record where what is left swings at frequencies at which the motion or the valves repeat too, one sentence for each.
+pub fn at_another_frequency(of_excitation_hz: &[f64]) -> impl Iterator<Item = String> + '_ {
+    of_excitation_hz.iter().map(|f| {
+        let f = oleo_report::significant(*f, 3);
+        format!(
+            "What is left swings at {f} Hz, at which the displacement or a valve repeats too, or at a multiple of its frequency, so that time \
+             and motion cannot be told apart: record the same motion at another frequency, and once at rest."
+        )
+    })
+}
+
 /// The range of the recorded displacements, mm.
 fn travel_mm(specimen: &dyn Specimen) -> [f64; 2] {
     let values = (0..specimen.recordings().len())

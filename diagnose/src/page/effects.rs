@@ -52,7 +52,12 @@ fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
         words::at(&e.place),
         words::effect_name(e)
     ));
-    if let Some(equation) = known.equation_in(kind, &e.label) {
+    if let Some(equation) = &e.equation {
+        page.text(&format!(
+            "{}, where t is the time since the start of each recording in s.",
+            words::sentence(equation)
+        ));
+    } else if let Some(equation) = known.equation_in(kind, &e.label) {
         let meaning = match law(e) {
             Some(law) if is_closed(equation) => symbols_of_a_law(&law),
             _ => words::sentence(known.meaning()),
@@ -136,6 +141,7 @@ fn argument(depends_on: LawArgument) -> (&'static str, &'static str) {
         LawArgument::Speed => ("speed", "m/s"),
         LawArgument::Acceleration => ("acceleration", "m/s2"),
         LawArgument::Time => ("time since the start", "s"),
+        LawArgument::Phase => ("phase of the oscillation", "turns"),
         LawArgument::P1 => ("p1", "Pa"),
         LawArgument::Flow => ("flow", "m3/s"),
         LawArgument::FlowRate => ("rate of flow", "m3/s2"),
@@ -306,7 +312,7 @@ mod tests {
             symbols_of_a_law(&law),
             "Here y is the flow coefficient in m3/s/sqrt(Pa), and x is the displacement in m"
         );
-        for candidate in unlisted::candidates_of_struts() {
+        for candidate in unlisted::candidates_of_struts(50.0) {
             let equation = of(EffectId::Unlisted).equation_in(SpecimenKind::TwoStageStrut, &candidate.label);
             let equation = equation.expect("an equation");
             let mut page = Page::new("Equation", "oleo diagnose");
@@ -319,7 +325,7 @@ mod tests {
     /// A page that says "drawn" draws it: every law that the search may fit to a strut has a figure.
     #[test]
     fn every_law_without_a_name_can_be_drawn() {
-        for candidate in unlisted::candidates_of_struts() {
+        for candidate in unlisted::candidates_of_struts(50.0) {
             let label = candidate.label;
             let starts: Vec<f64> = candidate.parameters.iter().map(|p| p.start).collect();
             let law = unlisted::table(&label, &starts).expect("a law of the list");
@@ -331,6 +337,7 @@ mod tests {
                 confidence: 0.5,
                 parameters: vec![],
                 law: serde_json::to_value(&law).ok(),
+                equation: None,
                 ratio_without: 2.0,
                 ratio_with: 1.0,
             };

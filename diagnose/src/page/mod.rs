@@ -134,7 +134,10 @@ fn these(diagnosis: &Diagnosis, one: &'static str, several: &'static str) -> &'s
 fn phrases(kind: SpecimenKind, diagnosis: &Diagnosis) -> Vec<String> {
     let mut out: Vec<(String, String)> = Vec::new();
     for e in diagnosis.effects.iter().filter(|e| e.selected.is_some()) {
-        let name = of(e.id).called(kind, &e.label);
+        let mut name = of(e.id).called(kind, &e.label);
+        if let Some(equation) = &e.equation {
+            name += &format!(", {equation},");
+        }
         let place = words::at(&e.place);
         match out.iter_mut().find(|(known, _)| *known == name) {
             Some((_, places)) => *places += &format!(" and {place}"),
@@ -199,6 +202,14 @@ fn in_brief(kind: SpecimenKind, diagnosis: &Diagnosis) -> Table {
 /// Number of points of a law that was fitted as a table.
 fn points(effect: &Effect) -> Option<usize> {
     effects::law(effect).map(|law| law.argument.len())
+}
+
+/// The laws that were found as equations, one line each, with their places.
+#[must_use]
+pub fn equations(diagnosis: &Diagnosis) -> Vec<String> {
+    (diagnosis.effects.iter())
+        .filter_map(|e| Some(format!("{}: {}", e.place.as_reported(), e.equation.as_ref()?)))
+        .collect()
 }
 
 /// The effects, as printed on standard output.

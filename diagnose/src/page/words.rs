@@ -54,7 +54,7 @@ pub fn sentence(text: &str) -> String {
 }
 
 /// Units at the end of a parameter's key, longest first, with their usual spelling.
-const UNITS: [(&str, &str); 22] = [
+const UNITS: [(&str, &str); 25] = [
     ("_N_s2_m2", "N s2/m2"),
     ("_Pa_s_m3", "Pa s/m3"),
     ("_s_MPa2", "s/MPa2"),
@@ -63,6 +63,7 @@ const UNITS: [(&str, &str); 22] = [
     ("_kg_m4", "kg/m4"),
     ("_per_J", "1/J"),
     ("_N_m3", "N/m3"),
+    ("_m3_s", "m3/s"),
     ("_Pa_s", "Pa/s"),
     ("_1_Pa", "1/Pa"),
     ("_N_m", "N/m"),
@@ -72,6 +73,8 @@ const UNITS: [(&str, &str); 22] = [
     ("_1_s", "1/s"),
     ("_m3", "m3"),
     ("_Pa", "Pa"),
+    ("_rad", "rad"),
+    ("_Hz", "Hz"),
     ("_kg", "kg"),
     ("_N", "N"),
     ("_K", "K"),

@@ -21,6 +21,7 @@ mod combinations;
 mod elimination;
 pub mod evidence;
 mod forward;
+mod oscillation;
 mod restart;
 mod rivals;
 pub mod screen;

@@ -4,11 +4,13 @@
 //! Golub & Pereyra, SIAM J. Numer. Anal. 10(2), 1973, with the nuisance part linearised). So a candidate costs a few
 //! simulations, a fault of an instrument none, and none is judged without recalibration.
 
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::oscillation::{Line, Oscillations};
 use super::sizes::starting_sizes;
 use crate::error::DiagnoseError;
 use crate::estimation::bounded_step::bounded_step;
@@ -36,6 +38,12 @@ pub struct Screen<'p, 'a> {
     fit: &'p Fit,
     base: Arc<Vec<Sensitivity>>,
     truths: Vec<Series>,
+}
+
+/// What the residual of the model so far holds at single frequencies.
+struct Swings {
+    oscillations: Oscillations,
+    lines: Vec<Line>,
 }
 
 /// A candidate on its way to its best values.
@@ -83,9 +91,14 @@ impl<'p, 'a> Screen<'p, 'a> {
     /// [`DiagnoseError::Interrupted`] once the caller asked to stop.
     pub fn all(&self, candidates: &[usize]) -> Result<Vec<Option<Fit>>, DiagnoseError> {
         let screening = &self.problem.criteria.screening;
+        let all = self.specimen().candidates();
+        let swings = (candidates.iter().any(|&c| all[c].oscillates)).then(|| self.swings());
         let first: Vec<Option<ScreenedCandidate>> = candidates
             .par_iter()
-            .map(|&c| self.begin(c))
+            .map(|&c| match &swings {
+                Some(swings) if all[c].oscillates => self.begin_oscillation(c, swings),
+                _ => self.begin(c),
+            })
             .collect::<Result<_, DiagnoseError>>()?;
         let cost = |k: usize| first[k].as_ref().map_or(f64::INFINITY, |s| s.cost);
         let mut order: Vec<usize> = (0..first.len()).filter(|&k| first[k].is_some()).collect();
@@ -130,6 +143,67 @@ impl<'p, 'a> Screen<'p, 'a> {
             }
         }
         Ok(best)
+    }
+
+    fn swings(&self) -> Swings {
+        let oscillations = Oscillations::of(self.specimen());
+        let lines = oscillations.lines_of_channels(&self.residuals());
+        Swings { oscillations, lines }
+    }
+
+    fn residuals(&self) -> Vec<&Series> {
+        self.base.iter().map(|recording| &recording.residual).collect()
+    }
+
+    /// A law that swings after its first steps from the frequency that explains most; `None` where the residual holds no frequency that is not
+    /// the excitation's.
+    fn begin_oscillation(&self, candidate: usize, swings: &Swings) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
+        let specimen = self.specimen();
+        let amplitude = self.fit.point.z.len();
+        let numbers = &specimen.candidates()[candidate].parameters;
+        let answers = |values: [f64; 3]| -> Result<Vec<Sensitivity>, DiagnoseError> {
+            let point = self.fit.point.with_effect(specimen, candidate, &values);
+            // Of amplitude zero. A law that swings shortens the steps of the simulation, so that also the truth is simulated with it.
+            let known = numbers[0].instrument_only.then_some(self.truths.as_slice());
+            self.problem.evaluation.sensitivities(&point, &[amplitude], known)
+        };
+        let lowest = numbers[2].lower;
+        let envelopes: Vec<Series> = (answers([0.0, FRAC_PI_2, lowest])?.into_iter())
+            .map(|mut s| s.columns.swap_remove(0))
+            .collect();
+        let mut lines = swings.oscillations.lines(&self.residuals(), &envelopes);
+        lines.extend(&swings.lines);
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for line in lines {
+            let f = line.frequency_hz;
+            let (sine, cosine) = (answers([0.0, 0.0, f])?, answers([0.0, FRAC_PI_2, f])?);
+            let both: Vec<Sensitivity> = (sine.into_iter().zip(cosine))
+                .map(|(mut sine, cosine)| {
+                    sine.columns.extend(cosine.columns);
+                    sine
+                })
+                .collect();
+            let normals = self.extended(&both);
+            let [prior, z] = [&self.fit.prior, &DVector::from_column_slice(&self.fit.point.z)]
+                .map(|own| own.clone().resize_vertically(amplitude + 2, 0.0));
+            let (h, g) = sum(&normals, &prior, z.as_slice());
+            let mut ranges = self.fit.point.ranges(specimen);
+            ranges.resize(amplitude + 2, (f64::NEG_INFINITY, f64::INFINITY));
+            let Some(step) = bounded_step(&h, &g, RESPONSE_DAMPING, z.as_slice(), &ranges) else {
+                continue;
+            };
+            let gain = 2.0 * g.dot(&step) - step.dot(&(&h * &step));
+            if best.as_ref().is_none_or(|(most, _)| gain > *most) {
+                let (a, b) = (step[amplitude], step[amplitude + 1]);
+                let size = numbers[0].value(libm::hypot(a, b));
+                best = Some((gain, vec![size, libm::atan2(b, a), f]));
+            }
+        }
+        let mut begun = None;
+        if let Some((_, start)) = best {
+            self.begin_at(candidate, &start, None, &mut begun)?;
+        }
+        Ok(begun)
     }
 
     /// The first steps of a candidate from a start, kept if they lead lower than `best`. A start that cannot be simulated is

@@ -1,10 +1,12 @@
 //! The search from the believed model to the improved one.
 
 use super::combinations::Screening;
+use super::oscillation::Oscillations;
 use super::selection::{CandidateScore, Progress, Selection};
 use super::selector::{Screened, Selector};
 use crate::error::DiagnoseError;
 use crate::estimation::{Fit, LeastSquares, Point};
+use crate::specimen::Series;
 
 /// Fractions of the work that are done when a phase begins, 0 to 1, for a model that lacks two or three effects.
 mod done {
@@ -62,11 +64,20 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
         }
     }
     let improved_ratio = selector.held_out_ratio(&best);
+    let incomplete = improved_ratio > selector.complete_up_to(&best);
+    let of_excitation_hz = if incomplete && with_laws {
+        let left = problem.evaluation.residuals_at(&best.point)?;
+        let left: Vec<&Series> = left.iter().collect();
+        Oscillations::of(problem.specimen()).of_excitation(&left)
+    } else {
+        vec![]
+    };
     Ok(Selection {
         calibrated_ratio: selector.held_out_ratio(&calibrated),
         improved_ratio,
-        incomplete: improved_ratio > selector.complete_up_to(&best),
+        incomplete,
         effects: comparison.effects,
+        of_excitation_hz,
         calibrated,
         best,
         scores,
@@ -166,7 +177,9 @@ fn fraction_of_incomplete(problem: &LeastSquares<'_>) -> f64 {
 /// Notes what candidates explain alone; laws without a name join when they are tried.
 fn score_alone(selector: &Selector<'_, '_>, screened: &[Screened], scores: &mut Vec<CandidateScore>) {
     for (candidate, fit) in screened {
-        if scores.iter().all(|s| s.candidate != *candidate) {
+        // What swings was not tried where the residual holds no frequency.
+        let was_tried = fit.is_some() || !selector.candidate(*candidate).oscillates;
+        if was_tried && scores.iter().all(|s| s.candidate != *candidate) {
             scores.push(CandidateScore {
                 candidate: *candidate,
                 alone: fit.as_ref().map_or(f64::INFINITY, |f| selector.held_out_ratio(f)),

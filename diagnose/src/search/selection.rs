@@ -21,6 +21,9 @@ pub struct Selection {
     pub calibrated_ratio: f64,
     /// Held-out noise ratio of the improved model.
     pub improved_ratio: f64,
+    /// Frequencies, Hz, at which what is left swings and at which an input of the recording repeats too: whether time or motion makes it
+    /// cannot be told. Asked only of a model that stays incomplete with laws without a name.
+    pub of_excitation_hz: Vec<f64>,
     /// True if the improved model is not complete: something predictable or large remains.
     pub incomplete: bool,
 }

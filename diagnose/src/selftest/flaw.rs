@@ -212,7 +212,7 @@ mod tests {
     /// What is said of the instruments of a campaign with a complete model.
     fn said(seed: usize, flaw: Option<Flaw>) -> Vec<(&'static str, String)> {
         let name = format!("test:{seed}:{}", flaw.map_or("none", Into::into));
-        let campaign = generate(&name, &[], flaw).expect("a campaign");
+        let campaign = generate(&name, &[], &[], flaw).expect("a campaign");
         let strut = TwoStageStrut::new(campaign.given, campaign.recordings).expect("a strut");
         let findings = strut.instruments().iter();
         findings
@@ -238,7 +238,7 @@ mod tests {
     fn no_effect_is_taken_for_a_flaw() {
         let mut wrong = Vec::new();
         for term in crate::effect::in_struts() {
-            let campaign = generate(&format!("test:{term}"), &[(term, GROSS)], None).expect("a campaign");
+            let campaign = generate(&format!("test:{term}"), &[(term, GROSS)], &[], None).expect("a campaign");
             let strut = TwoStageStrut::new(campaign.given, campaign.recordings).expect("a strut");
             let findings = strut.instruments().iter();
             wrong.extend(findings.map(|f| format!("{term}: {}", f.text())));

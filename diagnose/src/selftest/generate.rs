@@ -9,7 +9,9 @@ use std::sync::atomic::AtomicBool;
 
 use nalgebra::{DMatrix, DVector};
 use oleo_interface::Valve;
-use oleo_plant_sim::strut::{COLUMNS, Effects, Inputs, StrutModel, record_column, replay};
+use oleo_plant_sim::strut::{
+    COLUMNS, Effects, Inputs, PRESLIDING_STIFFNESS_N_M, SealFriction, StrutModel, record_column, replay,
+};
 
 use super::draw::Draw;
 use super::excitation::{Move, moves};
@@ -37,6 +39,14 @@ const UNSEEN: [&str; 5] = [
     "road_switching",
 ];
 
+/// Friction of the seal that is known where laws without a name are concealed on purpose: a level that can swing.
+const KNOWN_FRICTION: SealFriction = SealFriction {
+    coulomb_force_n: 400.0,
+    breakaway_force_n: 400.0,
+    stribeck_speed_m_s: 0.01,
+    presliding_stiffness_n_m: PRESLIDING_STIFFNESS_N_M,
+};
+
 /// A campaign and what is concealed in it.
 pub struct Generated {
     /// The model that is believed.
@@ -52,18 +62,27 @@ pub struct Generated {
     pub sizes: Vec<f64>,
 }
 
-/// Generates the campaign of this name with these effects, each of a wanted size. A flaw of the instruments is in the
+/// Generates the campaign of this name with these effects, each of a wanted size. Their variants are drawn unless they are stated; then they
+/// are laws without a name, and the strut has a friction of its seal that is known. A flaw of the instruments is in the
 /// recordings that the diagnosis gets; the others are made with instruments as the model states them, so that they judge the
 /// model.
 ///
 /// # Errors
 /// A drawn model that cannot be simulated.
-pub fn generate(name: &str, wanted: &[(EffectId, f64)], flaw: Option<Flaw>) -> Result<Generated, DiagnoseError> {
+pub fn generate(
+    name: &str,
+    wanted: &[(EffectId, f64)],
+    variants: &[usize],
+    flaw: Option<Flaw>,
+) -> Result<Generated, DiagnoseError> {
     let (mut flawed, mut perfect) = (Instruments::draw(name, flaw), Instruments::draw(name, None));
     let mut draw = Draw::named(name);
     let mut given = nominal(name, &mut draw);
     let seen = moves(&mut draw);
-    let hidden = concealed(wanted, &given, &mut draw);
+    if !variants.is_empty() {
+        given.effects.seal_friction = Some(KNOWN_FRICTION);
+    }
+    let hidden = concealed(wanted, variants, &given, &mut draw);
     for (h, _) in &hidden {
         h.conceal(&mut given);
     }
@@ -104,13 +123,19 @@ pub fn generate(name: &str, wanted: &[(EffectId, f64)], flaw: Option<Flaw>) -> R
 }
 
 /// Draws the effects; two faults of one instrument would be one.
-fn concealed(wanted: &[(EffectId, f64)], complete: &StrutModel, draw: &mut Draw) -> Vec<(Hidden, f64)> {
+fn concealed(
+    wanted: &[(EffectId, f64)],
+    variants: &[usize],
+    complete: &StrutModel,
+    draw: &mut Draw,
+) -> Vec<(Hidden, f64)> {
     let mut all: Vec<(Hidden, f64)> = Vec::new();
-    for &(id, size) in wanted {
-        let mut drawn = Hidden::draw(id, complete, draw);
+    for (k, &(id, size)) in wanted.iter().enumerate() {
+        let variant = variants.get(k).copied();
+        let mut drawn = Hidden::draw(id, variant, complete, draw);
         let taken = |h: &Hidden| h.column().is_some() && all.iter().any(|(other, _)| other.column() == h.column());
         while drawn.as_ref().is_some_and(taken) {
-            drawn = Hidden::draw(id, complete, draw);
+            drawn = Hidden::draw(id, variant, complete, draw);
         }
         all.extend(drawn.map(|hidden| (hidden, size)));
     }
@@ -337,7 +362,7 @@ mod tests {
     #[test]
     fn a_complete_campaign_is_met_by_its_own_truth_to_the_noise() {
         // The truth here is the model that is believed plus calibration: fitting that alone must reach the noise.
-        let g = generate("test:none", &[], None).unwrap();
+        let g = generate("test:none", &[], &[], None).unwrap();
         assert!(g.truth.is_empty() && g.sizes.is_empty());
         assert_eq!(g.unseen.len(), UNSEEN.len());
         let strut = TwoStageStrut::new(g.given, g.recordings).unwrap();
@@ -346,6 +371,24 @@ mod tests {
         let calibrated = fit(&problem, Point::nominal(&strut), problem.criteria.fitting.converged).unwrap();
         let ratio = (calibrated.cost / problem.residuals() as f64).sqrt();
         assert!(ratio > 0.98 && ratio < 1.06, "{ratio}");
+    }
+
+    #[test]
+    fn the_law_of_an_instrument_counts_once() {
+        let g = generate("test:none", &[], &[], None).unwrap();
+        let strut = TwoStageStrut::new(g.given, g.recordings).unwrap();
+        let labelled = |label: &str| strut.candidates().iter().position(|c| c.label == label);
+        let law = labelled("reading over time, periodic, p2").unwrap();
+        let first_p2 = |amplitude: f64| {
+            let hypothesis = Hypothesis {
+                calibration: vec![0.0; strut.calibration().len()],
+                effects: vec![(law, vec![amplitude, std::f64::consts::FRAC_PI_2, 0.1])],
+            };
+            let truth = strut.simulate(&hypothesis, 0).unwrap();
+            strut.observe(&hypothesis, 0, &truth)[2][0]
+        };
+        // A quarter of a turn on, the sine is at its highest.
+        assert!((first_p2(1e4) - first_p2(0.0) - 1e4).abs() < 1e-3);
     }
 
     #[test]
@@ -358,8 +401,8 @@ mod tests {
         };
         let wanted = [(EffectId::SealFriction, 1.0)];
         let (a, b) = (
-            generate("test:bits", &wanted, None).unwrap(),
-            generate("test:bits", &wanted, None).unwrap(),
+            generate("test:bits", &wanted, &[], None).unwrap(),
+            generate("test:bits", &wanted, &[], None).unwrap(),
         );
         assert_eq!(bits(&a), bits(&b));
         assert_eq!(a.truth, b.truth);
@@ -374,14 +417,14 @@ mod tests {
             EffectId::LineResistance,
             EffectId::ValveDelay,
         ] {
-            let g = generate(&format!("test:size:{id}"), &[(id, 1.0)], None).unwrap();
+            let g = generate(&format!("test:size:{id}"), &[(id, 1.0)], &[], None).unwrap();
             assert!((g.sizes[0] - 1.0).abs() < 0.1, "{id}: {:?} {:?}", g.sizes, g.truth);
         }
     }
 
     #[test]
     fn sensors_read_with_the_stated_noise() {
-        let g = generate("test:noise", &[], None).unwrap();
+        let g = generate("test:noise", &[], &[], None).unwrap();
         for r in &g.recordings {
             // Before anything moves only noise and offset change a reading.
             let rest = r.time_s.partition_point(|t| *t < 0.25).max(4);

@@ -31,14 +31,14 @@ pub struct Hidden {
 }
 
 impl Hidden {
-    /// Draws a variant of an effect of a strut whose complete nominal model is given; `None` for an effect that struts do
-    /// not have.
+    /// Draws an effect of a strut whose complete nominal model is given, also its variant where that is open; `None` for an effect that
+    /// struts do not have.
     #[must_use]
-    pub fn draw(id: EffectId, complete: &StrutModel, draw: &mut Draw) -> Option<Self> {
+    pub fn draw(id: EffectId, variant: Option<usize>, complete: &StrutModel, draw: &mut Draw) -> Option<Self> {
         let effect = of(id).in_strut()?;
         let response = &complete.valve_timing.response_polynomial_s;
         let drawn = Drawn {
-            variant: draw.index(effect.variants()),
+            variant: variant.unwrap_or_else(|| draw.index(effect.variants())),
             sign: if draw.uniform() < 0.5 { -1.0 } else { 1.0 },
             shape: std::array::from_fn(|_| draw.uniform()),
             response: std::array::from_fn(|k| response.get(k).copied().unwrap_or(0.0)),

@@ -8,6 +8,7 @@ use oleo_plant_sim::model_file::names::suggestion;
 use super::draw::Draw;
 use super::flaw::Flaw;
 use crate::effect::in_struts;
+use crate::effect::unlisted::periodic_variants;
 use crate::vocabulary::EffectId;
 
 /// Sizes asked for, in units of noise (RMS over all channels and samples, after recalibration).
@@ -22,6 +23,11 @@ const PAIRS_PER_ROUND: usize = 4;
 pub const COMPLETE: &str = "none";
 /// Name of a campaign in which two effects are.
 pub const PAIR: &str = "pair";
+
+/// Name of a campaign in which a law that swings in time is.
+pub const PERIODIC: &str = "periodic";
+/// Its sizes: faint, middling, gross.
+const PERIODIC_SIZES: [f64; 3] = [1.0, 5.0, 30.0];
 
 /// What a self-test is to do.
 #[derive(Debug, Clone)]
@@ -45,6 +51,8 @@ pub struct Case {
     pub name: String,
     /// Concealed effects and the sizes that they should have, in units of noise.
     pub hidden: Vec<(EffectId, f64)>,
+    /// Variants of the concealed effects, in their order; empty where they are drawn.
+    pub variants: Vec<usize>,
     /// Term that the search may not use.
     pub left_out: Option<EffectId>,
     /// What is wrong with the instruments.
@@ -60,6 +68,8 @@ pub enum Subject {
     Complete,
     /// Two concealed effects.
     Pair,
+    /// A law without a name that swings in time.
+    Periodic,
 }
 
 /// A text that names no subject of a self-test.
@@ -70,7 +80,7 @@ pub struct UnknownTerm(String);
 /// The terms, and which was probably meant.
 fn suggested(text: &str) -> String {
     let effects = in_struts().into_iter().map(EffectId::as_str);
-    let known: Vec<&str> = effects.chain([COMPLETE, PAIR]).collect();
+    let known: Vec<&str> = effects.chain([COMPLETE, PAIR, PERIODIC]).collect();
     suggestion(text, &known, "terms")
 }
 
@@ -81,6 +91,7 @@ impl FromStr for Subject {
         match text {
             COMPLETE => Ok(Self::Complete),
             PAIR => Ok(Self::Pair),
+            PERIODIC => Ok(Self::Periodic),
             _ => (in_struts().into_iter().find(|term| term.as_str() == text))
                 .map(Self::Effect)
                 .ok_or_else(|| UnknownTerm(text.to_owned())),
@@ -121,6 +132,7 @@ impl Plan {
         let mut complete = (0..COMPLETE_PER_ROUND).map(|k| Case {
             name: format!("{seed}:{COMPLETE}:{round}.{k}"),
             hidden: vec![],
+            variants: vec![],
             left_out: None,
             flaw: None,
         });
@@ -130,6 +142,7 @@ impl Plan {
                 cases.push(Case {
                     name: format!("{seed}:{term}:{round}:{size}"),
                     hidden: vec![(term, size)],
+                    variants: vec![],
                     left_out: None,
                     flaw: None,
                 });
@@ -140,6 +153,9 @@ impl Plan {
         }
         if wanted(Subject::Complete) {
             cases.extend(complete);
+        }
+        if self.subjects.contains(&Subject::Periodic) {
+            self.periodic(round, cases);
         }
         if wanted(Subject::Pair) {
             for k in 0..PAIRS_PER_ROUND {
@@ -152,6 +168,22 @@ impl Plan {
                 cases.push(Case {
                     name,
                     hidden: hidden.to_vec(),
+                    variants: vec![],
+                    left_out: None,
+                    flaw: None,
+                });
+            }
+        }
+    }
+
+    /// Laws that swing in time, of every kind and size. They are concealed only where they are asked for.
+    fn periodic(&self, round: usize, cases: &mut Vec<Case>) {
+        for variant in periodic_variants() {
+            for size in PERIODIC_SIZES {
+                cases.push(Case {
+                    name: format!("{}:{PERIODIC}:{round}:{variant}:{size}", self.seed),
+                    hidden: vec![(EffectId::Unlisted, size)],
+                    variants: vec![variant],
                     left_out: None,
                     flaw: None,
                 });
@@ -166,6 +198,7 @@ impl Plan {
             cases.push(Case {
                 name: format!("{}:without:{term}:{round}:{size}", self.seed),
                 hidden: vec![(term, size)],
+                variants: vec![],
                 left_out: Some(term),
                 flaw: None,
             });

@@ -19,7 +19,7 @@ fn folder_name(case: &Case) -> String {
 /// # Errors
 /// A campaign that cannot be simulated, or a folder that cannot be written.
 pub fn save(case: &Case, into: &Path) -> Result<(), DiagnoseError> {
-    let campaign = generate(&case.name, &case.hidden, case.flaw)?;
+    let campaign = generate(&case.name, &case.hidden, &case.variants, case.flaw)?;
     let folder = into.join(folder_name(case));
     let unseen = folder.join("unseen");
     std::fs::create_dir_all(&unseen).map_err(|e| DiagnoseError::file(&unseen, e.to_string()))?;

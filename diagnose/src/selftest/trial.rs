@@ -110,7 +110,7 @@ pub fn run(case: &Case, stop: &AtomicBool) -> Result<Trial, DiagnoseError> {
 }
 
 fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), DiagnoseError> {
-    let generated = generate(&case.name, &case.hidden, case.flaw)?;
+    let generated = generate(&case.name, &case.hidden, &case.variants, case.flaw)?;
     trial.truth = generated.truth;
     for (hidden, size) in trial.hidden.iter_mut().zip(generated.sizes) {
         // JSON knows no infinity: an effect that stops the simulation is as large as can be said.

@@ -18,7 +18,9 @@ use super::motion::{Cubic, Segment};
 use super::network::{LastSolution, Network, StageEnd, State};
 use super::rod_forces::RodForces;
 use super::rod_state::{Acceleration, RodState};
-use super::terms::{DampingFade, LawArgument, LawPlace, Mount, ValveTransition, law_at, total_response_s};
+use super::terms::{
+    DampingFade, LawArgument, LawPlace, Mount, ValveTransition, law_at, longest_step_s, total_response_s,
+};
 use super::valve::ValveMotion;
 
 pub use snapshot::StrutSnapshot;
@@ -69,6 +71,8 @@ pub struct Strut {
     /// Unmodelled time that the movement takes, s, over the pressure difference.
     movement_law: Option<Characteristic>,
     initial_delay_fraction: f64,
+    /// Longest step that follows the unmodelled laws which repeat, s.
+    longest_step_s: f64,
     transition: Option<ValveTransition>,
 
     time_s: f64,
@@ -125,6 +129,7 @@ impl Strut {
             response_law: law_at(&effects.unlisted, LawPlace::ValveTiming, LawArgument::PressureDrop),
             movement_law: law_at(&effects.unlisted, LawPlace::ValveMovement, LawArgument::PressureDrop),
             initial_delay_fraction: model.valve_timing.initial_delay_fraction,
+            longest_step_s: longest_step_s(&effects.unlisted),
             transition: effects.valve_transition.clone(),
             time_s: 0.0,
             actuator_m: displacement_m,
@@ -203,6 +208,7 @@ impl Strut {
     fn step_length(&self, now_s: f64, left_s: f64, limit_s: f64) -> f64 {
         let valves = || self.valves.iter().map(|(_, valve)| valve);
         let kink_s = valves().fold(f64::INFINITY, |t, valve| t.min(valve.next_kink_s(now_s)));
+        let limit_s = limit_s.min(self.longest_step_s);
         let limit_s = if valves().any(|valve| valve.moving(now_s)) {
             limit_s.min(VALVE_STEP_S)
         } else {

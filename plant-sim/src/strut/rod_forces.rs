@@ -9,9 +9,9 @@ use super::terms::{BumpStop, Effects, LawPlace, SealFriction, SealLaw, SideLoadF
 pub(super) struct RodForces {
     seal: Option<SealFriction>,
     side_load: Option<SideLoadFriction>,
-    friction_law: Option<SealLaw>,
+    friction_laws: Vec<SealLaw>,
     stops: Option<BumpStop>,
-    force_law: Option<SealLaw>,
+    force_laws: Vec<SealLaw>,
     friction_n: f64,
 }
 
@@ -21,16 +21,16 @@ impl RodForces {
         Self {
             seal: effects.seal_friction.clone(),
             side_load: effects.side_load_friction.clone(),
-            friction_law: SealLaw::at(&effects.unlisted, LawPlace::MainSealFriction),
+            friction_laws: SealLaw::all_at(&effects.unlisted, LawPlace::MainSealFriction),
             stops: effects.bump_stop.clone(),
-            force_law: SealLaw::at(&effects.unlisted, LawPlace::MainSeal),
+            force_laws: SealLaw::all_at(&effects.unlisted, LawPlace::MainSeal),
             friction_n: 0.0,
         }
     }
 
     /// Let the friction follow a stroke (m) that has taken `duration_s` and has led to a state.
     pub fn follow(&mut self, stroke_m: f64, duration_s: f64, rod: &RodState) {
-        if self.seal.is_none() && self.side_load.is_none() && self.friction_law.is_none() {
+        if self.seal.is_none() && self.side_load.is_none() && self.friction_laws.is_empty() {
             return;
         }
         let mut level_n = self
@@ -40,7 +40,7 @@ impl RodForces {
         if let Some(side) = &self.side_load {
             level_n += side.level_n(rod.oil_force_n, rod.displacement_m);
         }
-        if let Some(law) = &self.friction_law {
+        for law in &self.friction_laws {
             level_n += law.value_n(rod);
         }
         let stiffness = (self.seal.as_ref()).map_or(PRESLIDING_STIFFNESS_N_M, |seal| seal.presliding_stiffness_n_m);
@@ -63,7 +63,7 @@ impl RodForces {
         if let Some(stops) = &self.stops {
             force_n += stops.force_n(rod.displacement_m);
         }
-        if let Some(law) = &self.force_law {
+        for law in &self.force_laws {
             force_n += law.value_n(rod);
         }
         force_n

@@ -40,7 +40,8 @@ pub struct Args {
         help_heading = "Self-test"
     )]
     seed: u64,
-    /// Conceal only these, separated by commas: ids of effects, none (the model is complete) or pair (two effects) [default: all]
+    /// Conceal only these, separated by commas: ids of effects, none (the model is complete), pair (two effects) or
+    /// periodic (a law without a name that swings in time, in six places and three sizes) [default: all but periodic]
     #[arg(
         long,
         value_name = "A,B",

@@ -87,5 +87,20 @@ pub const FLOW_RATE_M3_S2: &[f64] = &[-1.0, 1.0];
 pub const FEW_EDGES_PA: &[f64] = &[0.0, 2.0 * P, 8.0 * P];
 /// Force of the load cell, N.
 pub const FORCE_N: &[f64] = &[0.0, 5e3, 1e4, 1.5e4, 2.5e4, 4e4];
+/// Intervals into which one turn of an oscillation is divided. A sine is linear over each of them to a thousandth of its amplitude.
+const TURN: usize = 64;
+/// Phase of an oscillation, turns.
+pub const PHASE_TURNS: &[f64] = &one_turn();
+
+const fn one_turn() -> [f64; TURN + 1] {
+    let mut turns = [0.0; TURN + 1];
+    let mut k = 0;
+    while k <= TURN {
+        turns[k] = k as f64 / TURN as f64;
+        k += 1;
+    }
+    turns
+}
+
 /// Rate of a reading: a line.
 pub const RATE: &[f64] = &[-1.0, 1.0];

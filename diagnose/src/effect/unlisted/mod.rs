@@ -10,7 +10,7 @@
 //! | `knots` | points of the tables |
 //! | `strut_laws` | place x dependence x form: the laws that are tried on a strut |
 //! | `cylinder_laws`, `gas_spring_laws`, `mechanism_laws` | laws of one number that only these kinds of specimen may have |
-//! | `textbook` | other laws, for the self-test to conceal |
+//! | `textbook`, `swinging_textbook` | other laws, for the self-test to conceal |
 //!
 //! A new form is a file in `forms` and its name in the rows of `strut_laws`. A new quantity to depend on is a variant of
 //! plant-sim's `LawArgument`, which the solver must read at the place. A law with a state of its own (heat, memory) is not
@@ -23,12 +23,14 @@ mod knots;
 mod mechanism_laws;
 mod nameless;
 mod strut_laws;
+mod swinging_textbook;
 mod textbook;
 mod words;
 
 pub use forms::is_of_free_table;
 pub use nameless::Unlisted;
-pub use strut_laws::table;
+pub use strut_laws::{equation, table};
+pub use textbook::periodic_variants;
 
 #[cfg(test)]
 pub use strut_laws::candidates as candidates_of_struts;

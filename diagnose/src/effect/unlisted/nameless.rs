@@ -95,8 +95,8 @@ impl ActsOn<Strut> for Unlisted {
         TermId::Unlisted.equation()
     }
 
-    fn candidates(&self, _model: &StrutModel, _excitation: &excitation::Strut) -> Vec<Candidate> {
-        strut_laws::candidates()
+    fn candidates(&self, _model: &StrutModel, excitation: &excitation::Strut) -> Vec<Candidate> {
+        strut_laws::candidates(excitation.duration_s)
     }
 
     fn put(&self, model: &mut StrutModel, candidate: &Candidate, values: &[f64]) {
@@ -124,8 +124,8 @@ impl Concealed for Unlisted {
     }
 
     fn put_true(&self, model: &mut StrutModel, drawn: &Drawn, amount: f64) -> Vec<TrueNumber> {
-        let (site, law) = textbook::law(drawn, amount);
+        let (law, numbers) = textbook::law(drawn, amount);
         model.effects.unlisted.push(law);
-        vec![TrueNumber::present(site)]
+        numbers
     }
 }

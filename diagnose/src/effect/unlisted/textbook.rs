@@ -1,8 +1,11 @@
 //! Laws of textbook form that the vocabulary does not hold, for the self-test to conceal.
 
+use std::ops::Range;
+
 use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
 
-use crate::effect::drawn::Drawn;
+use super::swinging_textbook;
+use crate::effect::drawn::{Drawn, TrueNumber};
 use crate::vocabulary::{Branch, Site};
 
 /// Points of a concealed table: many, and not those that the search uses.
@@ -160,9 +163,17 @@ fn leaking_gas(time: f64, end: f64, _drawn: &Drawn, amount: f64) -> f64 {
 /// How many laws there are to draw from.
 pub const COUNT: usize = LAWS.len();
 
-/// The drawn law of an amount, and where it should be reported.
-pub fn law(drawn: &Drawn, amount: f64) -> (Site, UnlistedLaw) {
-    let law = &LAWS[drawn.variant];
+/// Variants beyond these: laws that swing in time.
+#[must_use]
+pub fn periodic_variants() -> Range<usize> {
+    COUNT..COUNT + swinging_textbook::COUNT
+}
+
+/// The drawn law of an amount, and the numbers that should be reported of it, where.
+pub fn law(drawn: &Drawn, amount: f64) -> (UnlistedLaw, Vec<TrueNumber>) {
+    let Some(law) = LAWS.get(drawn.variant) else {
+        return swinging_textbook::law(drawn, drawn.variant - COUNT, amount);
+    };
     let argument: Vec<f64> = (0..POINTS)
         .map(|k| law.end * (2.0 * k as f64 / (POINTS - 1) as f64 - 1.0))
         .collect();
@@ -176,6 +187,7 @@ pub fn law(drawn: &Drawn, amount: f64) -> (Site, UnlistedLaw) {
         argument,
         value,
         time_constant_s: None,
+        frequency_hz: None,
     };
-    (law.site.clone(), table)
+    (table, vec![TrueNumber::present(law.site.clone())])
 }

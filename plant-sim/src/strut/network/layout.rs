@@ -5,7 +5,7 @@ use super::path::Path;
 use crate::strut::characteristic::Characteristic;
 use crate::strut::flow_path::FlowPath;
 use crate::strut::model::StrutModel;
-use crate::strut::terms::{LawArgument, LawPlace, law_at, throttle};
+use crate::strut::terms::{Course, LawArgument, LawPlace, law_at, throttle, valve_in_time};
 
 /// Main chamber, two paths, and valve 3 between the second path and its accumulator.
 #[derive(Debug, Clone)]
@@ -20,6 +20,8 @@ pub(in crate::strut) struct Network {
     pub(super) valve3_leak: f64,
     /// Unmodelled factor on its flow.
     pub(super) valve3_throttle: Option<Characteristic>,
+    /// Unmodelled factor on its flow over time.
+    pub(super) valve3_in_time: Course,
     /// Unmodelled openings beside it, over displacement and over time.
     pub(super) beside_valve3: [Option<Characteristic>; 2],
     /// Inertance of line 2, kg/m4.
@@ -44,6 +46,7 @@ impl Network {
                 .as_ref()
                 .map_or(0.0, |leak| leak.flow_coefficient),
             valve3_throttle: throttle(&effects.unlisted, LawPlace::Valve3),
+            valve3_in_time: valve_in_time(&effects.unlisted, LawPlace::Valve3),
             beside_valve3: [LawArgument::Displacement, LawArgument::Time]
                 .map(|over| law_at(&effects.unlisted, LawPlace::BesideValve3, over)),
             inertance_kg_m4: (effects.line_inertance.as_ref()).map_or(0.0, |line| line.inertance_2_kg_m4)

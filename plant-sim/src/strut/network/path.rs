@@ -134,7 +134,10 @@ impl Path {
         transition_pa: f64,
         real: &'a Departure,
     ) -> PathStart<'a> {
-        let bypass = at.opening[which.bypass_valve()] * self.valve_coefficient;
+        let mut bypass = at.opening[which.bypass_valve()] * self.valve_coefficient;
+        if let Some(laws) = &self.laws {
+            bypass *= laws.valve_in_time(at.time_s);
+        }
         let mut start = PathStart {
             duration_s: at.duration_s,
             time_s: at.time_s,

@@ -24,7 +24,7 @@ use super::stage_end::StageEnd;
 use super::state::State;
 use crate::strut::flow_path::FlowPath;
 use crate::strut::orifice::{unit_drop, unit_flow};
-use crate::strut::terms::{LEAST_BUBBLE_PRESSURE, OilColumn, throttled};
+use crate::strut::terms::{LEAST_BUBBLE_PRESSURE, OilColumn, passed, throttled};
 
 /// The longest Newton step in the drops, Pa, that is taken linearly where the model has unmodelled laws: the kinks of
 /// their tables are not looked for.
@@ -56,7 +56,11 @@ struct SecondLoop {
 impl Network {
     /// Solve one stage from `base`. The result does not depend on `last` beyond the solver's tolerance.
     pub fn stage(&self, base: &State, at: &StageEnd, last: &mut LastSolution) -> Stage {
-        let mut c3 = at.opening[Valve::Spring] * self.valve3_coefficient + self.valve3_leak;
+        let mut open = at.opening[Valve::Spring] * self.valve3_coefficient;
+        if self.has_unlisted_laws {
+            open *= passed(&self.valve3_in_time, at.time_s);
+        }
+        let mut c3 = open + self.valve3_leak;
         if self.has_unlisted_laws {
             c3 += self.beside_valve3(at);
         }

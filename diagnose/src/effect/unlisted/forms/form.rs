@@ -13,6 +13,8 @@ pub struct Grid {
     pub at_rest: f64,
     /// Size of one fitted number that would be visible.
     pub visible: f64,
+    /// Duration of the longest recording, s.
+    pub longest_s: f64,
 }
 
 impl Grid {
@@ -49,6 +51,16 @@ pub trait Form: Sync {
 
     /// Time constant of a law with a memory, s, from the fitted numbers.
     fn time_constant_s(&self, _fitted: &[f64]) -> Option<f64> {
+        None
+    }
+
+    /// Frequency of a law that repeats, Hz, from the fitted numbers.
+    fn frequency_hz(&self, _fitted: &[f64]) -> Option<f64> {
+        None
+    }
+
+    /// The law of a quantity as an equation with the fitted numbers; `None` for a form that is drawn.
+    fn equation(&self, _quantity: &str, _fitted: &[f64]) -> Option<String> {
         None
     }
 

@@ -10,6 +10,7 @@
 //! | `proportional` | is added and is proportional to its argument | the value at an argument of one |
 //! | `relaxing` | multiplies, and follows what has changed lately | its slope, time constant of the memory |
 //! | `settling` | is added or multiplies, and settles with time | its end, time constant |
+//! | `swinging` | is added or multiplies, and swings about what is believed | amplitude, phase, frequency |
 //! | `choke` | multiplies what is believed, and falls with the size of its argument | inverse argument, exponent |
 
 mod added;
@@ -23,6 +24,7 @@ mod relaxing;
 mod rises;
 mod rising;
 mod settling;
+mod swinging;
 
 #[cfg(test)]
 mod tests;
@@ -38,3 +40,4 @@ pub use relaxing::Relaxing;
 pub use rises::is_of_free_table;
 pub use rising::Rising;
 pub use settling::{SettlingAdded, SettlingFactor, SettlingLevel};
+pub use swinging::{SwingingAdded, SwingingFactor};

@@ -9,6 +9,12 @@ const GRID: Grid = Grid {
     knots: KNOTS,
     at_rest: 0.0,
     visible: 0.1,
+    longest_s: 50.0,
+};
+
+const FORCE: SwingingAdded = SwingingAdded {
+    key: "amplitude_N",
+    unit: "N",
 };
 
 proptest! {
@@ -53,7 +59,7 @@ fn a_choke_lets_half_pass_where_its_argument_is_the_inverse() {
 
 #[test]
 fn each_form_has_as_many_numbers_as_its_starts() {
-    let forms: [&dyn Form; 11] = [
+    let forms: [&dyn Form; 13] = [
         &Added,
         &Bell,
         &Choke,
@@ -65,6 +71,8 @@ fn each_form_has_as_many_numbers_as_its_starts() {
         &SettlingAdded("force_N"),
         &SettlingFactor,
         &SettlingLevel("flow_m3_s"),
+        &FORCE,
+        &SwingingFactor,
     ];
     for form in forms {
         let count = form.parameters(&GRID).len();
@@ -81,6 +89,7 @@ fn what_settles_has_two_thirds_of_its_end_after_its_time_constant() {
         knots: TIMES,
         at_rest: 0.0,
         visible: 1.0,
+        longest_s: 50.0,
     };
     let added = SettlingAdded("force_N").values(&grid, &[-30.0, 5.0]);
     assert_eq!(added[0], 0.0);
@@ -105,4 +114,23 @@ fn what_relaxes_is_one_where_nothing_has_changed() {
     let values = Relaxing.values(&GRID, &[-0.4, 3.0]);
     assert!(values[2] == 1.0 && (values[3] - 0.6).abs() < 1e-12);
     assert_eq!(Relaxing.time_constant_s(&[-0.4, 3.0]), Some(3.0));
+}
+
+#[test]
+fn what_swings_has_its_amplitude_a_quarter_of_a_turn_after_the_middle() {
+    const TURNS: &[f64] = &[0.0, 0.25, 0.5, 0.75, 1.0];
+    let grid = Grid { knots: TURNS, ..GRID };
+    let fitted = [20.0, 0.0, 0.7];
+    let added = FORCE.values(&grid, &fitted);
+    for (value, expected) in added.iter().zip([0.0, 20.0, 0.0, -20.0, 0.0]) {
+        assert!((value - expected).abs() < 1e-12, "{added:?}");
+    }
+    assert_eq!(FORCE.frequency_hz(&fitted), Some(0.7));
+    // A phase of a quarter of a turn begins at the highest.
+    let factor = SwingingFactor.values(&grid, &[0.2, 0.25 * std::f64::consts::TAU, 11.0]);
+    assert!((factor[0] - 1.2).abs() < 1e-12 && (factor[2] - 0.8).abs() < 1e-12 && (factor[4] - 1.2).abs() < 1e-12);
+    assert_eq!(
+        FORCE.equation("force", &[20.0, -0.5, 0.7]).as_deref(),
+        Some("force = believed + 20.00 N sin(2 pi 0.7000 Hz t - 0.5000)")
+    );
 }

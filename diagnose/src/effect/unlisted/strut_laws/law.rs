@@ -46,8 +46,8 @@ pub const fn law(
 
 impl Law {
     /// At rest a law adds nothing and leaves everything as believed: displacement, speed, flow and drop zero, gas volume
-    /// the static one, smallest pressure.
-    pub fn grid(&self) -> Grid {
+    /// the static one, smallest pressure. The duration of the longest recording scales what is fitted of time.
+    pub fn grid(&self, longest_s: f64) -> Grid {
         Grid {
             knots: self.knots,
             at_rest: match (self.place, self.depends_on) {
@@ -57,6 +57,14 @@ impl Law {
                 _ => 0.0,
             },
             visible: self.visible,
+            longest_s,
         }
+    }
+
+    /// Whether the law changes only what an instrument shows. The displacement is an input: its instrument misleads the simulation.
+    /// Only what swings is treated so; the other laws of instruments are simulated, as the published figures were made.
+    pub fn is_of_output_only(&self) -> bool {
+        let is_input = self.place == LawPlace::InstrumentDisplacement;
+        self.depends_on == LawArgument::Phase && matches!(self.site, Site::Sensor(_)) && !is_input
     }
 }

@@ -1,20 +1,26 @@
-//! The laws that are tried on a strut, as tables of place, dependence and form, one file for each part of the strut.
+//! The laws that are tried on a strut, as tables of place, dependence and form, one file for each part of the strut and one for
+//! what swings in time.
 //!
 //! A new row is a new law to search for; a new dependence or place is one of plant-sim's (`LawArgument`, `LawPlace`).
 
 mod accumulators;
 mod instruments;
 mod law;
+mod oscillations;
 mod paths;
 mod seal_and_chamber;
 mod valves;
 
 use law::Law;
-use oleo_plant_sim::strut::UnlistedLaw;
+use oleo_plant_sim::strut::{LawArgument, UnlistedLaw};
 
 use super::forms::ClosedForm;
 use crate::effect::candidate::Candidate;
+use crate::parameter::Parameter;
 use crate::vocabulary::EffectId;
+
+/// The longest recording is taken to last at least this long, s.
+const LEAST_DURATION_S: f64 = 1.0;
 
 /// All laws.
 fn laws() -> impl Iterator<Item = &'static Law> {
@@ -23,15 +29,22 @@ fn laws() -> impl Iterator<Item = &'static Law> {
         .chain(valves::LAWS)
         .chain(accumulators::LAWS)
         .chain(instruments::LAWS.iter().flatten())
+        .chain(oscillations::LAWS)
 }
 
-/// Candidates for every law.
-pub fn candidates() -> Vec<Candidate> {
+/// Candidates for every law. The longest recording lasts this long, s.
+pub fn candidates(longest_s: f64) -> Vec<Candidate> {
     let candidate = |law: &Law| {
-        Candidate::new(EffectId::Unlisted, law.site.clone(), law.form.parameters(&law.grid()))
+        let grid = law.grid(longest_s.max(LEAST_DURATION_S));
+        let mut parameters = law.form.parameters(&grid);
+        if law.is_of_output_only() {
+            parameters = parameters.into_iter().map(Parameter::on_instrument).collect();
+        }
+        Candidate::new(EffectId::Unlisted, law.site.clone(), parameters)
             .labelled(law.label)
-            .starting_at(law.form.starts(&law.grid()))
+            .starting_at(law.form.starts(&grid))
             .in_place_of(EffectId::Unlisted)
+            .oscillating(law.depends_on == LawArgument::Phase)
     };
     laws().map(candidate).collect()
 }
@@ -44,8 +57,9 @@ pub fn table(label: &str, fitted: &[f64]) -> Option<UnlistedLaw> {
         place: law.place,
         depends_on: law.depends_on,
         argument: law.knots.to_vec(),
-        value: law.form.values(&law.grid(), fitted),
+        value: law.form.values(&law.grid(LEAST_DURATION_S), fitted),
         time_constant_s: law.form.time_constant_s(fitted),
+        frequency_hz: law.form.frequency_hz(fitted),
     })
 }
 
@@ -59,8 +73,16 @@ pub fn closed(label: &str) -> Option<ClosedForm> {
 #[must_use]
 pub fn symbol(label: &str, key: &str) -> Option<&'static str> {
     let law = laws().find(|law| law.label == label)?;
-    let position = (law.form.parameters(&law.grid()).iter()).position(|p| p.key == key)?;
+    let position = (law.form.parameters(&law.grid(LEAST_DURATION_S)).iter()).position(|p| p.key == key)?;
     law.form.closed()?.symbols.get(position).copied()
+}
+
+/// The law of a candidate as an equation with its fitted numbers; `None` for a form that is no equation.
+#[must_use]
+pub fn equation(label: &str, fitted: &[f64]) -> Option<String> {
+    let law = laws().find(|law| law.label == label)?;
+    let quantity = label.split(" over ").next().unwrap_or(label);
+    law.form.equation(quantity, fitted)
 }
 
 #[cfg(test)]
@@ -80,7 +102,7 @@ mod tests {
     #[test]
     fn a_law_whose_numbers_say_absent_leaves_the_model_as_it_is() {
         for law in laws() {
-            let fitted: Vec<f64> = law.form.parameters(&law.grid()).iter().map(|p| p.start).collect();
+            let fitted: Vec<f64> = law.form.parameters(&law.grid(50.0)).iter().map(|p| p.start).collect();
             let table = table(law.label, &fitted).expect("a law");
             // What is added is zero, a factor is one.
             let first = table.value[0];

@@ -14,6 +14,8 @@ pub enum LawArgument {
     Acceleration,
     /// Time since the start, s: what leaks, warms or drifts.
     Time,
+    /// Phase of an oscillation over time, turns, 0 to 1: time since the start by the frequency of the law, less whole turns.
+    Phase,
     /// Gauge pressure p1 of the main chamber, Pa.
     P1,
     /// Flow of the path, m3/s, out of the main chamber positive.

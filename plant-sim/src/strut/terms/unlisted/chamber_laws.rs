@@ -1,6 +1,7 @@
 //! The unmodelled laws of the main chamber as the solver reads them.
 
 use super::argument::LawArgument;
+use super::course::Course;
 use super::law::{UnlistedLaw, law_at};
 use super::place::LawPlace;
 use crate::strut::characteristic::Characteristic;
@@ -10,7 +11,7 @@ use crate::strut::characteristic::Characteristic;
 pub(in crate::strut) struct ChamberLaws {
     volume: Option<Characteristic>,
     loss: Option<Characteristic>,
-    loss_in_time: Option<Characteristic>,
+    loss_in_time: Course,
 }
 
 impl ChamberLaws {
@@ -19,7 +20,7 @@ impl ChamberLaws {
         Self {
             volume: law_at(laws, LawPlace::MainChamber, LawArgument::P1),
             loss: law_at(laws, LawPlace::MainChamberLoss, LawArgument::P1),
-            loss_in_time: law_at(laws, LawPlace::MainChamberLoss, LawArgument::Time),
+            loss_in_time: Course::at(laws, LawPlace::MainChamberLoss),
         }
     }
 
@@ -32,8 +33,7 @@ impl ChamberLaws {
     /// Flow lost at a gauge pressure and a time, m3/s.
     #[inline]
     pub fn loss(&self, p1_pa: f64, time_s: f64) -> f64 {
-        let by = |law: &Option<Characteristic>, argument| law.as_ref().map_or(0.0, |law| law.value(argument));
-        by(&self.loss, p1_pa) + by(&self.loss_in_time, time_s)
+        self.loss.as_ref().map_or(0.0, |law| law.value(p1_pa)) + self.loss_in_time.sum(time_s)
     }
 }
 
@@ -49,6 +49,7 @@ mod tests {
             argument: vec![0.0, 1e7],
             value: value.to_vec(),
             time_constant_s: None,
+            frequency_hz: None,
         };
         let laws = ChamberLaws::of(&[law(LawPlace::MainChamber, LawArgument::P1, [0.0, 1e-5])]);
         let (volume, slope) = laws.volume(5e6).unwrap();

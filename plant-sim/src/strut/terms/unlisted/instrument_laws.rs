@@ -1,6 +1,7 @@
 //! The unmodelled laws of one instrument: what it adds to the truth.
 
 use super::argument::LawArgument;
+use super::course::Course;
 use super::law::{UnlistedLaw, law_at};
 use super::place::LawPlace;
 use crate::strut::characteristic::Characteristic;
@@ -10,7 +11,7 @@ use crate::strut::motion::Motion;
 #[derive(Debug, Clone)]
 pub(in crate::strut) struct InstrumentLaws {
     reading: Option<Characteristic>,
-    time: Option<Characteristic>,
+    time: Course,
     rate: Option<Characteristic>,
 }
 
@@ -31,10 +32,10 @@ impl InstrumentLaws {
         let at = |over| law_at(laws, LawPlace::instrument(column)?, over);
         let own = Self {
             reading: at(LawArgument::Reading),
-            time: at(LawArgument::Time),
+            time: Course::at(laws, LawPlace::instrument(column)?),
             rate: at(LawArgument::ReadingRate),
         };
-        (own.reading.is_some() || own.time.is_some() || own.rate.is_some()).then_some(own)
+        (own.reading.is_some() || !own.time.is_none() || own.rate.is_some()).then_some(own)
     }
 
     /// Makes of a true signal what is recorded.
@@ -43,7 +44,7 @@ impl InstrumentLaws {
         let last = signal.len().saturating_sub(1);
         let truth = self.rate.as_ref().map(|_| signal.to_vec()).unwrap_or_default();
         for (k, (reading, t)) in signal.iter_mut().zip(times_s).enumerate() {
-            let mut added = value(self.reading.as_ref(), *reading) + value(self.time.as_ref(), t - begin_s);
+            let mut added = value(self.reading.as_ref(), *reading) + self.time.sum(t - begin_s);
             if let Some(law) = &self.rate {
                 let (a, b) = (k.saturating_sub(1), (k + 1).min(last));
                 if b > a {
@@ -57,15 +58,14 @@ impl InstrumentLaws {
     /// Makes of a recorded motion the true one.
     pub fn undo(&self, times_s: &[f64], motion: &mut Motion) {
         let begin_s = times_s.first().copied().unwrap_or(0.0);
-        motion.start_m -= value(self.reading.as_ref(), motion.start_m) + value(self.time.as_ref(), 0.0);
+        motion.start_m -= value(self.reading.as_ref(), motion.start_m) + self.time.sum(0.0);
         let mut from_m = motion.start_m;
         for (segment, t) in motion.segments.iter_mut().zip(times_s.iter().skip(1)) {
             let t = t - begin_s;
             let recorded_m = segment.to_m;
-            let added = value(self.reading.as_ref(), recorded_m)
-                + value(self.time.as_ref(), t)
-                + value(self.rate.as_ref(), segment.to_m_s);
-            let drift = slope(self.time.as_ref(), t);
+            let added =
+                value(self.reading.as_ref(), recorded_m) + self.time.sum(t) + value(self.rate.as_ref(), segment.to_m_s);
+            let drift = self.time.rate(t);
             segment.from_m_s = (1.0 - slope(self.reading.as_ref(), from_m)) * segment.from_m_s - drift;
             segment.to_m_s = (1.0 - slope(self.reading.as_ref(), recorded_m)) * segment.to_m_s - drift;
             segment.to_m -= added;
@@ -86,6 +86,7 @@ mod tests {
             argument: vec![-1.0, 1.0],
             value: vec![-slope, slope],
             time_constant_s: None,
+            frequency_hz: None,
         }
     }
 

@@ -20,6 +20,7 @@ use crate::strut::characteristic::Characteristic;
 ///     argument: vec![0.0, 0.05],
 ///     value: vec![1.0, 0.9],
 ///     time_constant_s: None,
+///     frequency_hz: None,
 /// };
 /// assert!((law.characteristic().value(0.025) - 0.95).abs() < 1e-15);
 /// let mut model = StrutModel::defender110(8000.0);
@@ -40,6 +41,9 @@ pub struct UnlistedLaw {
     /// Time constant of the law's memory, s; a law over [`LawArgument::VolumeChange`] has one, others have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_constant_s: Option<f64>,
+    /// Frequency of the oscillation, Hz; a law over [`LawArgument::Phase`] has one, others have none.
+    #[serde(default, rename = "frequency_Hz", skip_serializing_if = "Option::is_none")]
+    pub frequency_hz: Option<f64>,
 }
 
 impl Checked for UnlistedLaw {
@@ -49,6 +53,7 @@ impl Checked for UnlistedLaw {
         Limit::optional("time_constant_s", Range::FromTo(1e-3, 1e6), "s", |law| {
             law.time_constant_s
         }),
+        Limit::optional("frequency_Hz", Range::FromTo(1e-4, 1e3), "Hz", |law| law.frequency_hz),
     ];
 
     fn check_together(&self) -> Result<(), InvalidValue> {
@@ -70,7 +75,23 @@ impl Checked for UnlistedLaw {
             );
             return Err(InvalidValue::new("time_constant_s", what));
         }
+        if (self.depends_on == LawArgument::Phase) != self.frequency_hz.is_some() {
+            let what = format!(
+                "belongs to laws over {}, and each of them needs one",
+                word(&LawArgument::Phase)
+            );
+            return Err(InvalidValue::new("frequency_Hz", what));
+        }
         increasing("argument", &self.argument)?;
+        if self.depends_on == LawArgument::Phase
+            && !matches!(&self.argument[..], [first, .., last] if *first == 0.0 && *last == 1.0)
+        {
+            let what = format!(
+                "must go from 0 to 1: a law over {} is one turn",
+                word(&LawArgument::Phase)
+            );
+            return Err(InvalidValue::new("argument", what));
+        }
         as_many("value", &self.value, "argument", &self.argument)?;
         if self.depends_on == LawArgument::FlowRate
             && !matches!((&self.argument[..], &self.value[..]), ([a, b], [c, d]) if *b == -a && *d == -c)
@@ -115,7 +136,7 @@ impl UnlistedLaw {
     }
 }
 
-/// Check the laws of a model: each for itself, and that no two act at the same place. A law that stands in the file is
+/// Check the laws of a model: each for itself, and that no two act at the same place over the same quantity. A law that stands in the file is
 /// read by the solver, or it is refused here.
 ///
 /// # Errors
@@ -123,9 +144,7 @@ impl UnlistedLaw {
 pub(in crate::strut::terms) fn check_all(laws: &[UnlistedLaw]) -> Result<(), InvalidValue> {
     for (k, law) in laws.iter().enumerate() {
         law.check().map_err(|invalid| invalid.inside(k))?;
-        let same = |other: &UnlistedLaw| {
-            other.place == law.place && (law.place.holds_one_law() || other.depends_on == law.depends_on)
-        };
+        let same = |other: &UnlistedLaw| other.place == law.place && other.depends_on == law.depends_on;
         if laws.iter().take(k).any(same) {
             let what = format!("is {}, which has a law already: keep one of them", word(&law.place));
             return Err(InvalidValue::new("place", what).inside(k));
@@ -152,6 +171,7 @@ mod tests {
             argument: vec![0.0, 1.0],
             value: value.to_vec(),
             time_constant_s: None,
+            frequency_hz: None,
         }
     }
 
@@ -163,7 +183,7 @@ mod tests {
         let unread = law(LawPlace::Valve1, LawArgument::P1, [1.0, 0.5]);
         assert_eq!(
             check_all(&[good.clone(), unread]).unwrap_err().to_string(),
-            "[2] depends_on is \"p1\", which a law at \"valve-1\" does not depend on: must be \"pressure_drop\""
+            "[2] depends_on is \"p1\", which a law at \"valve-1\" does not depend on: must be one of \"pressure_drop\", \"phase\""
         );
         assert!(
             check_all(&[good.clone(), good])
@@ -173,7 +193,7 @@ mod tests {
         );
         let (a, b) = (LawArgument::Speed, LawArgument::P1);
         let seal = [a, b].map(|over| law(LawPlace::MainSeal, over, [0.0, 1.0]));
-        assert!(check_all(&seal).is_err(), "the seal holds one law of each kind");
+        assert!(check_all(&seal).is_ok(), "laws over different quantities add");
     }
 
     #[test]
@@ -214,5 +234,30 @@ mod tests {
                 .check()
                 .is_err()
         );
+    }
+
+    #[test]
+    fn what_repeats_has_a_frequency_and_is_one_turn() {
+        let bare = law(LawPlace::MainSeal, LawArgument::Phase, [1.0, 1.0]);
+        assert!(bare.check().unwrap_err().to_string().contains("frequency_Hz"));
+        let with = |law: UnlistedLaw| UnlistedLaw {
+            frequency_hz: Some(0.7),
+            ..law
+        };
+        let good = with(bare);
+        assert!(good.check().is_ok());
+        assert!(
+            with(law(LawPlace::MainSeal, LawArgument::Time, [0.0, 1.0]))
+                .check()
+                .is_err()
+        );
+        let half = UnlistedLaw {
+            argument: vec![0.0, 0.5],
+            ..good.clone()
+        };
+        assert!(half.check().unwrap_err().to_string().contains("one turn"));
+        let toml = toml::to_string(&good).unwrap();
+        assert!(toml.contains("frequency_Hz = 0.7"), "{toml}");
+        assert_eq!(toml::from_str::<UnlistedLaw>(&toml).unwrap(), good);
     }
 }

@@ -18,10 +18,12 @@
 //! | `argument` | the quantities |
 //! | `law` | the table in a model file and its check |
 //! | `path_laws`, `chamber_laws`, `seal_law` | the tables as the solver reads them, at the places of the network |
+//! | `course` | laws over time, which two kinds of argument state: time since the start, and the phase of an oscillation |
 //! | `instrument_laws` | what instruments add to their readings |
 
 mod argument;
 mod chamber_laws;
+mod course;
 mod instrument_laws;
 mod law;
 mod path_laws;
@@ -33,9 +35,10 @@ pub use law::{EQUATION, UnlistedLaw};
 pub use place::{LawForm, LawPlace};
 
 pub(in crate::strut) use chamber_laws::ChamberLaws;
+pub(in crate::strut) use course::{Course, longest_step_s};
 pub(in crate::strut) use instrument_laws::InstrumentLaws;
 pub(in crate::strut) use law::law_at;
-pub(in crate::strut) use path_laws::{PathLaws, throttle, throttled};
+pub(in crate::strut) use path_laws::{PathLaws, passed, throttle, throttled, valve_in_time};
 pub(in crate::strut) use seal_law::SealLaw;
 
 pub(super) use law::check_all;

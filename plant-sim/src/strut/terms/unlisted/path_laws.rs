@@ -1,6 +1,7 @@
 //! The unmodelled laws of one path as the solver reads them.
 
 use super::argument::LawArgument;
+use super::course::Course;
 use super::law::{UnlistedLaw, law_at};
 use super::place::LawPlace;
 use crate::strut::characteristic::Characteristic;
@@ -19,10 +20,11 @@ pub(in crate::strut) struct PathLaws {
     groove: Option<Characteristic>,
     groove_in_time: Option<Characteristic>,
     strength: Option<Characteristic>,
-    strength_in_time: Option<Characteristic>,
+    strength_in_time: Course,
     throttle: Option<Characteristic>,
+    valve_in_time: Course,
     gas: Option<Characteristic>,
-    gas_in_time: Option<Characteristic>,
+    gas_in_time: Course,
     gas_memory: Option<GasMemory>,
     held_back: Option<Characteristic>,
 }
@@ -43,10 +45,11 @@ impl PathLaws {
             groove: law_at(laws, LawPlace::beside_pack(path), LawArgument::Displacement),
             groove_in_time: law_at(laws, LawPlace::beside_pack(path), LawArgument::Time),
             strength: law_at(laws, LawPlace::pack(path), LawArgument::Displacement),
-            strength_in_time: law_at(laws, LawPlace::pack(path), LawArgument::Time),
+            strength_in_time: Course::at(laws, LawPlace::pack(path)),
             throttle: throttle(laws, path.pick(LawPlace::Valve1, LawPlace::Valve2)),
+            valve_in_time: valve_in_time(laws, path.pick(LawPlace::Valve1, LawPlace::Valve2)),
             gas: gas(laws, path, LawArgument::RelativeVolume).map(UnlistedLaw::characteristic),
-            gas_in_time: gas(laws, path, LawArgument::Time).map(UnlistedLaw::characteristic),
+            gas_in_time: Course::at_first_of(laws, &[LawPlace::accumulator(path), LawPlace::Accumulators]),
             gas_memory: gas(laws, path, LawArgument::VolumeChange).map(|law| GasMemory {
                 factor: law.characteristic(),
                 time_constant_s: law.time_constant_s.unwrap_or(f64::INFINITY),
@@ -77,11 +80,15 @@ impl PathLaws {
     /// What the model's drop of the pack is divided by at a displacement and a time.
     #[inline]
     pub fn weakening(&self, displacement_m: f64, time_s: f64) -> f64 {
-        let by = |law: &Option<Characteristic>, argument| {
-            law.as_ref()
-                .map_or(1.0, |law| 1.0 / law.value(argument).max(LEAST_FACTOR))
-        };
-        by(&self.strength, displacement_m) * by(&self.strength_in_time, time_s)
+        let by_displacement =
+            (self.strength.as_ref()).map_or(1.0, |law| 1.0 / law.value(displacement_m).max(LEAST_FACTOR));
+        by_displacement * (1.0 / self.strength_in_time.product(time_s, LEAST_FACTOR))
+    }
+
+    /// What the flow of the bypass valve is multiplied by at a time.
+    #[inline]
+    pub fn valve_in_time(&self, time_s: f64) -> f64 {
+        passed(&self.valve_in_time, time_s)
     }
 
     /// Fraction of the bypass valve's flow that does not pass at a drop.
@@ -100,7 +107,11 @@ impl PathLaws {
         let by =
             |law: Option<&Characteristic>, argument| law.map_or(1.0, |law| law.value(argument).max(LEAST_GAS_FACTOR));
         let memory = self.gas_memory.as_ref().map(|memory| &memory.factor);
-        Some(by(self.gas.as_ref(), relative_volume) * by(self.gas_in_time.as_ref(), time_s) * by(memory, changed))
+        Some(
+            by(self.gas.as_ref(), relative_volume)
+                * self.gas_in_time.product(time_s, LEAST_GAS_FACTOR)
+                * by(memory, changed),
+        )
     }
 
     /// What an implicit step of a duration leaves of a departure of the gas volume from its mean, 0 to 1; 0 without a memory.
@@ -132,6 +143,17 @@ pub(in crate::strut) fn throttle(laws: &[UnlistedLaw], valve: LawPlace) -> Optio
         .find_map(|place| law_at(laws, place, LawArgument::PressureDrop))
 }
 
+/// The laws over time of a valve are its own or, where it has none, those of all three.
+pub(in crate::strut) fn valve_in_time(laws: &[UnlistedLaw], valve: LawPlace) -> Course {
+    Course::at_first_of(laws, &[valve, LawPlace::Valves])
+}
+
+/// Factor on a valve's flow at a time.
+#[inline]
+pub(in crate::strut) fn passed(law: &Course, time_s: f64) -> f64 {
+    law.product(time_s, LEAST_FACTOR)
+}
+
 /// Factor on a valve's flow at a pressure drop.
 #[inline]
 pub(in crate::strut) fn throttled(law: &Characteristic, drop_pa: f64) -> f64 {
@@ -149,6 +171,7 @@ mod tests {
             argument: argument.to_vec(),
             value: value.to_vec(),
             time_constant_s: None,
+            frequency_hz: None,
         }
     }
 

@@ -90,6 +90,16 @@ pub enum LawPlace {
     InstrumentP4,
 }
 
+/// The instruments, in the order of the columns.
+const INSTRUMENTS: [LawPlace; 6] = [
+    LawPlace::InstrumentDisplacement,
+    LawPlace::InstrumentForce,
+    LawPlace::InstrumentP1,
+    LawPlace::InstrumentP2,
+    LawPlace::InstrumentP3,
+    LawPlace::InstrumentP4,
+];
+
 /// What the value of a law does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LawForm {
@@ -113,28 +123,33 @@ impl LawPlace {
                 LawArgument::P1,
                 LawArgument::Acceleration,
                 LawArgument::Time,
+                LawArgument::Phase,
             ],
             Self::MainSealFriction => &[
                 LawArgument::Displacement,
                 LawArgument::Speed,
                 LawArgument::P1,
                 LawArgument::Time,
+                LawArgument::Phase,
             ],
             Self::MainChamber => &[LawArgument::P1],
-            Self::MainChamberLoss => &[LawArgument::P1, LawArgument::Time],
+            Self::MainChamberLoss => &[LawArgument::P1, LawArgument::Time, LawArgument::Phase],
             Self::Path1 => &[LawArgument::Flow],
             Self::Path2 => &[LawArgument::Flow, LawArgument::FlowRate],
             Self::BesidePack1 | Self::BesidePack2 => {
                 &[LawArgument::PressureDrop, LawArgument::Displacement, LawArgument::Time]
             }
-            Self::Pack1 | Self::Pack2 => &[LawArgument::Displacement, LawArgument::Time],
-            Self::Valve1 | Self::Valve2 | Self::Valve3 | Self::Valves => &[LawArgument::PressureDrop],
+            Self::Pack1 | Self::Pack2 => &[LawArgument::Displacement, LawArgument::Time, LawArgument::Phase],
+            Self::Valve1 | Self::Valve2 | Self::Valve3 | Self::Valves => {
+                &[LawArgument::PressureDrop, LawArgument::Phase]
+            }
             Self::BesideValve3 => &[LawArgument::Displacement, LawArgument::Time],
             Self::ValveTiming | Self::ValveMovement => &[LawArgument::PressureDrop],
             Self::Accumulator1 | Self::Accumulator2 | Self::Accumulators => &[
                 LawArgument::RelativeVolume,
                 LawArgument::VolumeChange,
                 LawArgument::Time,
+                LawArgument::Phase,
             ],
             Self::Accumulator1Friction | Self::Accumulator2Friction => &[LawArgument::RelativeVolume],
             Self::InstrumentDisplacement
@@ -142,7 +157,12 @@ impl LawPlace {
             | Self::InstrumentP1
             | Self::InstrumentP2
             | Self::InstrumentP3
-            | Self::InstrumentP4 => &[LawArgument::Reading, LawArgument::Time, LawArgument::ReadingRate],
+            | Self::InstrumentP4 => &[
+                LawArgument::Reading,
+                LawArgument::Time,
+                LawArgument::Phase,
+                LawArgument::ReadingRate,
+            ],
         }
     }
 
@@ -168,24 +188,15 @@ impl LawPlace {
         }
     }
 
-    /// Whether only one law may act here, whatever it depends on. Everywhere else there may be one for each argument.
-    #[must_use]
-    pub fn holds_one_law(self) -> bool {
-        matches!(self, Self::MainSeal | Self::MainSealFriction)
-    }
-
     /// The instrument behind a column of a strut's recording.
     pub(super) fn instrument(column: &str) -> Option<Self> {
-        let places = [
-            Self::InstrumentDisplacement,
-            Self::InstrumentForce,
-            Self::InstrumentP1,
-            Self::InstrumentP2,
-            Self::InstrumentP3,
-            Self::InstrumentP4,
-        ];
-        let at = COLUMNS.iter().position(|known| *known == column)?;
-        places.get(at).copied()
+        INSTRUMENTS.into_iter().find(|place| place.column() == Some(column))
+    }
+
+    /// The column that the instrument at this place records; `None` for a place of the strut.
+    pub(in crate::strut::terms) fn column(self) -> Option<&'static str> {
+        let at = INSTRUMENTS.iter().position(|place| *place == self)?;
+        COLUMNS.get(at).copied()
     }
 
     /// The place in series with a path.

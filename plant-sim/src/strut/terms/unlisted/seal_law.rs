@@ -1,6 +1,7 @@
 //! An unmodelled law at the main seal as the solver reads it.
 
 use super::argument::LawArgument;
+use super::course::phase;
 use super::law::UnlistedLaw;
 use super::place::LawPlace;
 use crate::strut::characteristic::Characteristic;
@@ -11,15 +12,19 @@ use crate::strut::rod_state::RodState;
 pub(in crate::strut) struct SealLaw {
     argument: LawArgument,
     table: Characteristic,
+    frequency_hz: f64,
 }
 
 impl SealLaw {
-    /// The law at a place of the seal, if there is one.
-    pub fn at(laws: &[UnlistedLaw], place: LawPlace) -> Option<Self> {
-        laws.iter().find(|law| law.place == place).map(|law| Self {
-            argument: law.depends_on,
-            table: law.characteristic(),
-        })
+    /// The laws at a place of the seal, at most one for each argument.
+    pub fn all_at(laws: &[UnlistedLaw], place: LawPlace) -> Vec<Self> {
+        (laws.iter().filter(|law| law.place == place))
+            .map(|law| Self {
+                argument: law.depends_on,
+                table: law.characteristic(),
+                frequency_hz: law.frequency_hz.unwrap_or(0.0),
+            })
+            .collect()
     }
 
     /// Value of the law, N, in a state of the rod.
@@ -29,6 +34,7 @@ impl SealLaw {
             LawArgument::Speed => rod.speed_m_s,
             LawArgument::Acceleration => rod.acceleration.now_m_s2(),
             LawArgument::Time => rod.time_s,
+            LawArgument::Phase => phase(self.frequency_hz, rod.time_s),
             _ => rod.p1_pa,
         })
     }
@@ -54,6 +60,8 @@ mod tests {
             (LawArgument::Speed, 2.0),
             (LawArgument::P1, 3.0),
             (LawArgument::Time, 5.0),
+            // Two turns and a quarter.
+            (LawArgument::Phase, 0.25),
         ] {
             let laws = [UnlistedLaw {
                 place: LawPlace::MainSealFriction,
@@ -61,10 +69,11 @@ mod tests {
                 argument: vec![0.0, 10.0],
                 value: vec![0.0, 10.0],
                 time_constant_s: None,
+                frequency_hz: (depends_on == LawArgument::Phase).then_some(0.45),
             }];
-            let law = SealLaw::at(&laws, LawPlace::MainSealFriction).unwrap();
-            assert_eq!(law.value_n(&rod), value);
-            assert!(SealLaw::at(&laws, LawPlace::MainSeal).is_none());
+            let found = SealLaw::all_at(&laws, LawPlace::MainSealFriction);
+            assert!(found.len() == 1 && (found[0].value_n(&rod) - value).abs() < 1e-12);
+            assert!(SealLaw::all_at(&laws, LawPlace::MainSeal).is_empty());
         }
     }
 }

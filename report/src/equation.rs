@@ -103,6 +103,8 @@ fn greek(name: &str) -> Option<&'static str> {
         "beta" => "\u{3b2}",
         "delta" => "\u{3b4}",
         "mu" => "\u{3bc}",
+        "phi" => "\u{3c6}",
+        "pi" => "\u{3c0}",
         "rho" => "\u{3c1}",
         "sum" => "\u{2211}",
         "tau" => "\u{3c4}",

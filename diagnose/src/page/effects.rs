@@ -52,12 +52,7 @@ fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
         words::at(&e.place),
         words::effect_name(e)
     ));
-    if let Some(equation) = &e.equation {
-        page.text(&format!(
-            "{}, where t is the time since the start of each recording in s.",
-            words::sentence(equation)
-        ));
-    } else if let Some(equation) = known.equation_in(kind, &e.label) {
+    if let Some(equation) = known.equation_in(kind, &e.label) {
         let meaning = match law(e) {
             Some(law) if is_closed(equation) => symbols_of_a_law(&law),
             _ => words::sentence(known.meaning()),
@@ -101,11 +96,12 @@ fn symbols_of_a_law(law: &UnlistedLaw) -> String {
             format!("the {name} in {unit}")
         }
     };
-    format!(
-        "Here y is {}, and x is {}",
-        quantity(value(law)),
-        quantity(argument(law.depends_on))
-    )
+    let y = quantity(value(law));
+    if law.depends_on == LawArgument::Phase {
+        format!("Here y is {y}, and t is the time since the start of each recording in s")
+    } else {
+        format!("Here y is {y}, and x is {}", quantity(argument(law.depends_on)))
+    }
 }
 
 /// The law of an effect that was fitted as a table.

@@ -24,7 +24,7 @@ pub(super) enum Node {
 }
 
 /// Functions whose argument is in brackets.
-const FUNCTIONS: [&str; 5] = ["exp", "tanh", "sgn", "min", "max"];
+const FUNCTIONS: [&str; 6] = ["exp", "sin", "tanh", "sgn", "min", "max"];
 /// Words that stand in equations.
 const WORDS: [&str; 7] = ["with", "unless", "it", "is", "given", "constant", "where"];
 

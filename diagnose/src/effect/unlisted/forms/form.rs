@@ -25,7 +25,7 @@ impl Grid {
     }
 }
 
-/// A law of a few numbers as an equation of its value `y` and its argument `x`.
+/// A law of a few numbers as an equation of its value `y` and its argument `x`, or the time `t` since the start of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ClosedForm {
     /// The equation, as `oleo_report` sets it.

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use oleo_report::significant;
 
-use super::form::{Form, Grid};
+use super::form::{ClosedForm, Form, Grid};
 use crate::parameter::Parameter;
 
 /// Key of the phase at the start of a recording.
@@ -64,6 +64,13 @@ fn sine(phase: f64, frequency_hz: f64) -> String {
 }
 
 impl Form for SwingingAdded {
+    fn closed(&self) -> Option<ClosedForm> {
+        Some(ClosedForm {
+            equation: "y = a sin(2 pi f t + phi)",
+            symbols: &["a", "phi", "f"],
+        })
+    }
+
     fn equation(&self, quantity: &str, fitted: &[f64]) -> Option<String> {
         let &[amplitude, phase, frequency_hz] = fitted else {
             return None;
@@ -90,6 +97,13 @@ impl Form for SwingingAdded {
 }
 
 impl Form for SwingingFactor {
+    fn closed(&self) -> Option<ClosedForm> {
+        Some(ClosedForm {
+            equation: "y = 1 + a sin(2 pi f t + phi)",
+            symbols: &["a", "phi", "f"],
+        })
+    }
+
     fn equation(&self, quantity: &str, fitted: &[f64]) -> Option<String> {
         let &[amplitude, phase, frequency_hz] = fitted else {
             return None;

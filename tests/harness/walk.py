@@ -35,7 +35,7 @@ def follow(page, folder):
             (folder / block["file"]).write_text(block["text"], encoding="utf-8")
         elif block["kind"] == "diff":
             done = subprocess.run(
-                ["patch", "-p1", "--forward", "--no-backup-if-mismatch", "-r", "-", "-d", str(folder)],
+                ["patch", "-p1", "--forward", "--fuzz=0", "--no-backup-if-mismatch", "-r", "-", "-d", str(folder)],
                 input=block["text"], capture_output=True, text=True, check=False,
             )
             if done.returncode != 0:

@@ -9,7 +9,6 @@
 //!   heave       z''     = g (sum F / sum W - 1)
 //!   roll        phi''   = g (sum y (F - W) - k_f phi_f - k_r phi_r) / (sum W  i_x^2)
 //!   pitch       theta'' = g (- sum x (F - W)) / (sum W  i_y^2)
-//!   corner      z_i''   = z'' + y_i phi'' - x_i theta''
 //! ```
 //!
 //! Source: Newton and Euler for the sprung mass at small angles. The lateral acceleration is [`crate::lateral`]'s. Signs: x forward,
@@ -23,7 +22,7 @@
 use oleo_interface::tick::TICKS_PER_SECOND;
 use oleo_interface::{Axles, Corners};
 
-use crate::filter::{Derivative, DerivativeState, LeakyIntegrator, LowPass, at_least};
+use crate::filter::{Derivative, DerivativeState, LowPass, at_least};
 use crate::lateral::{self, Lateral};
 use crate::plausibility::Trusted;
 use crate::range::{ConfigurationError, within};
@@ -91,7 +90,6 @@ pub struct Parameters {
     lateral: lateral::Parameters,
     wheelbase: wheelbase::Parameters,
     running: LowPass,
-    body_velocity: LeakyIntegrator,
 }
 
 impl Parameters {
@@ -117,7 +115,6 @@ impl Parameters {
             ),
             wheelbase: wheelbase::Parameters::new(),
             running: LowPass::from_time_constant_s(tuning.running_rms_s),
-            body_velocity: LeakyIntegrator::from_corner_hz(0.2),
         }
     }
 }
@@ -148,10 +145,6 @@ pub struct Estimate {
     pub lateral_mean_square: f32,
     /// Running mean square of the vertical acceleration, m2/s4.
     pub vertical_mean_square: f32,
-    /// Vertical acceleration of the body over each strut, m/s2, up positive.
-    pub corner_acceleration_m_s2: Corners<f32>,
-    /// Vertical velocity of the body over each strut above 0.2 Hz, m/s, up positive.
-    pub corner_velocity_m_s: Corners<f32>,
     /// Static load on each strut, N.
     pub static_load_n: Corners<f32>,
 }
@@ -160,17 +153,14 @@ impl Estimate {
     /// Whether every quantity is a finite number.
     pub fn is_finite(&self) -> bool {
         // Every quantity above enters one of these sums, and a value that is not finite makes its sum not finite.
-        let corners: f32 = self
-            .strut_speed_m_s
-            .values()
-            .chain(self.corner_acceleration_m_s2.values())
-            .chain(self.corner_velocity_m_s.values())
-            .chain(self.static_load_n.values())
-            .sum();
+        let corners: f32 = self.strut_speed_m_s.values().chain(self.static_load_n.values()).sum();
         let body = self.heave_m
             + self.roll_rad
             + self.pitch_rad
             + self.roll_rate_rad_s
+            + self.vertical_acceleration_m_s2
+            + self.roll_acceleration_rad_s2
+            + self.pitch_acceleration_rad_s2
             + self.lateral_mean_square
             + self.vertical_mean_square
             + self.lateral.acceleration_m_s2.quick
@@ -202,7 +192,6 @@ impl Estimate {
 pub struct State {
     speed: Corners<DerivativeState>,
     static_load_n: Corners<f32>,
-    velocity: Corners<f32>,
     lateral: lateral::State,
     wheelbase: wheelbase::State,
     lateral_mean_square: f32,
@@ -257,15 +246,6 @@ impl State {
         let lateral = self.lateral.step(&c.lateral, lateral_raw, front, rear, delay);
         let lateral_square = lateral.acceleration_m_s2.quick * lateral.acceleration_m_s2.quick;
 
-        let corner_acceleration_m_s2 = Corners::from_array([
-            vertical + hf * roll - a * pitch,
-            vertical - hf * roll - a * pitch,
-            vertical + hr * roll + b * pitch,
-            vertical - hr * roll + b * pitch,
-        ]);
-        for (velocity, acceleration) in self.velocity.each_mut().zip(corner_acceleration_m_s2).into_array() {
-            c.body_velocity.step(velocity, acceleration);
-        }
         Estimate {
             strut_speed_m_s,
             heave_m: relative.heave_m,
@@ -278,8 +258,6 @@ impl State {
             lateral,
             lateral_mean_square: c.running.step(&mut self.lateral_mean_square, lateral_square),
             vertical_mean_square: c.running.step(&mut self.vertical_mean_square, vertical * vertical),
-            corner_acceleration_m_s2,
-            corner_velocity_m_s: self.velocity,
             static_load_n: self.static_load_n,
         }
     }

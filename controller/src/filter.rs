@@ -165,11 +165,13 @@ impl Derivative {
 
 /// Leaky integrator `v = k (v + a T)`. It integrates above its corner frequency and returns to zero below it, so that a
 /// constant error of an estimated acceleration does not add up.
+#[cfg(feature = "comparison")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeakyIntegrator {
     keep: f32,
 }
 
+#[cfg(feature = "comparison")]
 impl LeakyIntegrator {
     /// Integrates above a corner frequency, Hz, above 0.
     pub fn from_corner_hz(corner_hz: f32) -> Self {

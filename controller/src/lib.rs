@@ -67,7 +67,9 @@ pub use range::{ConfigurationError, Hysteresis};
 pub use reading::{Inputs, Reading};
 pub use sensor_message::{MessageSet, SensorMessage};
 pub use solenoids::{SolenoidError, Solenoids};
-pub use strategy::{DamperPolicy, Strategy};
+#[cfg(feature = "comparison")]
+pub use strategy::DamperPolicy;
+pub use strategy::Strategy;
 pub use tick::{Outputs, State, tick};
 pub use valves::ValveCommand;
 pub use vehicle::VehicleDescription;

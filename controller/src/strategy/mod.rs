@@ -14,14 +14,17 @@
 //! file. Its name on the command line is the name of its variant: `AlwaysSoft` is `always-soft`.
 
 mod demand;
+#[cfg(feature = "comparison")]
 mod fixed;
 pub mod parts;
+#[cfg(feature = "comparison")]
 pub mod ride_handling;
 pub mod road_and_cornering;
 
 use strum::{EnumString, IntoStaticStr, VariantArray, VariantNames};
 
 pub use demand::{Decide, Demand, Urgency};
+#[cfg(feature = "comparison")]
 pub use parts::semi_active::DamperPolicy;
 
 use crate::estimate::Estimate;
@@ -128,6 +131,7 @@ impl Parameters {
     }
 }
 
+#[cfg(feature = "comparison")]
 strategies! {
     /// All valves open, for comparison.
     AlwaysSoft, always_soft: fixed::AlwaysSoft;
@@ -135,6 +139,14 @@ strategies! {
     AlwaysStiff, always_stiff: fixed::AlwaysStiff;
     /// Ride mode or handling mode by running RMS, with a roll-over guard.
     RideHandling, ride_handling: ride_handling::RideHandling;
+    /// Stiff on a smooth road and as soon as the vehicle corners; low damping by the road else.
+    #[default]
+    RoadAndCornering, road_and_cornering: road_and_cornering::RoadAndCornering;
+}
+
+// The board's image holds the one strategy that it drives with.
+#[cfg(not(feature = "comparison"))]
+strategies! {
     /// Stiff on a smooth road and as soon as the vehicle corners; low damping by the road else.
     #[default]
     RoadAndCornering, road_and_cornering: road_and_cornering::RoadAndCornering;

@@ -53,11 +53,11 @@ impl Decide for RideHandling {
         tuning.dampers.check()
     }
 
-    fn new(_: &VehicleDescription, tuning: &Tuning) -> Self {
+    fn new(vehicle: &VehicleDescription, tuning: &Tuning) -> Self {
         Self {
             running_rms: running_rms::Parameters::new(&tuning.running_rms),
             rollover_guard: tuning.rollover_guard,
-            dampers: semi_active::Parameters::new(&tuning.dampers),
+            dampers: semi_active::Parameters::new(vehicle, &tuning.dampers),
         }
     }
 

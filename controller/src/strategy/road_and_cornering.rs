@@ -9,9 +9,10 @@
 //! On a smooth road nothing has to be decided in time, because the vehicle is stiff already. On a rough one it becomes stiff as
 //! soon as the lateral acceleration stands out of what the road does ([`super::parts::cornering`]), and at once: a lean that the closing
 //! springs trap is smaller than the one that a later closing would find. It stays so while the gas says that it leans
-//! (`parts::load_transfer`). How rough the road is is told by the running RMS of the
-//! body's vertical acceleration, which is not judged while the vehicle corners. Which damper level is best on which road is measured in
-//! `docs/controller.md`.
+//! (`parts::load_transfer`). How rough the road is is told by the running RMS of the body's vertical acceleration, which is not
+//! judged while the vehicle corners, and does not begin to count as rough while the lateral acceleration has the greater RMS: a bend
+//! that is not recognised, on a vehicle whose sensors are off, must not open the springs. Which damper level is best on which road is
+//! measured in `docs/controller.md`.
 
 use oleo_interface::{Corners, StrutValves};
 
@@ -108,7 +109,7 @@ impl Decide for RoadAndCornering {
         let corners = state.cornering.step(&self.cornering, estimate, leans);
         state.corners = corners;
         if !corners {
-            self.judge_road(state, estimate.vertical_mean_square);
+            self.judge_road(state, estimate);
         }
         let valves = if corners || rollover_guard || !state.rough {
             ValveCommand::SAFE
@@ -132,12 +133,13 @@ impl Decide for RoadAndCornering {
 
 impl RoadAndCornering {
     /// Whether the road is rough or very rough, by what the body feels of it.
-    fn judge_road(&self, state: &mut State, vertical_mean_square: f32) {
+    fn judge_road(&self, state: &mut State, estimate: &Estimate) {
+        let (vertical_mean_square, lateral_mean_square) = (estimate.vertical_mean_square, estimate.lateral_mean_square);
         state.dwell = state.dwell.saturating_sub(1);
         let changes = if state.rough {
             vertical_mean_square < self.rough_2.end
         } else {
-            vertical_mean_square > self.rough_2.begin
+            vertical_mean_square > self.rough_2.begin && vertical_mean_square > lateral_mean_square
         };
         if changes && state.dwell == 0 {
             state.rough = !state.rough;
@@ -149,5 +151,45 @@ impl RoadAndCornering {
             self.very_rough_2.begin
         };
         state.very_rough = vertical_mean_square > bound;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn opens(vertical_rms: f32, lateral_rms: f32) -> bool {
+        let strategy = RoadAndCornering::new(&VehicleDescription::default(), &Tuning::default());
+        let estimate = Estimate {
+            vertical_mean_square: vertical_rms * vertical_rms,
+            lateral_mean_square: lateral_rms * lateral_rms,
+            ..Estimate::default()
+        };
+        let demand = strategy.step(&mut State::default(), &estimate, &Trusted::default());
+        demand.valves != ValveCommand::SAFE
+    }
+
+    #[test]
+    fn a_road_is_rough_by_its_vertical_motion_unless_the_lateral_one_is_greater() {
+        assert!(!opens(0.24, 0.0));
+        assert!(opens(0.26, 0.0) && opens(0.26, 0.25) && opens(2.0, 1.9));
+        // A bend that is not recognised shakes the body a little, too.
+        assert!(!opens(0.26, 0.27) && !opens(2.0, 2.1));
+    }
+
+    #[test]
+    fn a_rough_road_stays_rough_whatever_the_lateral_motion() {
+        let strategy = RoadAndCornering::new(&VehicleDescription::default(), &Tuning::default());
+        let mut state = State::default();
+        let mut rough = Estimate {
+            vertical_mean_square: 0.3,
+            ..Estimate::default()
+        };
+        strategy.step(&mut state, &rough, &Trusted::default());
+        rough.lateral_mean_square = 2.0;
+        for _ in 0..2 * ROAD_DWELL_TICKS {
+            let demand = strategy.step(&mut state, &rough, &Trusted::default());
+            assert_ne!(demand.valves, ValveCommand::SAFE);
+        }
     }
 }

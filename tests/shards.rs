@@ -137,6 +137,49 @@ fn the_self_test_in_parts_is_the_whole_one() {
     );
 }
 
+/// A campaign that cannot be diagnosed is an outcome too.
+#[test]
+fn a_fleet_in_parts_is_the_whole_one() {
+    let place = tempfile::tempdir().expect("a folder");
+    let save = [
+        "diagnose",
+        "--self-test",
+        "--save",
+        "--campaigns",
+        "1",
+        "--terms",
+        "none",
+        "--out",
+        "fleet",
+    ];
+    succeeds(place.path(), &save);
+    let fleet = place.path().join("fleet");
+    std::fs::create_dir(fleet.join("broken")).expect("made");
+    std::fs::write(fleet.join("broken/model.toml"), "nothing").expect("written");
+    let path = fleet.to_str().expect("a path");
+    same_whole_and_in_parts(
+        &["study", "fleet", path],
+        2,
+        "diagnoses.jsonl",
+        &format!("oleo study fleet {path}"),
+    );
+    let study = ["study", "fleet", path, "--out"];
+    succeeds(place.path(), &[&study[..], &["out"]].concat());
+    support::is_as_documented(&place.path().join("out"), "study-fleet");
+    let summary = support::summary(&place.path().join("out"));
+    assert_eq!(
+        (&summary["members"], &summary["failed"][0]["member"]),
+        (&2.into(), &"broken".into())
+    );
+    // A recording that was changed is diagnosed again, the others are not.
+    let ledger = || std::fs::read_to_string(place.path().join("out/diagnoses.jsonl")).expect("a ledger");
+    assert_eq!(ledger().lines().count(), 2);
+    std::fs::write(fleet.join("broken/model.toml"), "something else").expect("written");
+    succeeds(place.path(), &[&study[..], &["out"]].concat());
+    assert_eq!(ledger().lines().count(), 3);
+    assert!(refused(place.path(), &["study", "fleet", "out"]).contains("holds no campaign"));
+}
+
 /// A part that is killed without warning goes on where it was, and its shard is the one that it would have been.
 #[cfg(unix)]
 #[test]

@@ -400,6 +400,48 @@ fn what_does_not_belong_together_is_refused_in_one_line() {
     support::is_as_documented(&folder.join("m"), "study-robust");
 }
 
+/// The containers of the example for Kubernetes, with fewer vehicles.
+#[test]
+fn the_manifest_for_kubernetes_runs_these_commands() {
+    let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/kubernetes.yaml");
+    let manifest = std::fs::read_to_string(manifest).expect("the manifest");
+    let commands = manifest
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("command: [oleo, ")?.strip_suffix(']'));
+    let commands: Vec<Vec<&str>> = commands
+        .map(|words| {
+            words
+                .split(", ")
+                .map(|word| {
+                    if word == "\"1000\"" {
+                        "12"
+                    } else {
+                        word.trim_matches('"')
+                    }
+                })
+                .collect()
+        })
+        .collect();
+    let [shard, merge] = &commands[..] else {
+        panic!("{commands:?}")
+    };
+    let completions = manifest
+        .lines()
+        .find_map(|line| line.trim().strip_prefix("completions: "));
+    let completions: u32 = completions.and_then(|number| number.parse().ok()).expect("a number");
+    let place = tempfile::tempdir().expect("a folder");
+    for index in 0..completions {
+        let mut command = command(place.path(), shard);
+        let run = command
+            .env("JOB_COMPLETION_INDEX", index.to_string())
+            .output()
+            .expect("started");
+        assert!(run.status.success(), "{}", text(&run.stderr));
+    }
+    succeeds(place.path(), merge);
+    assert_eq!(support::summary(&place.path().join("robust"))["vehicles"], 12);
+}
+
 /// The number of the part is that of the task, and results of a failed check have the status of the study.
 #[test]
 fn an_array_of_jobs_numbers_the_parts() {

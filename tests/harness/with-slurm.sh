@@ -36,6 +36,8 @@ plugins=$(find "$FOLDER/usr/lib" -type d -name slurm-wlm | head -n 1)
 work=$(mktemp -d /tmp/oleo-slurm.XXXXXX) || exit 1
 daemons=()
 stop() {
+    # Jobs of a command that failed would outlive the daemons.
+    [ -z "${ready:-}" ] || scancel --quiet --user="$(id -un)" 2> /dev/null
     [ ${#daemons[@]} -eq 0 ] || kill "${daemons[@]}" 2> /dev/null
     wait 2> /dev/null
     rm -rf "$work"

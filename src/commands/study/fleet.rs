@@ -143,12 +143,15 @@ impl Study for Fleet {
 
     fn report(&self, entries: Vec<Entry>, out: Option<&mut OutputDirectory>, command: &str) -> Result<Said, Failure> {
         let counts = Counts::of(&entries);
-        let tables = [counts.verdict_table(), counts.effect_table()];
         if let Some(out) = out {
-            write(out, &entries, &counts, &tables, command)?;
+            write(out, &entries, &counts, command)?;
+        }
+        let mut text = format!("{}\n{}", counts.sentence(), counts.verdict_table());
+        if !counts.effects.is_empty() {
+            text += &format!("\n{}", counts.effect_table());
         }
         Ok(Said {
-            text: format!("{}\n{}\n{}", counts.sentence(), tables[0], tables[1]),
+            text,
             status: ExitCode::SUCCESS,
         })
     }
@@ -252,13 +255,7 @@ struct Row<'a> {
     failed: &'a str,
 }
 
-fn write(
-    out: &mut OutputDirectory,
-    entries: &[Entry],
-    counts: &Counts,
-    tables: &[Table; 2],
-    command: &str,
-) -> Result<(), Failure> {
+fn write(out: &mut OutputDirectory, entries: &[Entry], counts: &Counts, command: &str) -> Result<(), Failure> {
     let rows = entries.iter().map(|entry| {
         let effects = entry
             .effects
@@ -297,8 +294,10 @@ fn write(
         false => Verdict::Attention,
     };
     page.verdict(kind, &counts.sentence());
-    page.outcome(tables[0].clone());
-    page.section("Effects").table(tables[1].clone());
+    page.outcome(counts.verdict_table());
+    if !counts.effects.is_empty() {
+        page.section("Effects").table(counts.effect_table());
+    }
     let mut figure = Curves::new("Noise ratios", Axis::new("Held-out noise ratio", "").logarithmic());
     figure.caption("Fraction of the members whose ratio is at most the value below; 1 means that the error is no larger than the noise of the sensors.");
     let panel = figure.panel(Axis::new("Fraction of the members", "").range(0.0, 1.0));

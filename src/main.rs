@@ -8,6 +8,8 @@
 mod commands;
 mod failure;
 mod results;
+mod shard;
+mod slurm;
 
 use std::process::ExitCode;
 
@@ -37,6 +39,8 @@ struct CommandLine {
 enum Command {
     Drive(commands::drive::Args),
     Study(commands::study::Args),
+    Merge(commands::merge::Args),
+    Submit(commands::submit::Args),
     Hil(commands::hil::Args),
     Rig(commands::rig::Args),
     Diagnose(commands::diagnose::Args),
@@ -53,6 +57,8 @@ fn main() -> ExitCode {
         Ok(CommandLine { command }) => match command {
             Command::Drive(args) => commands::drive::run(args),
             Command::Study(args) => commands::study::run(args),
+            Command::Merge(args) => commands::merge::run(&args),
+            Command::Submit(args) => commands::submit::run(&args),
             Command::Hil(args) => commands::hil::run(args),
             Command::Rig(args) => commands::rig::run(args),
             Command::Diagnose(args) => commands::diagnose::run(args),

@@ -83,6 +83,25 @@ impl ResultsArgs {
         Ok((Some(out), Some(ledger)))
     }
 
+    /// The folder of the shards of a study, and whether shards of another study in it are replaced.
+    pub fn of_shards(&self, name: &str) -> Result<(PathBuf, bool), Failure> {
+        if self.format == Format::Json {
+            return Err(Failure::new(
+                "--format json: a shard has no summary; leave the option out, and give it to oleo merge",
+            ));
+        }
+        let folder = match &self.out {
+            Some(out) => out.clone(),
+            None => default_path(&format!("{name}.shards"))?,
+        };
+        Ok((folder, self.force))
+    }
+
+    /// The folder of `--out`.
+    pub fn out(&self) -> Option<&Path> {
+        self.out.as_deref()
+    }
+
     /// The folder of the results; `None` where none are wanted. The folder that holds those without `--out` is made.
     fn folder(&self, name: &str) -> Result<Option<PathBuf>, Failure> {
         match &self.out {

@@ -8,13 +8,14 @@ use std::process::Command;
 use support::run;
 
 /// Pages with commands.
-const PAGES: [&str; 6] = [
+const PAGES: [&str; 7] = [
     "README.md",
     "docs/start.md",
     "docs/hil.md",
     "docs/diagnose.md",
     "docs/fmu.md",
     "docs/handling.md",
+    "docs/scale.md",
 ];
 
 /// Commands of a page: lines of code that begin with `oleo` or run it with cargo, as words. What follows two spaces or a `#` explains.
@@ -66,7 +67,12 @@ fn every_command_of_the_documentation_is_understood() {
         for words in commands(page).iter().filter(|words| !is_pattern(words)) {
             // Help is given when everything before it has been read: an unknown option or value is refused first.
             let mut arguments: Vec<&str> = words.iter().map(|word| word.trim_matches(['"', '`', '\''])).collect();
-            arguments.push("--help");
+            // Behind `--` stands a command of its own.
+            let end = arguments
+                .iter()
+                .position(|word| *word == "--")
+                .unwrap_or(arguments.len());
+            arguments.insert(end, "--help");
             let output = run(&arguments);
             let said = String::from_utf8_lossy(&output.stderr).into_owned();
             assert!(output.status.success(), "{page}: oleo {}: {said}", words.join(" "));

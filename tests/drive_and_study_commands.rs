@@ -314,7 +314,7 @@ fn studies_of_the_controller_refuse_what_cannot_be() {
         ),
         (
             &["study", "robust", "--vehicles", "0"],
-            "--vehicles 0: give a number from 1 to 100000",
+            "--vehicles 0: give a number from 1 to 10000000",
         ),
     ] {
         let run = oleo(folder.path(), arguments);

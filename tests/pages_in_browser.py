@@ -192,6 +192,7 @@ def pages(oleo, folder):
     subprocess.run([oleo, *saved], cwd=folder, check=True, capture_output=True)
     campaign = next(path.parent for path in (folder / "campaigns").glob("*/model.toml"))
     commands["diagnose"] = ["diagnose", str(campaign.relative_to(folder))]
+    commands["study fleet"] = ["study", "fleet", "campaigns"]
     commands["compare"] = ["compare", "drive", "--tolerance", "max_roll_deg=5%"]
     for name, arguments in commands.items():
         out = name.replace(" ", "-")

@@ -61,6 +61,7 @@ def main():
     subprocess.run([oleo, *saved], cwd=folder, check=True, capture_output=True)
     campaign = next(path.parent for path in (folder / "campaigns").glob("*/model.toml"))
     commands.append(("diagnose", ["diagnose", str(campaign.relative_to(folder))]))
+    commands.append(("study-fleet", ["study", "fleet", "campaigns"]))
     # The first two commands are runs of hil, whose results lie in these folders.
     commands.append(("compare", ["compare", "out-0", "out-1", "--tolerance", "roll_rad=1%"]))
     for number, (schema, arguments) in enumerate(commands):

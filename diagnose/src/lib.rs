@@ -66,6 +66,7 @@ pub mod free_run;
 pub mod instrument;
 pub mod json;
 pub mod locate;
+pub mod one_a_thread;
 pub mod page;
 pub mod parameter;
 pub mod prediction;

@@ -15,6 +15,8 @@ use super::column_map::column_map;
 use super::vehicle_log::DatabaseArgs;
 use crate::failure::Failure;
 use crate::results::{ResultsArgs, command_line};
+use crate::shard::Request;
+use crate::shard::arguments::of_this_process;
 
 /// Find the physics that a model leaves out: its place, its law, its parameters, and how much the model improves with it.
 #[derive(clap::Args)]
@@ -78,8 +80,13 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
                 "--dbc and --signals: the self-test reads no logs; leave the options out",
             ));
         }
-        return self_test::run_self_test(&args.self_test, &args.results);
+        return self_test::run_self_test(args.self_test, args.results, || of_this_process::<Args>("diagnose"));
     };
+    if args.self_test.is_divided() {
+        return Err(Failure::new(
+            "--shard: one campaign is one case; leave it out, or see oleo study fleet for a folder of campaigns",
+        ));
+    }
     if let Some(logs) = args.logs(folder)? {
         return vehicle::run(&logs, &args.database, &args.results);
     }
@@ -117,6 +124,16 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
 }
 
 impl Args {
+    /// The self-test, if one is asked for: what else there is to diagnose has no cases.
+    pub fn request(self) -> Result<Request, Failure> {
+        match self.self_test.self_test {
+            true => self.self_test.request(self.results),
+            false => Err(Failure::new(
+                "oleo diagnose: one campaign is one case and has no shards; give oleo diagnose --self-test, or oleo study fleet",
+            )),
+        }
+    }
+
     /// The logs of a vehicle, if one is to be diagnosed.
     fn logs(&self, first: &Path) -> Result<Option<vehicle::Logs>, Failure> {
         if let Some(model) = &self.vehicle {

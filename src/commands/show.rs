@@ -86,7 +86,7 @@ macro_rules! schemas {
     };
 }
 
-const SCHEMAS: [(&str, &str, &str); 16] = schemas!(
+const SCHEMAS: [(&str, &str, &str); 17] = schemas!(
     "hil" of "summary.json of oleo hil",
     "hil-controller" of "summary.json of oleo hil --node controller",
     "drive" of "summary.json of oleo drive",
@@ -100,6 +100,7 @@ const SCHEMAS: [(&str, &str, &str); 16] = schemas!(
     "study-optimise" of "summary.json of oleo study optimise",
     "study-control" of "summary.json of oleo study control",
     "study-robust" of "summary.json of oleo study robust",
+    "study-fleet" of "summary.json of oleo study fleet",
     "compare" of "summary.json of oleo compare",
     "diagnose" of "report.json of oleo diagnose",
     "self-test" of "summary.json of oleo diagnose --self-test",

@@ -58,14 +58,19 @@ impl Ledger {
         if !text.is_empty() && !text.ends_with('\n') {
             file.write_all(b"\n").map_err(wrap)?;
         }
-        let known = (text.lines().skip(1))
-            .filter_map(|line| serde_json::from_str::<Trial>(line).ok())
-            .map(|trial| (trial.name.clone(), trial))
-            .collect();
         Ok(Self {
-            known,
+            known: known(&text),
             file: Some((path.to_path_buf(), Mutex::new(file))),
         })
+    }
+
+    /// A ledger from the text of such a file, in which nothing is kept. Lines that are no trials are left out.
+    #[must_use]
+    pub fn of_text(text: &str) -> Self {
+        Self {
+            known: known(text),
+            file: None,
+        }
     }
 
     /// The finished campaign of this name, if the ledger contains it.
@@ -86,4 +91,11 @@ impl Ledger {
         let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
         file.write_all(line.as_bytes()).map_err(|e| fail(e.to_string()))
     }
+}
+
+fn known(text: &str) -> BTreeMap<String, Trial> {
+    text.lines()
+        .filter_map(|line| serde_json::from_str::<Trial>(line).ok())
+        .map(|trial| (trial.name.clone(), trial))
+        .collect()
 }

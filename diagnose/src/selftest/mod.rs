@@ -24,8 +24,7 @@ mod save;
 mod summary;
 mod trial;
 
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 pub use draw::Draw;
 pub use flaw::{Flaw, UnknownFlaw};
@@ -38,6 +37,7 @@ pub use summary::Summary;
 pub use trial::Trial;
 
 use crate::error::DiagnoseError;
+use crate::one_a_thread::one_a_thread;
 
 /// Runs all cases that the ledger does not know, one a thread, and returns all trials in the order of the cases.
 ///
@@ -50,45 +50,17 @@ pub fn run(
     stop: &AtomicBool,
     finished: &(dyn Fn() + Sync),
 ) -> Result<Vec<Trial>, DiagnoseError> {
-    let next = AtomicUsize::new(0);
-    let results: Mutex<Vec<Option<Trial>>> = Mutex::new(vec![None; cases.len()]);
-    let failure: Mutex<Option<DiagnoseError>> = Mutex::new(None);
-    let work = || -> Result<(), DiagnoseError> {
-        // A pool of its own: a thread that waits within a diagnosis must not begin another one meanwhile.
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(1)
-            .build()
-            .map_err(|e| DiagnoseError::Output(e.to_string()))?;
-        loop {
-            let k = next.fetch_add(1, Ordering::SeqCst);
-            let Some(case) = cases.get(k) else { return Ok(()) };
-            let trial = if let Some(known) = ledger.get(&case.name) {
-                known.clone()
-            } else {
-                let trial = pool.install(|| trial::run(case, stop))?;
-                ledger.keep(&trial)?;
-                trial
-            };
-            lock(&results)[k] = Some(trial);
-            finished();
-        }
-    };
-    std::thread::scope(|scope| {
-        for _ in 0..threads.max(1) {
-            scope.spawn(|| {
-                if let Err(error) = work() {
-                    stop.store(true, Ordering::Relaxed);
-                    lock(&failure).get_or_insert(error);
-                }
-            });
-        }
-    });
-    if let Some(error) = lock(&failure).take() {
-        return Err(error);
-    }
-    Ok(std::mem::take(&mut *lock(&results)).into_iter().flatten().collect())
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+    one_a_thread(cases, threads, stop, &|case| {
+        let trial = if let Some(known) = ledger.get(&case.name) {
+            known.clone()
+        } else if stop.load(Ordering::Relaxed) {
+            return Err(DiagnoseError::Interrupted);
+        } else {
+            let trial = trial::run(case, stop)?;
+            ledger.keep(&trial)?;
+            trial
+        };
+        finished();
+        Ok(trial)
+    })
 }

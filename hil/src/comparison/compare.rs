@@ -37,55 +37,71 @@ pub enum CompareError {
 /// Figures by group, setting and seed, in the order of the arguments.
 pub type Results = Vec<Vec<Vec<Figures>>>;
 
-/// Runs what `records` do not hold yet.
+/// The groups with the time at which each manoeuvre begins, which the oracle knows.
+///
+/// # Errors
+/// A vehicle that its springs do not carry.
+pub fn with_beginnings(bench: &Bench, mut groups: Vec<Group>) -> Result<Vec<Group>, CompareError> {
+    groups.par_iter_mut().try_for_each(|group| {
+        let Some(first) = group.cases.first() else {
+            return Ok(());
+        };
+        let begins_s = beginning_s(bench, first).map_err(|error| CompareError::Drive {
+            name: group.name.clone(),
+            error,
+        })?;
+        group.cases.iter_mut().for_each(|case| case.begins_s = begins_s);
+        Ok::<(), CompareError>(())
+    })?;
+    Ok(groups)
+}
+
+/// One drive of a comparison.
+#[derive(Clone, Copy, Debug)]
+pub struct Job<'a> {
+    /// The group of the drive.
+    pub group: &'a Group,
+    /// What is driven.
+    pub case: &'a DriveCase,
+    /// With what.
+    pub setting: &'a Setting,
+}
+
+/// All drives by group, setting and seed.
+pub fn jobs<'a>(groups: &'a [Group], settings: &'a [Setting]) -> Vec<Job<'a>> {
+    let of_group = |group: &'a Group| {
+        settings.iter().flat_map(move |setting| {
+            let job = move |case| Job { group, case, setting };
+            group.cases.iter().map(job)
+        })
+    };
+    groups.iter().flat_map(of_group).collect()
+}
+
+/// Drives what `records` do not hold yet of some jobs.
 ///
 /// # Errors
 /// A drive that cannot be made, a file that cannot be written, or `stop`.
 pub fn compare(
     bench: &Bench,
-    groups: &[Group],
-    settings: &[Setting],
+    jobs: &[Job],
     records: &Records,
     done: impl Fn() + Sync,
     stop: impl Fn() -> bool + Sync,
-) -> Result<Results, CompareError> {
-    let wrap = |group: &Group| {
-        let name = group.name.clone();
-        |error| CompareError::Drive { name, error }
-    };
-    let begins: Vec<Option<f64>> = groups
-        .par_iter()
-        .map(|group| match group.cases.first() {
-            Some(case) => beginning_s(bench, case).map_err(wrap(group)),
-            None => Ok(None),
-        })
-        .collect::<Result<_, _>>()?;
-    let mut jobs = Vec::new();
-    for (g, group) in groups.iter().enumerate() {
-        for setting in settings {
-            jobs.extend(group.cases.iter().map(|case| {
-                let begins_s = begins[g];
-                (
-                    g,
-                    DriveCase {
-                        begins_s,
-                        ..case.clone()
-                    },
-                    setting,
-                )
-            }));
-        }
-    }
-    let mut figures = jobs
-        .par_iter()
-        .map(|(g, case, setting)| {
-            let figures = run_once(bench, &groups[*g].name, case, setting, records, &stop)?;
+) -> Result<Vec<Figures>, CompareError> {
+    jobs.par_iter()
+        .map(|job| {
+            let figures = run_once(bench, &job.group.name, job.case, job.setting, records, &stop)?;
             done();
             Ok(figures)
         })
-        .collect::<Result<Vec<_>, CompareError>>()?
-        .into_iter();
-    Ok(groups
+        .collect()
+}
+
+/// The figures of all [`jobs`], in their order, by group, setting and seed.
+pub fn by_group(groups: &[Group], settings: &[Setting], figures: Vec<Figures>) -> Results {
+    let mut figures = figures.into_iter();
+    groups
         .iter()
         .map(|group| {
             let seeds = group.cases.len();
@@ -94,7 +110,7 @@ pub fn compare(
                 .map(|_| figures.by_ref().take(seeds).collect())
                 .collect()
         })
-        .collect())
+        .collect()
 }
 
 /// One drive, from the records or driven now and recorded.

@@ -21,7 +21,7 @@ mod setting;
 
 pub use bench::Bench;
 pub use case::DriveCase;
-pub use compare::{CompareError, Results, compare, settings};
+pub use compare::{CompareError, Job, Results, by_group, compare, jobs, settings, with_beginnings};
 pub use drive::{ComparisonError, beginning_s, drive, estimates};
 pub use figures::Figures;
 pub use plan::{Extent, Group, groups};

@@ -45,19 +45,19 @@ fn drives(seed: u64) -> [DriveCase; 3] {
     ]
 }
 
-/// Drives `count` variations from number `first` on. The result does not depend on the number of threads.
+/// Drives the variations of these numbers. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// A vehicle that cannot be driven, a file that cannot be written, or `stop`.
 pub fn robust(
     nominal: &Bench,
     controlled: &Setting,
-    (first, count): (u64, u64),
+    vehicles: &[u64],
     records: &Records,
     done: impl Fn() + Sync,
     stop: impl Fn() -> bool + Sync,
 ) -> Result<Vec<VariedResult>, CompareError> {
-    let one = |case: u64| {
+    let one = |&case: &u64| {
         let bench = nominal.varied(&Variation::draw(SEED, case));
         // Every vehicle has a road of its own.
         let [straight, flat, rough] = drives(case);
@@ -86,7 +86,7 @@ pub fn robust(
             rolls_over: flat_over || rough_over,
         })
     };
-    (first..first.saturating_add(count)).into_par_iter().map(one).collect()
+    vehicles.par_iter().map(one).collect()
 }
 
 /// Number of drives of each variation.

@@ -36,6 +36,14 @@ impl Ledger {
         })
     }
 
+    /// A ledger from the text of such a file, to which nothing is added.
+    pub fn of_text(text: &str, bench: &Bench) -> Self {
+        Self {
+            records: Records::of_text(text),
+            base: base(bench),
+        }
+    }
+
     /// Runs known so far.
     pub fn len(&self) -> usize {
         self.records.len()

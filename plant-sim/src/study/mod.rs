@@ -21,4 +21,4 @@ pub use findings::{Finding, findings};
 pub use ledger::Ledger;
 pub use optimise::{Objective, Optimum, Visit, Weights, optimise};
 pub use records::{Records, RecordsError};
-pub use sweep::{DAMPER_FACTORS, GAS_VOLUMES_M3, Surface, SweepError, sweep};
+pub use sweep::{DAMPER_FACTORS, GAS_VOLUMES_M3, Job, Outcome, Surface, SweepError, jobs, run_jobs, sweep};

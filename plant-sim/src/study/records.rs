@@ -2,7 +2,7 @@
 //! stopped.
 //!
 //! A line begins with a key: a hash (FNV-1a, 64 bit) of everything that the result depends on. Other parameters have another key,
-//! so that old lines are never mistaken for new ones. A line that an interruption cut short is skipped and its run made again.
+//! so that old lines are never mistaken for new ones. A line that an interruption cut short is taken out and its run made again.
 
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
@@ -52,26 +52,24 @@ impl Records {
             .open(path)
             .map_err(wrap)?;
         file.read_to_string(&mut text).map_err(wrap)?;
-        // Only what ends with a line break was written to its end.
+        // Only what ends with a line break was written to its end. The rest is removed: whoever opens the file next could not tell
+        // a number that was cut short from a whole one.
         let whole = text.rfind('\n').map_or("", |end| &text[..=end]);
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .from_reader(whole.as_bytes());
-        let mut known = BTreeMap::new();
-        for record in reader.records().flatten() {
-            if let Some(key) = record.get(0) {
-                known.insert(key.to_owned(), record);
-            }
-        }
-        // A line cut short by an interruption must not swallow the next one.
-        if !text.is_empty() && !text.ends_with('\n') {
-            file.write_all(b"\n").map_err(wrap)?;
+        if whole.len() < text.len() {
+            file.set_len(whole.len() as u64).map_err(wrap)?;
         }
         Ok(Self {
-            known,
+            known: known(whole),
             file: Some((path.to_owned(), Mutex::new(file))),
         })
+    }
+
+    /// Records from the text of such a file, to which none are added.
+    pub fn of_text(text: &str) -> Self {
+        Self {
+            known: known(text),
+            file: None,
+        }
     }
 
     /// Number of records known so far.
@@ -113,5 +111,42 @@ impl Records {
         // One write a line: whole lines only, whatever the thread.
         let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
         file.write_all(&line).map_err(wrap)
+    }
+}
+
+/// The records of a text of whole lines; of several with one key the last.
+fn known(whole: &str) -> BTreeMap<String, StringRecord> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .from_reader(whole.as_bytes());
+    let mut known = BTreeMap::new();
+    for record in reader.records().flatten() {
+        if let Some(key) = record.get(0) {
+            known.insert(key.to_owned(), record);
+        }
+    }
+    known
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A process that is killed twice, the second time before it has run anything, leaves a line cut within its last number.
+    #[test]
+    fn a_line_cut_short_is_never_taken_for_a_whole_one() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("runs.csv");
+        std::fs::write(&path, "a,0.125\nb,0.12").expect("written");
+        for _ in 0..2 {
+            let records = Records::open(&path).expect("readable");
+            assert_eq!((records.len(), records.get("b")), (1, None));
+        }
+        let records = Records::open(&path).expect("readable");
+        records.add("b", ["0.1234".to_owned()]).expect("written");
+        let text = std::fs::read_to_string(&path).expect("a file");
+        assert_eq!(text, "a,0.125\nb,0.1234\n");
+        assert_eq!(Records::of_text(&text).len(), 2);
     }
 }

@@ -49,33 +49,52 @@ pub struct Surface {
     pub runs_made: usize,
 }
 
-enum Outcome {
+/// One run of the grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Job {
+    /// Whether it is the lane change; otherwise the rough road.
+    pub handling: bool,
+    /// Springs and dampers.
+    pub case: Case,
+}
+
+/// Result of a [`Job`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Outcome {
+    /// Of the rough road.
     Ride(Ride),
+    /// Of the lane change.
     Handling(Handling),
 }
 
-/// Runs what is missing of the grid. `done` is told of every finished run; `stop` is asked before each.
-///
-/// # Errors
-/// [`SweepError`]; finished runs are kept.
-pub fn sweep(
-    bench: &Bench,
-    ledger: &Ledger,
-    gas_volumes_m3: &[f64],
-    damper_factors: &[f64],
-    done: impl Fn() + Sync,
-    stop: impl Fn() -> bool + Sync,
-) -> Result<Surface, SweepError> {
-    // The long runs first, so that no core is left with one at the end.
+/// All runs of a grid, the long ones first, so that no core is left with one at the end.
+#[must_use]
+pub fn jobs(gas_volumes_m3: &[f64], damper_factors: &[f64]) -> Vec<Job> {
     let mut jobs = Vec::new();
     for handling in [false, true] {
         for &volume in gas_volumes_m3 {
             for &factor in damper_factors {
-                jobs.push((handling, Case::alike(volume, factor)));
+                let case = Case::alike(volume, factor);
+                jobs.push(Job { handling, case });
             }
         }
     }
-    let one = |(handling, case): &(bool, Case)| -> Result<(Outcome, bool), SweepError> {
+    jobs
+}
+
+/// Runs what the ledger does not know of some jobs, and says of each whether it was run now. `done` is told of every finished run;
+/// `stop` is asked before each.
+///
+/// # Errors
+/// [`SweepError`]; finished runs are kept.
+pub fn run_jobs(
+    bench: &Bench,
+    ledger: &Ledger,
+    jobs: &[Job],
+    done: impl Fn() + Sync,
+    stop: impl Fn() -> bool + Sync,
+) -> Result<Vec<(Outcome, bool)>, SweepError> {
+    let one = |Job { handling, case }: &Job| -> Result<(Outcome, bool), SweepError> {
         let known = match handling {
             false => ledger.ride(case).map(Outcome::Ride),
             true => ledger.handling(case).map(Outcome::Handling),
@@ -100,24 +119,48 @@ pub fn sweep(
         done();
         Ok((outcome, true))
     };
-    let outcomes: Vec<Result<(Outcome, bool), SweepError>> = jobs.par_iter().with_max_len(1).map(one).collect();
-    let (mut ride, mut handling, mut runs_made) = (Vec::new(), Vec::new(), 0);
-    for outcome in outcomes {
-        let (outcome, made) = outcome?;
-        runs_made += usize::from(made);
-        match outcome {
-            Outcome::Ride(result) => ride.push(result),
-            Outcome::Handling(result) => handling.push(result),
+    let outcomes: Vec<_> = jobs.par_iter().with_max_len(1).map(one).collect();
+    // The first in the order of the jobs, whichever thread was first.
+    outcomes.into_iter().collect()
+}
+
+impl Surface {
+    /// The results of all [`jobs`] of a grid, in their order.
+    #[must_use]
+    pub fn of(gas_volumes_m3: &[f64], damper_factors: &[f64], outcomes: Vec<(Outcome, bool)>) -> Self {
+        let (mut ride, mut handling, mut runs_made) = (Vec::new(), Vec::new(), 0);
+        for (outcome, made) in outcomes {
+            runs_made += usize::from(made);
+            match outcome {
+                Outcome::Ride(result) => ride.push(result),
+                Outcome::Handling(result) => handling.push(result),
+            }
+        }
+        let columns = damper_factors.len().max(1);
+        Self {
+            gas_volumes_m3: gas_volumes_m3.to_vec(),
+            damper_factors: damper_factors.to_vec(),
+            ride: ride.chunks(columns).map(<[Ride]>::to_vec).collect(),
+            handling: handling.chunks(columns).map(<[Handling]>::to_vec).collect(),
+            runs_made,
         }
     }
-    let columns = damper_factors.len().max(1);
-    Ok(Surface {
-        gas_volumes_m3: gas_volumes_m3.to_vec(),
-        damper_factors: damper_factors.to_vec(),
-        ride: ride.chunks(columns).map(<[Ride]>::to_vec).collect(),
-        handling: handling.chunks(columns).map(<[Handling]>::to_vec).collect(),
-        runs_made,
-    })
+}
+
+/// Runs what is missing of the grid. `done` is told of every finished run; `stop` is asked before each.
+///
+/// # Errors
+/// [`SweepError`]; finished runs are kept.
+pub fn sweep(
+    bench: &Bench,
+    ledger: &Ledger,
+    gas_volumes_m3: &[f64],
+    damper_factors: &[f64],
+    done: impl Fn() + Sync,
+    stop: impl Fn() -> bool + Sync,
+) -> Result<Surface, SweepError> {
+    let outcomes = run_jobs(bench, ledger, &jobs(gas_volumes_m3, damper_factors), done, stop)?;
+    Ok(Surface::of(gas_volumes_m3, damper_factors, outcomes))
 }
 
 #[cfg(test)]

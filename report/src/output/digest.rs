@@ -1,4 +1,4 @@
-//! SHA-256 of files.
+//! SHA-256 of files and of bytes, in hexadecimal.
 
 use std::fmt::Write as _;
 use std::fs::{self, File};
@@ -7,9 +7,14 @@ use std::path::Path;
 
 use sha2::{Digest as _, Sha256};
 
-/// SHA-256 of a regular file in hexadecimal. `None` for what is no regular file or cannot be read: to read a pipe would
+/// SHA-256 of bytes.
+pub fn of_bytes(bytes: &[u8]) -> String {
+    hexadecimal(&Sha256::digest(bytes))
+}
+
+/// SHA-256 of a regular file. `None` for what is no regular file or cannot be read: to read a pipe would
 /// take its contents from the command.
-pub(crate) fn digest(path: &Path) -> Option<String> {
+pub fn of_file(path: &Path) -> Option<String> {
     if !fs::metadata(path).ok()?.is_file() {
         return None;
     }
@@ -22,12 +27,16 @@ pub(crate) fn digest(path: &Path) -> Option<String> {
             read => hash.update(buffer.get(..read)?),
         }
     }
-    let mut text = String::with_capacity(64);
-    for byte in hash.finalize() {
+    Some(hexadecimal(&hash.finalize()))
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(2 * bytes.len());
+    for byte in bytes {
         // Writing to a string does not fail.
         let _ = write!(text, "{byte:02x}");
     }
-    Some(text)
+    text
 }
 
 #[cfg(test)]
@@ -41,7 +50,8 @@ mod tests {
         let file = folder.path().join("abc");
         fs::write(&file, "abc").expect("written");
         let expected = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
-        assert_eq!(digest(&file).as_deref(), Some(expected));
-        assert_eq!(digest(folder.path()), None);
+        assert_eq!(of_file(&file).as_deref(), Some(expected));
+        assert_eq!(of_bytes(b"abc"), expected);
+        assert_eq!(of_file(folder.path()), None);
     }
 }

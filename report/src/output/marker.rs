@@ -7,7 +7,7 @@ use std::path::{Component, Path};
 
 use serde::{Deserialize, Serialize};
 
-use super::digest::digest;
+use super::digest::of_file as digest;
 
 /// Name of the file.
 pub(super) const NAME: &str = ".oleo";

@@ -9,7 +9,7 @@
 //! result that was edited since, and its own inputs. All but the last are the user's to decide (`--force`).
 
 mod csv_text;
-mod digest;
+pub mod digest;
 mod error;
 mod file;
 mod marker;
@@ -25,7 +25,7 @@ use tempfile::TempDir;
 
 use crate::{Page, interrupt};
 use csv_text::{Numbers, Words};
-use digest::digest;
+use digest::of_file as digest;
 pub use error::OutputError;
 pub use file::OutputFile;
 use marker::{Marker, is_inside};

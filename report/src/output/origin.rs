@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::digest::digest;
+use super::digest::of_file as digest;
 
 /// What a command says of itself before it writes results.
 #[derive(Clone, Debug, Default)]

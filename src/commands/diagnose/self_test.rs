@@ -3,11 +3,12 @@
 use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 
-use oleo_diagnose::selftest::{Case, Flaw, Ledger, Plan, Subject, Summary, csv_rows, page, run, save, tables};
-use oleo_report::Progress;
+use oleo_diagnose::selftest::{Case, Flaw, Ledger, Plan, Subject, Summary, Trial, csv_rows, page, run, save, tables};
+use oleo_report::OutputDirectory;
 
 use crate::failure::Failure;
-use crate::results::{ResultsArgs, command_line, say};
+use crate::results::{ResultsArgs, say};
+use crate::shard::{About, Kept, Request, Said, ShardArgs, Study, Work, conduct};
 
 /// What results say of where they come from.
 const COMMAND: &str = "oleo diagnose --self-test";
@@ -69,6 +70,8 @@ pub struct Args {
     /// Number of campaigns that run at the same time, one thread each [default: all cores]
     #[arg(long, value_name = "N", requires = "self_test", help_heading = "Self-test")]
     threads: Option<usize>,
+    #[command(flatten)]
+    shard: ShardArgs,
 }
 
 /// Writes the campaigns and their answers.
@@ -89,56 +92,127 @@ fn save_campaigns(cases: &[Case], results: &ResultsArgs) -> Result<ExitCode, Fai
 }
 
 /// Runs the self-test; finished campaigns are kept in the folder, where another run goes on.
-pub fn run_self_test(args: &Args, results: &ResultsArgs) -> Result<ExitCode, Failure> {
-    let plan = Plan {
-        seed: args.seed,
-        campaigns: args.campaigns,
-        subjects: args
-            .terms
-            .iter()
-            .map(|t| t.parse())
-            .collect::<Result<Vec<Subject>, _>>()?,
-        without_names: args.without_names,
-        flaws: Flaw::listed(&args.instruments)?,
-    };
-    if plan.without_names && plan.subjects.iter().any(|s| !matches!(s, Subject::Effect(_))) {
-        return Err(Failure::new(
-            "--terms: none and pair cannot be combined with --without-names; give ids of effects",
-        ));
-    }
-    let cases = plan.cases();
-    if cases.is_empty() {
-        return Err(Failure::new("--campaigns 0: give a number of campaigns above 0"));
-    }
-    let threads = match args.threads {
-        Some(0) => return Err(Failure::new("--threads 0: give a number above 0")),
-        Some(threads) => threads,
-        None => std::thread::available_parallelism().map_or(1, usize::from),
-    };
+pub fn run_self_test(args: Args, results: ResultsArgs, arguments: Arguments) -> Result<ExitCode, Failure> {
     if args.save {
-        return save_campaigns(&cases, results);
+        if args.shard.is_given() {
+            return Err(Failure::new(
+                "--shard: --save runs nothing that could be divided; leave one of them out",
+            ));
+        }
+        return save_campaigns(&args.study()?.cases, &results);
     }
-    let (mut staged, ledger) = results.stage_with_ledger(COMMAND, "self-test", Vec::new(), "trials.jsonl")?;
-    let ledger = match ledger {
-        None => Ledger::in_memory(),
-        Some(path) => Ledger::open(&path)?,
-    };
-    let progress = Progress::new("self-test", cases.len() as u64);
-    let trials = run(&cases, &ledger, threads, &AtomicBool::new(false), &|| progress.add(1))?;
-    drop(progress);
-    let summary = Summary::of(plan.seed, &trials);
-    if let Some(out) = &mut staged {
-        out.csv_records("trials.csv", csv_rows::trials(&trials))?;
-        out.csv_records("power.csv", csv_rows::power(&summary))?;
-        out.csv_records("confusion.csv", csv_rows::confusion(&summary))?;
-        out.csv_records("coverage.csv", csv_rows::coverage(&summary))?;
-        out.summary("summary.json", Some(plan.seed), &summary)?;
-        out.page(&page(&summary, &command_line()))?;
+    conduct(&args.request(results)?, arguments)
+}
+
+/// What gives the arguments of the command.
+pub type Arguments = fn() -> Result<Vec<String>, Failure>;
+
+impl Args {
+    /// The self-test as a study.
+    pub fn request(self, results: ResultsArgs) -> Result<Request, Failure> {
+        Ok(Request {
+            study: Box::new(self.study()?),
+            results,
+            shard: self.shard,
+        })
     }
-    let mut text = format!("{} campaigns, seed {}\n", summary.trials, summary.seed);
-    for (title, table) in tables(&summary) {
-        text += &format!("\n{title}\n{table}\n");
+
+    /// Whether a part of the cases is asked for.
+    pub fn is_divided(&self) -> bool {
+        self.shard.is_given()
     }
-    results.publish(staged, &text)?;
-    Ok(ExitCode::SUCCESS)
+
+    fn study(&self) -> Result<SelfTest, Failure> {
+        let plan = Plan {
+            seed: self.seed,
+            campaigns: self.campaigns,
+            subjects: self
+                .terms
+                .iter()
+                .map(|t| t.parse())
+                .collect::<Result<Vec<Subject>, _>>()?,
+            without_names: self.without_names,
+            flaws: Flaw::listed(&self.instruments)?,
+        };
+        if plan.without_names && plan.subjects.iter().any(|s| !matches!(s, Subject::Effect(_))) {
+            return Err(Failure::new(
+                "--terms: none and pair cannot be combined with --without-names; give ids of effects",
+            ));
+        }
+        let cases = plan.cases();
+        if cases.is_empty() {
+            return Err(Failure::new("--campaigns 0: give a number of campaigns above 0"));
+        }
+        let threads = match self.threads {
+            Some(0) => return Err(Failure::new("--threads 0: give a number above 0")),
+            Some(threads) => threads,
+            None => std::thread::available_parallelism().map_or(1, usize::from),
+        };
+        Ok(SelfTest {
+            seed: plan.seed,
+            cases,
+            threads,
+        })
+    }
+}
+
+/// The self-test as a study: a case is a campaign.
+struct SelfTest {
+    seed: u64,
+    cases: Vec<Case>,
+    threads: usize,
+}
+
+impl Study for SelfTest {
+    type Ledger = Ledger;
+    type Outcome = Trial;
+
+    fn about(&self) -> About {
+        About {
+            command: COMMAND.to_owned(),
+            name: "self-test".to_owned(),
+            inputs: Vec::new(),
+            ledger: "trials.jsonl",
+            steps: 1,
+            ends_gracefully: false,
+        }
+    }
+
+    fn cases(&self) -> usize {
+        self.cases.len()
+    }
+
+    fn ledger(&self, kept: Kept) -> Result<Ledger, Failure> {
+        Ok(match kept {
+            Kept::Nowhere => Ledger::in_memory(),
+            Kept::In(path) => Ledger::open(path)?,
+            Kept::Text(text) => Ledger::of_text(text),
+        })
+    }
+
+    fn run(&self, cases: &[usize], ledger: &Ledger, work: &Work) -> Result<Vec<Trial>, Failure> {
+        let chosen: Vec<Case> = cases.iter().map(|case| self.cases[*case].clone()).collect();
+        let stop = AtomicBool::new(work.stops());
+        Ok(run(&chosen, ledger, self.threads, &stop, &|| work.done())?)
+    }
+
+    fn report(&self, trials: Vec<Trial>, out: Option<&mut OutputDirectory>, command: &str) -> Result<Said, Failure> {
+        let summary = Summary::of(self.seed, &trials);
+        if let Some(out) = out {
+            out.csv_records("trials.csv", csv_rows::trials(&trials))?;
+            out.csv_records("power.csv", csv_rows::power(&summary))?;
+            out.csv_records("confusion.csv", csv_rows::confusion(&summary))?;
+            out.csv_records("coverage.csv", csv_rows::coverage(&summary))?;
+            out.summary("summary.json", Some(self.seed), &summary)?;
+            out.page(&page(&summary, command))?;
+        }
+        let mut text = format!("{} campaigns, seed {}\n", summary.trials, summary.seed);
+        for (title, table) in tables(&summary) {
+            text += &format!("\n{title}\n{table}\n");
+        }
+        Ok(Said {
+            text,
+            status: ExitCode::SUCCESS,
+        })
+    }
 }

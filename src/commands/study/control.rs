@@ -4,16 +4,18 @@ use std::process::ExitCode;
 
 use oleo_controller::{DamperPolicy, Strategy};
 use oleo_hil::comparison::{
-    self, Bench, Extent, Group, Means, Row, Scores, Setting, compare, groups, scores, settings,
+    self, Bench, Extent, Figures, Group, Means, Row, Scores, Setting, by_group, compare, groups, jobs, scores,
+    settings, with_beginnings,
 };
+use oleo_hil::parameter_files::Parameters;
 use oleo_plant_sim::study::Records;
-use oleo_report::interrupt::Graceful;
-use oleo_report::{Axis, Cell, Column, Curves, OutputDirectory, Page, Progress, Style, Table, Verdict};
+use oleo_report::{Axis, Cell, Column, Curves, OutputDirectory, Page, Style, Table, Verdict};
 use serde_json::json;
 
-use super::drives::{Drives, controlled};
+use super::drives::{Drives, controlled, records};
 use crate::failure::Failure;
-use crate::results::command_line;
+use crate::results::ResultsArgs;
+use crate::shard::{About, Kept, Request, Said, ShardArgs, Study, Work};
 
 /// Compare the controller with every fixed valve setting, the vehicle as sold and an oracle, for ride and for roll
 #[derive(clap::Args)]
@@ -35,6 +37,10 @@ pub struct Args {
     /// Exit with status 1 if a goal is not met
     #[arg(long)]
     check: bool,
+    #[command(flatten)]
+    results: ResultsArgs,
+    #[command(flatten)]
+    shard: ShardArgs,
 }
 
 /// Controllers that are compared: name, strategy, and the damper policy of `ride-handling`. The first is the one that is scored.
@@ -55,96 +61,134 @@ const CONTROLLERS: [(&str, Strategy, DamperPolicy); 5] = [
 const RUNNING_RMS: &str = "ride-handling";
 
 /// What was compared, and the result.
-struct Comparison {
-    groups: Vec<Group>,
-    settings: Vec<Setting>,
+struct Comparison<'a> {
+    groups: &'a [Group],
+    settings: &'a [Setting],
     means: Means,
     /// For each of [`CONTROLLERS`].
     scores: Vec<Scores>,
 }
 
-/// Runs the command.
-pub fn run(args: &Args) -> Result<ExitCode, Failure> {
-    if !(1..=1000).contains(&args.seeds) {
-        return Err(Failure::new(format!(
-            "--seeds {}: give a number from 1 to 1000",
-            args.seeds
-        )));
-    }
-    if !(1..=1_000_000).contains(&args.first_seed) {
-        return Err(Failure::new(format!(
-            "--first-seed {}: give a number from 1 to 1000000",
-            args.first_seed
-        )));
-    }
-    if !(5.0..=600.0).contains(&args.duration_s) {
-        return Err(Failure::new(format!(
-            "--duration-s {}: give a value from 5 to 600",
-            args.duration_s
-        )));
-    }
-    let (bench, parameters) = args.drives.bench()?;
-    let (records, mut out) = args.drives.stage("control")?;
-    let comparison = comparison(args, &bench, &records)?;
-    let [own, ..] = &comparison.scores[..] else {
-        return Err(Failure::new("the comparison has no controller"));
-    };
-    let tables = [ride_table(&comparison), roll_table(&comparison), goals_table(own)];
-    let met = own.goals.iter().all(|goal| goal.met);
-    if let Some(out) = &mut out {
-        parameters.keep(out)?;
-        write(out, args.first_seed, &comparison, own, &tables)?;
-    }
-    let text: Vec<String> = tables.iter().map(ToString::to_string).collect();
-    args.drives.results.publish(out, &text.join("\n"))?;
-    Ok(if args.check && !met {
-        ExitCode::FAILURE
-    } else {
-        ExitCode::SUCCESS
-    })
+/// The study.
+pub struct Control {
+    drives: Drives,
+    bench: Bench,
+    parameters: Parameters,
+    groups: Vec<Group>,
+    settings: Vec<Setting>,
+    first_seed: u64,
+    check: bool,
 }
 
-fn comparison(args: &Args, bench: &Bench, records: &Records) -> Result<Comparison, Failure> {
-    let controllers: Vec<Setting> = CONTROLLERS
-        .into_iter()
-        .map(|(name, strategy, dampers)| controlled(bench, name, strategy, dampers))
-        .collect::<Result<_, Failure>>()?;
-    let settings = settings(controllers);
-    let groups = groups(&Extent {
-        first_seed: args.first_seed,
-        seeds: args.seeds,
-        straight_s: args.duration_s,
-        quick: args.quick,
-    });
-    let drives: usize = groups.iter().map(|group| group.cases.len() * settings.len()).sum();
-    let progress = Progress::new("study control", drives as u64);
-    let results = {
-        // The first Ctrl-C lets the drives in hand end and keeps them.
-        let graceful = Graceful::begin();
-        let (progress, graceful, groups, settings) = (&progress, &graceful, &groups, &settings);
-        args.drives.on_threads(move || {
-            compare(
-                bench,
-                groups,
-                settings,
-                records,
-                || progress.add(1),
-                || graceful.requested(),
-            )
-        })??
-    };
-    drop(progress);
-    let means = Means::of(&groups, &results);
-    let first = settings.len() - CONTROLLERS.len();
-    let scores = (first..settings.len())
-        .filter_map(|place| scores(&groups, &settings, &results, &means, place))
-        .collect();
-    Ok(Comparison {
-        groups,
-        settings,
-        means,
-        scores,
-    })
+impl Args {
+    /// The study that is asked for.
+    pub fn request(self) -> Result<Request, Failure> {
+        if !(1..=1000).contains(&self.seeds) {
+            return Err(Failure::new(format!(
+                "--seeds {}: give a number from 1 to 1000",
+                self.seeds
+            )));
+        }
+        if !(1..=1_000_000).contains(&self.first_seed) {
+            return Err(Failure::new(format!(
+                "--first-seed {}: give a number from 1 to 1000000",
+                self.first_seed
+            )));
+        }
+        if !(5.0..=600.0).contains(&self.duration_s) {
+            return Err(Failure::new(format!(
+                "--duration-s {}: give a value from 5 to 600",
+                self.duration_s
+            )));
+        }
+        let (bench, parameters) = self.drives.bench()?;
+        let controllers: Vec<Setting> = CONTROLLERS
+            .into_iter()
+            .map(|(name, strategy, dampers)| controlled(&bench, name, strategy, dampers))
+            .collect::<Result<_, Failure>>()?;
+        let groups = groups(&Extent {
+            first_seed: self.first_seed,
+            seeds: self.seeds,
+            straight_s: self.duration_s,
+            quick: self.quick,
+        });
+        let study = Control {
+            groups: self.drives.on_threads(|| with_beginnings(&bench, groups))??,
+            settings: settings(controllers),
+            drives: self.drives,
+            bench,
+            parameters,
+            first_seed: self.first_seed,
+            check: self.check,
+        };
+        Ok(Request {
+            study: Box::new(study),
+            results: self.results,
+            shard: self.shard,
+        })
+    }
+}
+
+/// A case is a drive: of a group, with a setting and a seed.
+impl Study for Control {
+    type Ledger = Records;
+    type Outcome = Figures;
+
+    fn about(&self) -> About {
+        self.drives.about("control", 1)
+    }
+
+    fn cases(&self) -> usize {
+        jobs(&self.groups, &self.settings).len()
+    }
+
+    fn ledger(&self, kept: Kept) -> Result<Records, Failure> {
+        records(kept)
+    }
+
+    fn run(&self, cases: &[usize], records: &Records, work: &Work) -> Result<Vec<Figures>, Failure> {
+        let all = jobs(&self.groups, &self.settings);
+        let chosen: Vec<_> = cases.iter().map(|case| all[*case]).collect();
+        let drive = || compare(&self.bench, &chosen, records, || work.done(), || work.stops());
+        Ok(self.drives.on_threads(drive)??)
+    }
+
+    fn report(&self, figures: Vec<Figures>, out: Option<&mut OutputDirectory>, command: &str) -> Result<Said, Failure> {
+        let comparison = self.comparison(figures);
+        let [own, ..] = &comparison.scores[..] else {
+            return Err(Failure::new("the comparison has no controller"));
+        };
+        let tables = [ride_table(&comparison), roll_table(&comparison), goals_table(own)];
+        let met = own.goals.iter().all(|goal| goal.met);
+        if let Some(out) = out {
+            self.parameters.keep(out)?;
+            write(out, self.first_seed, &comparison, own, &tables, command)?;
+        }
+        let text: Vec<String> = tables.iter().map(ToString::to_string).collect();
+        let failed = self.check && !met;
+        Ok(Said {
+            text: text.join("\n"),
+            status: if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS },
+        })
+    }
+}
+
+impl Control {
+    fn comparison(&self, figures: Vec<Figures>) -> Comparison<'_> {
+        let (groups, settings) = (&self.groups, &self.settings);
+        let results = by_group(groups, settings, figures);
+        let means = Means::of(groups, &results);
+        let first = settings.len() - CONTROLLERS.len();
+        let scores = (first..settings.len())
+            .filter_map(|place| scores(groups, settings, &results, &means, place))
+            .collect();
+        Comparison {
+            groups,
+            settings,
+            means,
+            scores,
+        }
+    }
 }
 
 /// One line a group, one column a setting.
@@ -159,11 +203,11 @@ fn table(title: &str, rows: &[Row], settings: &[Setting], digits: usize) -> Tabl
 }
 
 fn ride_table(comparison: &Comparison) -> Table {
-    table("Weighted RMS, m/s2", &comparison.means.ride, &comparison.settings, 3)
+    table("Weighted RMS, m/s2", &comparison.means.ride, comparison.settings, 3)
 }
 
 fn roll_table(comparison: &Comparison) -> Table {
-    table("Peak roll, degrees", &comparison.means.roll, &comparison.settings, 2)
+    table("Peak roll, degrees", &comparison.means.roll, comparison.settings, 2)
 }
 
 fn goals_table(scores: &Scores) -> Table {
@@ -192,6 +236,7 @@ fn write(
     comparison: &Comparison,
     own: &Scores,
     tables: &[Table; 3],
+    command: &str,
 ) -> Result<(), Failure> {
     let Comparison {
         groups,
@@ -225,13 +270,13 @@ fn write(
             "controllers": by_controller,
         }),
     )?;
-    out.page(&page(comparison, own, tables))?;
+    out.page(&page(comparison, own, tables, command))?;
     Ok(())
 }
 
-fn page(comparison: &Comparison, own: &Scores, [ride, roll, goals]: &[Table; 3]) -> Page {
+fn page(comparison: &Comparison, own: &Scores, [ride, roll, goals]: &[Table; 3], command: &str) -> Page {
     let Comparison { settings, means, .. } = comparison;
-    let mut page = Page::new("Control study", &command_line());
+    let mut page = Page::new("Control study", command);
     let met = own.goals.iter().filter(|goal| goal.met).count();
     let counted = format!("{met} of {} goals are met.", own.goals.len());
     if met == own.goals.len() {

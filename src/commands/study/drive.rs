@@ -1,16 +1,16 @@
-//! The options of both studies: what is driven, on how many threads, and where finished runs are stored.
+//! The options of both studies: what is driven, on how many threads, and how finished runs are kept.
 
 use std::path::PathBuf;
 
 use oleo_plant_sim::course::DriverStyle;
 use oleo_plant_sim::study::{Bench, Conditions, DAMPER_FACTORS, GAS_VOLUMES_M3, Ledger, Surface, sweep};
 use oleo_plant_sim::vehicle::Load;
+use oleo_report::Progress;
 use oleo_report::interrupt::Graceful;
-use oleo_report::{OutputDirectory, Progress};
 
 use crate::commands::word::word;
 use crate::failure::Failure;
-use crate::results::ResultsArgs;
+use crate::shard::{About, Kept};
 use oleo_hil::parameter_files::Parameters;
 
 /// What both studies drive.
@@ -41,8 +41,6 @@ pub struct Drive {
     /// Number of threads [default: all cores]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    #[command(flatten)]
-    pub results: ResultsArgs,
 }
 
 impl Drive {
@@ -96,14 +94,24 @@ impl Drive {
         Ok(self.on_threads(move || sweep(bench, ledger, volumes, factors, done, stop))??)
     }
 
-    /// The finished runs and the staged results of `study`. Finished runs are kept in the folder itself, as they end.
-    pub fn stage(&self, study: &str, bench: &Bench) -> Result<(Ledger, Option<OutputDirectory>), Failure> {
-        let inputs = self.vehicle.iter().chain(&self.handling).cloned().collect();
-        let (command, name) = (format!("oleo study {study}"), format!("study-{study}"));
-        let (out, ledger) = self.results.stage_with_ledger(&command, &name, inputs, "runs.csv")?;
-        Ok(match ledger {
-            Some(path) => (Ledger::open(&path, bench)?, out),
-            None => (Ledger::in_memory(bench), out),
-        })
+    /// What a study of these drives is called.
+    pub fn about(&self, study: &str) -> About {
+        About {
+            command: format!("oleo study {study}"),
+            name: format!("study-{study}"),
+            inputs: self.vehicle.iter().chain(&self.handling).cloned().collect(),
+            ledger: "runs.csv",
+            steps: 1,
+            ends_gracefully: true,
+        }
     }
+}
+
+/// The finished runs on a test bench.
+pub fn ledger(kept: Kept, bench: &Bench) -> Result<Ledger, Failure> {
+    Ok(match kept {
+        Kept::Nowhere => Ledger::in_memory(bench),
+        Kept::In(path) => Ledger::open(path, bench)?,
+        Kept::Text(text) => Ledger::of_text(text, bench),
+    })
 }

@@ -1,17 +1,16 @@
-//! What the studies of the controller share: the vehicle, the threads, and where finished drives are kept.
+//! What the studies of the controller share: the vehicle, the threads, and how finished drives are kept.
 
 use std::path::PathBuf;
 
 use oleo_controller::{DamperPolicy, Strategy};
 use oleo_hil::comparison::{Bench, Setting};
 use oleo_plant_sim::study::Records;
-use oleo_report::OutputDirectory;
 
 use crate::failure::Failure;
-use crate::results::ResultsArgs;
+use crate::shard::{About, Kept};
 use oleo_hil::parameter_files::Parameters;
 
-/// The vehicle, the threads and the folder.
+/// The vehicle and the threads.
 #[derive(clap::Args)]
 pub struct Drives {
     /// File of vehicle parameters [default: the built-in defender110]
@@ -27,8 +26,6 @@ pub struct Drives {
     /// Number of threads [default: all cores]
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
-    #[command(flatten)]
-    pub results: ResultsArgs,
 }
 
 impl Drives {
@@ -55,17 +52,27 @@ impl Drives {
         Ok(pool.install(work))
     }
 
-    /// The finished drives and the staged results of `study`. Finished drives are kept in the folder itself, as they end.
-    pub fn stage(&self, study: &str) -> Result<(Records, Option<OutputDirectory>), Failure> {
+    /// What a study of these drives is called, with so many drives for each of its cases.
+    pub fn about(&self, study: &str, drives: u64) -> About {
         let files = [&self.vehicle, &self.handling, &self.strut];
-        let inputs = files.into_iter().flatten().cloned().collect();
-        let (command, name) = (format!("oleo study {study}"), format!("study-{study}"));
-        let (out, records) = self.results.stage_with_ledger(&command, &name, inputs, "drives.csv")?;
-        Ok(match records {
-            Some(path) => (Records::open(&path)?, out),
-            None => (Records::in_memory(), out),
-        })
+        About {
+            command: format!("oleo study {study}"),
+            name: format!("study-{study}"),
+            inputs: files.into_iter().flatten().cloned().collect(),
+            ledger: "drives.csv",
+            steps: drives,
+            ends_gracefully: true,
+        }
     }
+}
+
+/// The finished drives.
+pub fn records(kept: Kept) -> Result<Records, Failure> {
+    Ok(match kept {
+        Kept::Nowhere => Records::in_memory(),
+        Kept::In(path) => Records::open(path)?,
+        Kept::Text(text) => Records::of_text(text),
+    })
 }
 
 /// The controller of a vehicle with a strategy. The damper policy is that of `ride-handling`, and nothing to the others.

@@ -9,9 +9,10 @@ use oleo_report::{
 };
 use serde_json::json;
 
-use super::drive::Drive;
+use super::drive::{Drive, ledger};
 use crate::failure::Failure;
-use crate::results::command_line;
+use crate::results::{ResultsArgs, command_line};
+use crate::shard::Kept;
 
 /// Find the gas volume and damper factor that minimise a weighted sum of ride and handling measures
 #[derive(clap::Args)]
@@ -36,6 +37,8 @@ pub struct Args {
     /// Largest number of iterations
     #[arg(long, value_name = "N", default_value_t = 60)]
     iterations: u64,
+    #[command(flatten)]
+    results: ResultsArgs,
 }
 
 /// Runs the command.
@@ -52,7 +55,9 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         ));
     }
     let (bench, parameters) = args.drive.bench()?;
-    let (ledger, mut out) = args.drive.stage("optimise", &bench)?;
+    let about = args.drive.about("optimise");
+    let (mut out, path) = (args.results).stage_with_ledger(&about.command, &about.name, about.inputs, about.ledger)?;
+    let ledger = ledger(path.as_deref().map_or(Kept::Nowhere, Kept::In), &bench)?;
     let objective = Objective {
         weights,
         per_axle: args.per_axle,
@@ -75,7 +80,7 @@ pub fn run(args: &Args) -> Result<ExitCode, Failure> {
         let map = surface.map(|surface| map(&weights, &optimum, &surface));
         write(out, args.drive.seed, &optimum, &table, map)?;
     }
-    args.drive.results.publish(out, &table.to_string())?;
+    args.results.publish(out, &table.to_string())?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,23 +1,26 @@
 //! `oleo study robust`: random vehicles under the controller of the nominal one.
 
+use std::ops::Range;
 use std::process::ExitCode;
 
 use oleo_controller::{DamperPolicy, Strategy};
-use oleo_hil::comparison::{DRIVES, VariedResult, robust};
-use oleo_report::interrupt::Graceful;
-use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Progress, Style, Table, Verdict};
+use oleo_hil::comparison::{Bench, DRIVES, Setting, VariedResult, robust};
+use oleo_hil::parameter_files::Parameters;
+use oleo_plant_sim::study::Records;
+use oleo_report::{Axis, Column, Curves, OutputDirectory, Page, Style, Table, Verdict};
 use serde_json::json;
 
-use super::drives::{Drives, controlled};
+use super::drives::{Drives, controlled, records};
 use crate::failure::Failure;
-use crate::results::command_line;
+use crate::results::ResultsArgs;
+use crate::shard::{About, Kept, Request, Said, ShardArgs, Study, Work};
 
 /// Drive random vehicles (load, inertia, tyres, gas, friction, valves, sensors, a weak strut) with the controller of the nominal one
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     drives: Drives,
-    /// Number of vehicles, 1 to 100000
+    /// Number of vehicles, 1 to 10000000
     #[arg(long, value_name = "N", default_value_t = 100)]
     vehicles: u64,
     /// Number of the first vehicle; with --vehicles 1 a single vehicle is driven again
@@ -26,6 +29,10 @@ pub struct Args {
     /// Exit with status 1 if a vehicle rolls over that stands with all valves closed
     #[arg(long)]
     check: bool,
+    #[command(flatten)]
+    results: ResultsArgs,
+    #[command(flatten)]
+    shard: ShardArgs,
 }
 
 /// One of the distributions.
@@ -53,54 +60,97 @@ const DISTRIBUTIONS: [Distribution; 3] = [
     },
 ];
 
-/// Runs the command.
-pub fn run(args: &Args) -> Result<ExitCode, Failure> {
-    if !(1..=100_000).contains(&args.vehicles) {
-        return Err(Failure::new(format!(
-            "--vehicles {}: give a number from 1 to 100000",
-            args.vehicles
-        )));
+/// Most vehicles of a study.
+const MOST: u64 = 10_000_000;
+
+/// The study.
+pub struct Robust {
+    drives: Drives,
+    nominal: Bench,
+    parameters: Parameters,
+    setting: Setting,
+    vehicles: Range<u64>,
+    check: bool,
+}
+
+impl Args {
+    /// The study that is asked for.
+    pub fn request(self) -> Result<Request, Failure> {
+        if !(1..=MOST).contains(&self.vehicles) {
+            return Err(Failure::new(format!(
+                "--vehicles {}: give a number from 1 to {MOST}",
+                self.vehicles
+            )));
+        }
+        let (nominal, parameters) = self.drives.bench()?;
+        let setting = controlled(
+            &nominal,
+            Strategy::default().name(),
+            Strategy::default(),
+            DamperPolicy::default(),
+        )?;
+        let study = Robust {
+            drives: self.drives,
+            nominal,
+            parameters,
+            setting,
+            vehicles: self.first..self.first.saturating_add(self.vehicles),
+            check: self.check,
+        };
+        Ok(Request {
+            study: Box::new(study),
+            results: self.results,
+            shard: self.shard,
+        })
     }
-    let (nominal, parameters) = args.drives.bench()?;
-    let setting = controlled(
-        &nominal,
-        Strategy::default().name(),
-        Strategy::default(),
-        DamperPolicy::default(),
-    )?;
-    let (records, mut out) = args.drives.stage("robust")?;
-    let progress = Progress::new("study robust", DRIVES * args.vehicles);
-    let results = {
-        // The first Ctrl-C lets the drives in hand end and keeps them.
-        let graceful = Graceful::begin();
-        let (nominal, setting, records, progress, graceful) = (&nominal, &setting, &records, &progress, &graceful);
-        let vehicles = (args.first, args.vehicles);
-        args.drives.on_threads(move || {
-            robust(
-                nominal,
-                setting,
-                vehicles,
-                records,
-                || progress.add(1),
-                || graceful.requested(),
-            )
-        })??
-    };
-    drop(progress);
-    let over: Vec<u64> = results
-        .iter()
-        .filter(|result| result.rolls_over)
-        .map(|result| result.case)
-        .collect();
-    let table = table(&results);
-    if let Some(out) = &mut out {
-        parameters.keep(out)?;
-        write(out, args.first, &results, &over, &table)?;
+}
+
+/// A case is a vehicle, drawn by its number.
+impl Study for Robust {
+    type Ledger = Records;
+    type Outcome = VariedResult;
+
+    fn about(&self) -> About {
+        self.drives.about("robust", DRIVES)
     }
-    let text = format!("{table}{}\n", verdict(results.len(), &over));
-    args.drives.results.publish(out, &text)?;
-    let failed = args.check && !over.is_empty();
-    Ok(if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+
+    fn cases(&self) -> usize {
+        self.vehicles.clone().count()
+    }
+
+    fn ledger(&self, kept: Kept) -> Result<Records, Failure> {
+        records(kept)
+    }
+
+    fn run(&self, cases: &[usize], records: &Records, work: &Work) -> Result<Vec<VariedResult>, Failure> {
+        let vehicles: Vec<u64> = cases.iter().map(|case| self.vehicles.start + *case as u64).collect();
+        let (nominal, setting) = (&self.nominal, &self.setting);
+        let drive = || robust(nominal, setting, &vehicles, records, || work.done(), || work.stops());
+        Ok(self.drives.on_threads(drive)??)
+    }
+
+    fn report(
+        &self,
+        results: Vec<VariedResult>,
+        out: Option<&mut OutputDirectory>,
+        command: &str,
+    ) -> Result<Said, Failure> {
+        let over: Vec<u64> = results
+            .iter()
+            .filter(|result| result.rolls_over)
+            .map(|result| result.case)
+            .collect();
+        let table = table(&results);
+        if let Some(out) = out {
+            self.parameters.keep(out)?;
+            write(out, self.vehicles.start, &results, &over, &table, command)?;
+        }
+        let failed = self.check && !over.is_empty();
+        Ok(Said {
+            text: format!("{table}{}\n", verdict(results.len(), &over)),
+            status: if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS },
+        })
+    }
 }
 
 fn verdict(vehicles: usize, over: &[u64]) -> String {
@@ -162,6 +212,7 @@ fn write(
     results: &[VariedResult],
     over: &[u64],
     table: &Table,
+    command: &str,
 ) -> Result<(), Failure> {
     let column = |of: &dyn Fn(&VariedResult) -> f64| results.iter().map(of).collect::<Vec<f64>>();
     let case = column(&|result| result.case as f64);
@@ -201,7 +252,7 @@ fn write(
         }),
     )?;
 
-    let mut page = Page::new("Robustness study", &command_line());
+    let mut page = Page::new("Robustness study", command);
     let kind = if over.is_empty() { Verdict::Pass } else { Verdict::Fail };
     page.verdict(kind, &verdict(results.len(), over));
     page.outcome(table.clone());

@@ -2,13 +2,17 @@
 
 use std::process::ExitCode;
 
-use oleo_plant_sim::study::{Finding, Surface, findings};
+use oleo_hil::parameter_files::Parameters;
+use oleo_plant_sim::study::{
+    Bench, DAMPER_FACTORS, Finding, GAS_VOLUMES_M3, Job, Ledger, Outcome, Surface, findings, jobs, run_jobs,
+};
 use oleo_report::{Axis, Cell, Column, Curves, Field, FieldStyle, OutputDirectory, Page, Style, Table, Verdict};
 use serde_json::json;
 
-use super::drive::Drive;
+use super::drive::{Drive, ledger};
 use crate::failure::Failure;
-use crate::results::command_line;
+use crate::results::ResultsArgs;
+use crate::shard::{About, Kept, Request, Said, ShardArgs, Study, Work};
 
 /// Run 10 gas volumes x 7 damper factors over Belgian block and through a lane change
 #[derive(clap::Args)]
@@ -18,28 +22,88 @@ pub struct Args {
     /// Exit with status 1 if a conclusion of the report is not met
     #[arg(long)]
     check: bool,
+    #[command(flatten)]
+    results: ResultsArgs,
+    #[command(flatten)]
+    shard: ShardArgs,
 }
 
-/// Runs the command.
-pub fn run(args: &Args) -> Result<ExitCode, Failure> {
-    let (bench, parameters) = args.drive.bench()?;
-    let (ledger, mut out) = args.drive.stage("sweep", &bench)?;
-    let surface = args.drive.surface("sweep", &bench, &ledger)?;
-    let conclusions = findings(&surface);
-    let met = conclusions.iter().all(|finding| finding.met || !finding.conclusion);
+/// The study.
+pub struct Sweep {
+    drive: Drive,
+    bench: Bench,
+    parameters: Parameters,
+    jobs: Vec<Job>,
+    check: bool,
+}
 
-    let table = conclusions_table(&conclusions);
-    if let Some(out) = &mut out {
-        parameters.keep_vehicle(out)?;
-        write(out, args.drive.seed, &surface, &conclusions, &table, met)?;
+impl Args {
+    /// The study that is asked for.
+    pub fn request(self) -> Result<Request, Failure> {
+        let (bench, parameters) = self.drive.bench()?;
+        let study = Sweep {
+            drive: self.drive,
+            bench,
+            parameters,
+            jobs: jobs(&GAS_VOLUMES_M3, &DAMPER_FACTORS),
+            check: self.check,
+        };
+        Ok(Request {
+            study: Box::new(study),
+            results: self.results,
+            shard: self.shard,
+        })
     }
-    let text = format!("{}{table}", grid_table(&surface));
-    args.drive.results.publish(out, &text)?;
-    Ok(if args.check && !met {
-        ExitCode::FAILURE
-    } else {
-        ExitCode::SUCCESS
-    })
+}
+
+/// A case is a drive over the Belgian block or through the lane change with a gas volume and a damper factor.
+impl Study for Sweep {
+    type Ledger = Ledger;
+    type Outcome = (Outcome, bool);
+
+    fn about(&self) -> About {
+        self.drive.about("sweep")
+    }
+
+    fn cases(&self) -> usize {
+        self.jobs.len()
+    }
+
+    fn ledger(&self, kept: Kept) -> Result<Ledger, Failure> {
+        ledger(kept, &self.bench)
+    }
+
+    fn run(&self, cases: &[usize], ledger: &Ledger, work: &Work) -> Result<Vec<(Outcome, bool)>, Failure> {
+        let chosen: Vec<Job> = cases.iter().map(|case| self.jobs[*case]).collect();
+        let drive = || run_jobs(&self.bench, ledger, &chosen, || work.done(), || work.stops());
+        Ok(self.drive.on_threads(drive)??)
+    }
+
+    fn report(
+        &self,
+        outcomes: Vec<(Outcome, bool)>,
+        out: Option<&mut OutputDirectory>,
+        command: &str,
+    ) -> Result<Said, Failure> {
+        let surface = Surface::of(&GAS_VOLUMES_M3, &DAMPER_FACTORS, outcomes);
+        let conclusions = findings(&surface);
+        let met = all_met(&conclusions);
+        let table = conclusions_table(&conclusions);
+        if let Some(out) = out {
+            self.parameters.keep_vehicle(out)?;
+            write(out, self.drive.seed, &surface, &conclusions, &table, command)?;
+        }
+        let failed = self.check && !met;
+        Ok(Said {
+            text: format!("{}{table}", grid_table(&surface)),
+            status: if failed { ExitCode::FAILURE } else { ExitCode::SUCCESS },
+        })
+    }
+}
+
+/// Whether all statements are met that are part of the check.
+fn all_met(conclusions: &[Finding]) -> bool {
+    conclusions.iter().all(|finding| finding.met || !finding.conclusion)
 }
 
 fn conclusions_table(conclusions: &[Finding]) -> Table {
@@ -200,8 +264,9 @@ fn write(
     surface: &Surface,
     conclusions: &[Finding],
     table: &Table,
-    met: bool,
+    command: &str,
 ) -> Result<(), Failure> {
+    let met = all_met(conclusions);
     let litres: Vec<f64> = surface.gas_volumes_m3.iter().map(|v| 1e3 * v).collect();
     let factors = &surface.damper_factors;
     let ride = |of: fn(&oleo_plant_sim::study::Ride) -> f64| {
@@ -217,7 +282,7 @@ fn write(
         true => surface.handling[i][j].max_roll_rad.to_degrees(),
         false => f64::NAN,
     });
-    let mut page = Page::new("Design study: gas volume and damping", &command_line());
+    let mut page = Page::new("Design study: gas volume and damping", command);
     let verdict = if met { Verdict::Pass } else { Verdict::Fail };
     page.verdict(verdict, &verdict_sentence(conclusions));
     page.outcome(table.clone());

@@ -76,7 +76,7 @@ impl Default for Fitting {
 /// How candidates are screened before any is fitted in full.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Screening {
-    /// Steps that every candidate gets, from each of its starts.
+    /// Steps that every candidate gets, from each of its starts; a law only from the shape that explains most in a regression.
     pub first_steps: usize,
     /// Candidates are also started at sizes up to the largest possible where the noise ratio of the model so far is above
     /// this. The bound limits the time of the search; what it costs below has not been measured.
@@ -98,6 +98,10 @@ pub struct Screening {
     /// Screening is linear in the model's own parameters and underestimates what a candidate gains: one that reaches this
     /// fraction of what acceptance asks is still fitted in full.
     pub margin: f64,
+    /// The same of a fit of a finalist that has not converged. One that reaches less is not carried on.
+    pub margin_of_quick_fit: f64,
+    /// Promising candidates get further steps if their first ones gained at least this fraction of what those of the best gained.
+    pub gain_of_promising: f64,
     /// Once a finalist is fitted, the next is fitted only if its screened gain is at least this fraction of that gain.
     pub gain_of_next_finalist: f64,
 }
@@ -115,6 +119,8 @@ impl Default for Screening {
             promising: 6,
             finalists: 3,
             margin: 0.6,
+            margin_of_quick_fit: 0.9,
+            gain_of_promising: 0.1,
             gain_of_next_finalist: 0.5,
         }
     }

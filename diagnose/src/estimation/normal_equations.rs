@@ -6,8 +6,9 @@
 use nalgebra::{DMatrix, DVector, DVectorView};
 use rayon::prelude::*;
 
-use super::blocks::Blocks;
+use super::blocks::{Block, Blocks};
 use super::evaluation::Sensitivity;
+use crate::specimen::Series;
 
 /// Normal equations of one block at a point: `cost(z + d) = cost - 2 g d + d H d` in the linear approximation.
 #[derive(Debug, Clone)]
@@ -39,11 +40,11 @@ pub fn assemble(blocks: &Blocks, sensitivities: &[Sensitivity]) -> Vec<NormalEqu
             for (c, residual) in s.residual.iter().enumerate() {
                 let r = b.of(residual);
                 cost += dot(r, r);
-                for i in 0..p {
-                    let column = b.of(&s.columns[i][c]);
+                let columns = answers(b, &s.columns, c);
+                for (at, &(i, column)) in columns.iter().enumerate() {
                     g[i] += dot(column, r);
-                    for j in 0..=i {
-                        h[(i, j)] += dot(column, b.of(&s.columns[j][c]));
+                    for &(j, other) in &columns[..=at] {
+                        h[(i, j)] += dot(column, other);
                     }
                 }
             }
@@ -63,8 +64,8 @@ pub fn with_residuals(blocks: &Blocks, old: &[NormalEquations], sensitivities: &
             for (c, residual) in s.residual.iter().enumerate() {
                 let r = b.of(residual);
                 cost += dot(r, r);
-                for (i, column) in s.columns.iter().enumerate() {
-                    g[i] += dot(b.of(&column[c]), r);
+                for (i, column) in answers(b, &s.columns, c) {
+                    g[i] += dot(column, r);
                 }
             }
             NormalEquations {
@@ -96,19 +97,19 @@ pub fn extended(
             for (c, residual) in added.residual.iter().enumerate() {
                 let r = b.of(residual);
                 cost += dot(r, r);
-                for (k, column) in base.columns.iter().enumerate() {
-                    g[k] += dot(b.of(&column[c]), r);
+                let (known, new) = (answers(b, &base.columns, c), answers(b, &added.columns, c));
+                for &(k, column) in &known {
+                    g[k] += dot(column, r);
                 }
-                for (i, column) in added.columns.iter().enumerate() {
-                    let own = b.of(&column[c]);
+                for (at, &(i, own)) in new.iter().enumerate() {
                     g[before + i] += dot(own, r);
-                    for (k, other) in base.columns.iter().enumerate() {
-                        let value = dot(own, b.of(&other[c]));
+                    for &(k, other) in &known {
+                        let value = dot(own, other);
                         h[(before + i, k)] += value;
                         h[(k, before + i)] += value;
                     }
-                    for (j, other) in added.columns[..=i].iter().enumerate() {
-                        let value = dot(own, b.of(&other[c]));
+                    for &(j, other) in &new[..=at] {
+                        let value = dot(own, other);
                         h[(before + i, before + j)] += value;
                         if i != j {
                             h[(before + j, before + i)] += value;
@@ -116,6 +117,34 @@ pub fn extended(
                     }
                 }
             }
+            NormalEquations { h, g, cost }
+        })
+        .collect()
+}
+
+/// The same with new residuals, those of `added`; all sensitivities are those that `old` was extended from.
+#[must_use]
+pub fn extended_with_residuals(
+    blocks: &Blocks,
+    old: &[NormalEquations],
+    base: &[Sensitivity],
+    added: &[Sensitivity],
+) -> Vec<NormalEquations> {
+    (blocks.as_slice().iter().zip(old))
+        .map(|(b, old)| {
+            let (base, added) = (&base[b.recording], &added[b.recording]);
+            let (mut g, mut cost) = (DVector::zeros(old.g.len()), 0.0);
+            for (c, residual) in added.residual.iter().enumerate() {
+                let r = b.of(residual);
+                cost += dot(r, r);
+                for (k, column) in answers(b, &base.columns, c) {
+                    g[k] += dot(column, r);
+                }
+                for (k, column) in answers(b, &added.columns, c) {
+                    g[base.columns.len() + k] += dot(column, r);
+                }
+            }
+            let h = old.h.clone();
             NormalEquations { h, g, cost }
         })
         .collect()
@@ -145,6 +174,14 @@ pub fn sum<'n>(
 #[must_use]
 pub fn total_cost(blocks: &[NormalEquations]) -> f64 {
     blocks.iter().map(|n| n.cost).sum()
+}
+
+/// The coordinates by which a channel changes within a block, with their derivatives. A law at the seal changes the force only, an instrument its own
+/// channel, and a law over a quantity only what happens where the quantity is: most products would be of zeros.
+fn answers<'s>(block: &Block, columns: &'s [Series], channel: usize) -> Vec<(usize, &'s [f64])> {
+    (columns.iter().map(|column| block.of(&column[channel])).enumerate())
+        .filter(|(_, column)| column.iter().any(|v| *v != 0.0))
+        .collect()
 }
 
 /// nalgebra adds eight sums side by side, which one processor does at once; one sum after the other took a quarter of a diagnosis.
@@ -186,6 +223,12 @@ mod tests {
             s.residual.iter_mut().flatten().for_each(|r| *r += 0.3);
         }
         let renewed = with_residuals(blocks, &whole, &moved);
+        assert!(assemble(blocks, &moved).iter().zip(&renewed).all(|(a, b)| close(a, b)));
+        let mut added = at(&[2, 3]);
+        for s in &mut added {
+            s.residual.iter_mut().flatten().for_each(|r| *r += 0.3);
+        }
+        let renewed = extended_with_residuals(blocks, &grown, &base, &added);
         assert!(assemble(blocks, &moved).iter().zip(&renewed).all(|(a, b)| close(a, b)));
     }
 

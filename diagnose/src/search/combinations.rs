@@ -9,6 +9,7 @@
 
 use std::collections::BTreeSet;
 
+use super::screen::Screen;
 use super::selector::{Screened, Selector, ranked, reached};
 use crate::error::DiagnoseError;
 use crate::estimation::covariance::covariance;
@@ -100,7 +101,9 @@ impl Selector<'_, '_> {
             let new = |c: &usize| !known.contains(&sorted(&seed.point.effects, Some(*c)));
             let open: Vec<usize> = self.open(&seed.point, false).into_iter().filter(new).collect();
             known.extend(open.iter().map(|c| sorted(&seed.point.effects, Some(*c))));
-            all.extend(ranked(&self.screen(&seed, open)?));
+            let fits = Screen::new(self.problem, &seed)?.all(&open)?;
+            let screened: Vec<Screened> = open.into_iter().zip(fits).collect();
+            all.extend(ranked(&screened));
         }
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         Ok(all.into_iter().map(|(_, fit)| fit).collect())

@@ -26,7 +26,21 @@ impl Selector<'_, '_> {
             if winner.as_ref().is_some_and(|(cost, _)| behind(*cost)) {
                 continue;
             }
-            let Some(full) = self.fitted_if_simulated(start.point)? else {
+            // Most of what a fit costs is its last few thousandths, which decide nothing about one that is far behind.
+            let Some(quick) = self.fitted_quickly(&start.point)? else {
+                continue;
+            };
+            let reached_quickly = reached(&quick);
+            let large = (self.gain(before, &reached_quickly)).is_large(
+                fraction,
+                criteria.screening.margin_of_quick_fit,
+                &criteria.acceptance,
+            );
+            let quick_cost: f64 = reached_quickly.iter().sum();
+            if !large || winner.as_ref().is_some_and(|(cost, _)| quick_cost > *cost) {
+                continue;
+            }
+            let Some(full) = self.fitted_if_simulated(quick.point)? else {
                 continue;
             };
             if self.is_too_small(&full, candidate) {

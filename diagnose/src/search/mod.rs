@@ -25,6 +25,7 @@ mod oscillation;
 mod restart;
 mod rivals;
 pub mod screen;
+mod screenings;
 mod select;
 mod selection;
 mod selector;

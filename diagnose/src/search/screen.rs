@@ -12,9 +12,10 @@ use rayon::prelude::*;
 
 use super::oscillation::{Line, Oscillations};
 use super::sizes::starting_sizes;
+use crate::criteria::Screening;
 use crate::error::DiagnoseError;
 use crate::estimation::bounded_step::bounded_step;
-use crate::estimation::normal_equations::{extended, sum, total_cost};
+use crate::estimation::normal_equations::{extended, extended_with_residuals, sum, total_cost};
 use crate::estimation::{Fit, LeastSquares, NormalEquations, Point, Sensitivity};
 use crate::specimen::{Series, Specimen};
 use crate::vocabulary::Column;
@@ -47,17 +48,28 @@ struct Swings {
 }
 
 /// A candidate on its way to its best values.
-struct ScreenedCandidate {
+#[derive(Clone)]
+pub struct ScreenedCandidate {
     /// The model so far with the candidate.
     point: Point,
-    /// Normal equations of the model's coordinates and the candidate's.
+    /// Normal equations of the model's coordinates and the candidate's. The derivatives may be those of the point before the last
+    /// step, the residuals are always those of the point.
     normals: Vec<NormalEquations>,
     /// The step that the model's own coordinates make in response.
     response: DVector<f64>,
     /// Cost with the response.
-    cost: f64,
+    pub cost: f64,
     damping: f64,
     arrived: bool,
+    /// True once it got the steps of a promising candidate.
+    pub advanced: bool,
+}
+
+/// A candidate with the derivatives from which it can step on.
+struct Linearised {
+    candidate: ScreenedCandidate,
+    /// Residuals and derivatives with respect to the candidate's coordinates.
+    added: Vec<Sensitivity>,
 }
 
 impl<'p, 'a> Screen<'p, 'a> {
@@ -90,37 +102,60 @@ impl<'p, 'a> Screen<'p, 'a> {
     /// # Errors
     /// [`DiagnoseError::Interrupted`] once the caller asked to stop.
     pub fn all(&self, candidates: &[usize]) -> Result<Vec<Option<Fit>>, DiagnoseError> {
-        let screening = &self.problem.criteria.screening;
+        let mut begun = self.begun(candidates)?;
+        let costs: Vec<f64> = begun.iter().map(cost_of).collect();
+        let promising = promising(&costs, self.fit, &self.problem.criteria.screening);
+        self.advance_all(
+            begun
+                .iter_mut()
+                .enumerate()
+                .filter(|(k, _)| promising.contains(k))
+                .map(|(_, c)| c),
+        )?;
+        Ok((begun.iter())
+            .map(|candidate| candidate.as_ref().map(|c| finished(self.problem, self.fit, c)))
+            .collect())
+    }
+
+    /// Candidates after their first steps.
+    ///
+    /// # Errors
+    /// [`DiagnoseError::Interrupted`] once the caller asked to stop.
+    pub fn begun(&self, candidates: &[usize]) -> Result<Vec<Option<ScreenedCandidate>>, DiagnoseError> {
         let all = self.specimen().candidates();
         let swings = (candidates.iter().any(|&c| all[c].oscillates)).then(|| self.swings());
-        let first: Vec<Option<ScreenedCandidate>> = candidates
-            .par_iter()
+        (candidates.par_iter())
             .map(|&c| match &swings {
                 Some(swings) if all[c].oscillates => self.begin_oscillation(c, swings),
                 _ => self.begin(c),
             })
-            .collect::<Result<_, DiagnoseError>>()?;
-        let cost = |k: usize| first[k].as_ref().map_or(f64::INFINITY, |s| s.cost);
-        let mut order: Vec<usize> = (0..first.len()).filter(|&k| first[k].is_some()).collect();
-        order.sort_by(|&a, &b| cost(a).total_cmp(&cost(b)));
-        order.truncate(screening.promising);
-        (first.into_par_iter().enumerate())
-            .map(|(k, begun)| {
-                let Some(mut candidate) = begun else { return Ok(None) };
-                if order.contains(&k) {
-                    self.advance(&mut candidate, screening.more_steps)?;
-                }
-                Ok(Some(self.finish(candidate)))
-            })
             .collect()
+    }
+
+    /// Takes promising candidates on.
+    ///
+    /// # Errors
+    /// [`DiagnoseError::Interrupted`] once the caller asked to stop.
+    pub fn advance_all<'c>(
+        &self,
+        promising: impl Iterator<Item = &'c mut Option<ScreenedCandidate>>,
+    ) -> Result<(), DiagnoseError> {
+        let promising: Vec<&mut ScreenedCandidate> = promising.flatten().collect();
+        (promising.into_par_iter()).try_for_each(|candidate| {
+            candidate.advanced = true;
+            self.advance(candidate, self.problem.criteria.screening.more_steps)
+        })
     }
 
     /// A candidate after its first steps from the best of its starts.
     fn begin(&self, candidate: usize) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
         let description = &self.specimen().candidates()[candidate];
         let own: Vec<f64> = description.parameters.iter().map(|p| p.start).collect();
-        let mut best: Option<ScreenedCandidate> = None;
         let starts: Vec<&Vec<f64>> = std::iter::once(&own).chain(&description.starts).collect();
+        if description.is_unlisted() && description.absent_at(&own) {
+            return self.begin_law(candidate, &starts);
+        }
+        let mut best: Option<ScreenedCandidate> = None;
         for start in &starts {
             let known = description.absent_at(start).then_some(self.truths.as_slice());
             self.begin_at(candidate, start, known, &mut best)?;
@@ -145,6 +180,57 @@ impl<'p, 'a> Screen<'p, 'a> {
         Ok(best)
     }
 
+    /// A law after its first steps. At size zero a law changes nothing, so that there the answer of the recordings to its size is that of a
+    /// regression, whatever its other numbers, its *shape*, are. The shape that explains most is stepped from; the other starts of this shape are
+    /// larger sizes, which are simulated too.
+    fn begin_law(&self, candidate: usize, starts: &[&Vec<f64>]) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
+        let (specimen, fit) = (self.specimen(), self.fit);
+        let parameters = &specimen.candidates()[candidate].parameters;
+        let shape_of = |values: &[f64]| -> Vec<f64> {
+            (parameters.iter().zip(values))
+                .map(|(p, v)| if p.is_size { 0.0 } else { *v })
+                .collect()
+        };
+        let mut shapes: Vec<Vec<f64>> = Vec::new();
+        for start in starts {
+            let shape = shape_of(start);
+            if !shapes.contains(&shape) {
+                shapes.push(shape);
+            }
+        }
+        let mut best: Option<(f64, Vec<f64>, Linearised)> = None;
+        for shape in shapes {
+            let begun = self.at(fit.point.with_effect(specimen, candidate, &shape), Some(&self.truths))?;
+            let left = self.left_by_linear_step(&begun.candidate);
+            if best.as_ref().is_none_or(|(least, ..)| left < *least) {
+                best = Some((left, shape, begun));
+            }
+        }
+        let Some((_, shape, mut begun)) = best else {
+            return Ok(None);
+        };
+        self.step(&mut begun)?;
+        let mut candidate_at_best = begun.candidate;
+        for start in starts
+            .iter()
+            .filter(|start| shape_of(start) == shape && ***start != shape)
+        {
+            let point = fit.point.with_effect(specimen, candidate, start);
+            match self.cost_at(&point) {
+                Ok(tried) if tried.cost < candidate_at_best.cost => {
+                    candidate_at_best = self.at(point, tried.truths.as_deref())?.candidate;
+                }
+                Ok(_) | Err(DiagnoseError::Simulation { .. }) => {}
+                Err(other) => return Err(other),
+            }
+        }
+        if parameters.iter().any(|p| !p.is_size) {
+            candidate_at_best.arrived = false;
+            self.advance(&mut candidate_at_best, self.problem.criteria.screening.first_steps)?;
+        }
+        Ok(Some(candidate_at_best))
+    }
+
     fn swings(&self) -> Swings {
         let oscillations = Oscillations::of(self.specimen());
         let lines = oscillations.lines_of_channels(&self.residuals());
@@ -161,14 +247,23 @@ impl<'p, 'a> Screen<'p, 'a> {
         let specimen = self.specimen();
         let amplitude = self.fit.point.z.len();
         let numbers = &specimen.candidates()[candidate].parameters;
-        let answers = |values: [f64; 3]| -> Result<Vec<Sensitivity>, DiagnoseError> {
-            let point = self.fit.point.with_effect(specimen, candidate, &values);
-            // Of amplitude zero. A law that swings shortens the steps of the simulation, so that also the truth is simulated with it.
-            let known = numbers[0].instrument_only.then_some(self.truths.as_slice());
-            self.problem.evaluation.sensitivities(&point, &[amplitude], known)
+        // Of amplitude zero. A law that swings shortens the steps of the simulation, so that also the truth is simulated with it, once for a
+        // frequency.
+        let answers = |frequency_hz: f64, phases: &[f64]| -> Result<Vec<Vec<Sensitivity>>, DiagnoseError> {
+            let evaluation = &self.problem.evaluation;
+            let at = |phase| (self.fit.point).with_effect(specimen, candidate, &[0.0, phase, frequency_hz]);
+            let simulated = if numbers[0].instrument_only {
+                None
+            } else {
+                Some(evaluation.truths(&at(FRAC_PI_2))?)
+            };
+            let truths = simulated.as_deref().unwrap_or(&self.truths);
+            (phases.iter())
+                .map(|&phase| evaluation.sensitivities(&at(phase), &[amplitude], Some(truths)))
+                .collect()
         };
         let lowest = numbers[2].lower;
-        let envelopes: Vec<Series> = (answers([0.0, FRAC_PI_2, lowest])?.into_iter())
+        let envelopes: Vec<Series> = (answers(lowest, &[FRAC_PI_2])?.into_iter().flatten())
             .map(|mut s| s.columns.swap_remove(0))
             .collect();
         let mut lines = swings.oscillations.lines(&self.residuals(), &envelopes);
@@ -176,13 +271,11 @@ impl<'p, 'a> Screen<'p, 'a> {
         let mut best: Option<(f64, Vec<f64>)> = None;
         for line in lines {
             let f = line.frequency_hz;
-            let (sine, cosine) = (answers([0.0, 0.0, f])?, answers([0.0, FRAC_PI_2, f])?);
-            let both: Vec<Sensitivity> = (sine.into_iter().zip(cosine))
-                .map(|(mut sine, cosine)| {
-                    sine.columns.extend(cosine.columns);
-                    sine
-                })
-                .collect();
+            let mut answers = answers(f, &[0.0, FRAC_PI_2])?.into_iter();
+            let mut both = answers.next().unwrap_or_default();
+            for (both, cosine) in both.iter_mut().zip(answers.flatten()) {
+                both.columns.extend(cosine.columns);
+            }
             let normals = self.extended(&both);
             let [prior, z] = [&self.fit.prior, &DVector::from_column_slice(&self.fit.point.z)]
                 .map(|own| own.clone().resize_vertically(amplitude + 2, 0.0));
@@ -217,7 +310,12 @@ impl<'p, 'a> Screen<'p, 'a> {
     ) -> Result<(), DiagnoseError> {
         let point = self.fit.point.with_effect(self.specimen(), candidate, start);
         let begun = self.at(point, known).and_then(|mut begun| {
-            self.advance(&mut begun, self.problem.criteria.screening.first_steps)?;
+            self.step(&mut begun)?;
+            let mut begun = begun.candidate;
+            self.advance(
+                &mut begun,
+                self.problem.criteria.screening.first_steps.saturating_sub(1),
+            )?;
             Ok(begun)
         });
         match begun {
@@ -241,8 +339,8 @@ impl<'p, 'a> Screen<'p, 'a> {
         for values in sizes.into_iter().step_by(2) {
             let point = self.fit.point.with_effect(self.specimen(), candidate, &values);
             match self.cost_at(&point) {
-                Ok((cost, _)) if cost < self.problem.criteria.screening.size_overshoot * self.fit.cost => {
-                    costs.push((cost, values));
+                Ok(tried) if tried.cost < self.problem.criteria.screening.size_overshoot * self.fit.cost => {
+                    costs.push((tried.cost, values));
                 }
                 Ok(_) | Err(DiagnoseError::Simulation { .. }) => break,
                 Err(other) => return Err(other),
@@ -256,7 +354,7 @@ impl<'p, 'a> Screen<'p, 'a> {
     fn truths_at(&self, point: &Point) -> Result<Option<Vec<Series>>, DiagnoseError> {
         let leaves_physics_alone = point.effects.last().is_some_and(|&c| {
             let candidate = &self.specimen().candidates()[c];
-            candidate.is_instrument_fault()
+            (candidate.is_instrument_fault() || candidate.is_unlisted())
                 && candidate.place.sensor() != Some(&Column::DISPLACEMENT)
                 && candidate.parameters.iter().all(|p| p.instrument_only)
         });
@@ -268,82 +366,142 @@ impl<'p, 'a> Screen<'p, 'a> {
     }
 
     /// A candidate at a point; its true quantities may be given where they are known.
-    fn at(&self, point: Point, known: Option<&[Series]>) -> Result<ScreenedCandidate, DiagnoseError> {
+    fn at(&self, point: Point, known: Option<&[Series]>) -> Result<Linearised, DiagnoseError> {
         let simulated = if known.is_some() { None } else { self.truths_at(&point)? };
         let truths = known.or(simulated.as_deref()).unwrap_or(&self.truths);
-        let new: Vec<usize> = (self.fit.point.z.len()..point.z.len()).collect();
-        let added = self.problem.evaluation.sensitivities(&point, &new, Some(truths))?;
+        let new = self.fit.point.z.len()..point.z.len();
+        let answering: Vec<usize> = new.clone().filter(|&k| self.answers(&point, k)).collect();
+        let mut added = self
+            .problem
+            .evaluation
+            .sensitivities(&point, &answering, Some(truths))?;
+        for s in &mut added {
+            for k in new.clone().filter(|k| !answering.contains(k)) {
+                let nothing: Series = s.residual.iter().map(|channel| vec![0.0; channel.len()]).collect();
+                s.columns.insert(k - new.start, nothing);
+            }
+        }
         let normals = self.extended(&added);
         let (response, cost) = self.response(&point, &normals);
-        Ok(ScreenedCandidate {
+        let candidate = ScreenedCandidate {
             point,
             normals,
             response,
             cost,
             damping: DAMPING.0,
             arrived: new.is_empty(),
-        })
+            advanced: false,
+        };
+        Ok(Linearised { candidate, added })
     }
 
-    /// The cost at a point, and the true quantities for going on from it.
-    fn cost_at(&self, point: &Point) -> Result<(f64, Option<Vec<Series>>), DiagnoseError> {
-        let simulated = self.truths_at(point)?;
+    /// False for a coordinate of the candidate that changes nothing at a point: a number besides the sizes, while these are zero.
+    fn answers(&self, point: &Point, coordinate: usize) -> bool {
+        let specimen = self.specimen();
+        let Some((candidate, values)) = point.hypothesis(specimen).effects.pop() else {
+            return true;
+        };
+        let candidate = &specimen.candidates()[candidate];
+        let own = coordinate - self.fit.point.z.len();
+        candidate.parameters[own].is_size || !candidate.absent_at(&values)
+    }
+
+    /// The cost at a point, and what follows from its simulation.
+    fn cost_at(&self, point: &Point) -> Result<Tried, DiagnoseError> {
+        let truths = self.truths_at(point)?;
         let evaluation = &self.problem.evaluation;
-        let shown = evaluation.observed(point, simulated.as_deref().unwrap_or(&self.truths));
+        let shown = evaluation.observed(point, truths.as_deref().unwrap_or(&self.truths));
         let residuals: Vec<Sensitivity> = (evaluation.residuals(&shown).into_iter())
             .map(|residual| Sensitivity {
                 residual,
                 columns: Vec::new(),
             })
             .collect();
-        Ok((self.response(point, &self.extended(&residuals)).1, simulated))
+        let cost = self.response(point, &self.extended(&residuals)).1;
+        let residuals = residuals.into_iter().map(|s| s.residual).collect();
+        Ok(Tried {
+            cost,
+            truths,
+            residuals,
+        })
     }
 
-    /// Takes a candidate some steps further; only its own coordinates move.
+    /// Takes a candidate some steps further, each with derivatives of its own; only its own coordinates move.
     fn advance(&self, candidate: &mut ScreenedCandidate, steps: usize) -> Result<(), DiagnoseError> {
-        let old = self.fit.point.z.len();
-        let ranges = candidate.point.ranges(self.specimen());
-        let prior = candidate.point.prior(self.specimen());
+        let mut truths: Option<Vec<Series>> = None;
         for _ in 0..steps {
             if candidate.arrived {
                 break;
             }
-            let (h, g) = sum(&candidate.normals, &prior, &candidate.point.z);
-            let mut next = None;
-            for _ in 0..DAMPINGS_TRIED {
-                let z = &candidate.point.z;
-                let Some(step) = bounded_step(&h, &g, candidate.damping, z, &ranges) else {
-                    candidate.damping *= DAMPING_UP;
-                    continue;
-                };
-                let mut trial = candidate.point.clone();
-                for k in old..trial.z.len() {
-                    trial.z[k] = (trial.z[k] + step[k]).clamp(ranges[k].0, ranges[k].1);
-                }
-                if trial == candidate.point {
-                    break;
-                }
-                match self.cost_at(&trial) {
-                    Ok((cost, truths)) if cost < candidate.cost => {
-                        next = Some((trial, truths));
-                        break;
-                    }
-                    Ok(_) | Err(DiagnoseError::Simulation { .. }) => candidate.damping *= DAMPING_UP,
-                    Err(other) => return Err(other),
-                }
-            }
-            let Some((trial, truths)) = next else {
-                candidate.arrived = true;
-                break;
+            let there = self.at(candidate.point.clone(), truths.as_deref())?;
+            let mut next = Linearised {
+                candidate: ScreenedCandidate {
+                    damping: candidate.damping,
+                    advanced: candidate.advanced,
+                    ..there.candidate
+                },
+                added: there.added,
             };
-            let there = self.at(trial, truths.as_deref())?;
-            *candidate = ScreenedCandidate {
-                arrived: candidate.cost - there.cost < TOLERANCE * there.cost,
-                damping: (candidate.damping * DAMPING_DOWN).max(DAMPING.1),
-                ..there
-            };
+            truths = self.step(&mut next)?;
+            *candidate = next.candidate;
         }
         Ok(())
+    }
+
+    /// One step of a candidate; the true quantities at its end, where there was one and they were simulated. The derivatives stay those of its
+    /// beginning: most candidates get no further one.
+    fn step(&self, begun: &mut Linearised) -> Result<Option<Vec<Series>>, DiagnoseError> {
+        let candidate = &mut begun.candidate;
+        if candidate.arrived {
+            return Ok(None);
+        }
+        let old = self.fit.point.z.len();
+        let ranges = candidate.point.ranges(self.specimen());
+        let prior = candidate.point.prior(self.specimen());
+        let (h, g) = sum(&candidate.normals, &prior, &candidate.point.z);
+        for _ in 0..DAMPINGS_TRIED {
+            let z = &candidate.point.z;
+            let Some(step) = bounded_step(&h, &g, candidate.damping, z, &ranges) else {
+                candidate.damping *= DAMPING_UP;
+                continue;
+            };
+            let mut trial = candidate.point.clone();
+            for k in old..trial.z.len() {
+                trial.z[k] = (trial.z[k] + step[k]).clamp(ranges[k].0, ranges[k].1);
+            }
+            if trial == candidate.point {
+                break;
+            }
+            match self.cost_at(&trial) {
+                Ok(tried) if tried.cost < candidate.cost => {
+                    for (s, residual) in begun.added.iter_mut().zip(tried.residuals) {
+                        s.residual = residual;
+                    }
+                    let (blocks, base) = (&self.problem.blocks, &self.base);
+                    candidate.normals = extended_with_residuals(blocks, &candidate.normals, base, &begun.added);
+                    (candidate.response, _) = self.response(&trial, &candidate.normals);
+                    candidate.arrived = candidate.cost - tried.cost < TOLERANCE * tried.cost;
+                    candidate.damping = (candidate.damping * DAMPING_DOWN).max(DAMPING.1);
+                    (candidate.point, candidate.cost) = (trial, tried.cost);
+                    return Ok(tried.truths);
+                }
+                Ok(_) | Err(DiagnoseError::Simulation { .. }) => candidate.damping *= DAMPING_UP,
+                Err(other) => return Err(other),
+            }
+        }
+        candidate.arrived = true;
+        Ok(None)
+    }
+
+    /// Cost that a step would leave if everything were linear, as far as the ranges allow.
+    fn left_by_linear_step(&self, candidate: &ScreenedCandidate) -> f64 {
+        let (point, specimen) = (&candidate.point, self.specimen());
+        let (h, g) = sum(&candidate.normals, &point.prior(specimen), &point.z);
+        let Some(step) = bounded_step(&h, &g, candidate.damping, &point.z, &point.ranges(specimen)) else {
+            return candidate.cost;
+        };
+        let raw = total_cost(&candidate.normals) + point.prior_cost(specimen);
+        raw - 2.0 * g.dot(&step) + step.dot(&(&h * &step))
     }
 
     /// The step that the model's own coordinates make in response to the candidate, and the cost then.
@@ -367,33 +525,56 @@ impl<'p, 'a> Screen<'p, 'a> {
         (response, cost)
     }
 
-    /// The candidate as a fit: the response is carried out in the linear approximation.
-    fn finish(&self, candidate: ScreenedCandidate) -> Fit {
-        let old = self.fit.point.z.len();
-        let (ranges, prior) = (
-            candidate.point.ranges(self.specimen()),
-            candidate.point.prior(self.specimen()),
-        );
-        let mut point = candidate.point;
-        (0..old).for_each(|k| point.z[k] += candidate.response[k]);
-        let mut step = DVector::zeros(point.z.len());
-        step.rows_mut(0, old).copy_from(&candidate.response);
-        let normals = (candidate.normals.into_iter())
-            .map(|n| NormalEquations {
-                cost: n.cost_after(&step),
-                g: n.g - &n.h * &step,
-                h: n.h,
-            })
-            .collect();
-        let mut fit = Fit::new(point, normals, prior, candidate.cost, ranges);
-        fit.screened = true;
-        fit
-    }
-
     /// Normal equations of the model's coordinates, frozen, and the candidate's together.
     fn extended(&self, added: &[Sensitivity]) -> Vec<NormalEquations> {
         extended(&self.problem.blocks, &self.fit.normals, &self.base, added)
     }
+}
+
+/// A point that was simulated.
+struct Tried {
+    /// Its cost with the response of the model's own coordinates.
+    cost: f64,
+    /// True quantities for going on from it; `None` where they are those of the model so far.
+    truths: Option<Vec<Series>>,
+    residuals: Vec<Series>,
+}
+
+/// The candidate beside a fitted model as a fit: the response is carried out in the linear approximation.
+pub fn finished(problem: &LeastSquares<'_>, fit: &Fit, candidate: &ScreenedCandidate) -> Fit {
+    let old = fit.point.z.len();
+    let mut point = candidate.point.clone();
+    let (ranges, prior) = (point.ranges(problem.specimen()), point.prior(problem.specimen()));
+    (0..old).for_each(|k| point.z[k] += candidate.response[k]);
+    let mut step = DVector::zeros(point.z.len());
+    step.rows_mut(0, old).copy_from(&candidate.response);
+    let normals = (candidate.normals.iter())
+        .map(|n| NormalEquations {
+            cost: n.cost_after(&step),
+            g: &n.g - &n.h * &step,
+            h: n.h.clone(),
+        })
+        .collect();
+    let mut fit = Fit::new(point, normals, prior, candidate.cost, ranges);
+    fit.screened = true;
+    fit
+}
+
+/// Cost of a screened candidate; infinite where it cannot be simulated.
+pub fn cost_of(candidate: &Option<ScreenedCandidate>) -> f64 {
+    candidate.as_ref().map_or(f64::INFINITY, |c| c.cost)
+}
+
+/// Indices of the promising of screened costs beside a fitted model, the lowest first.
+pub fn promising(costs: &[f64], fit: &Fit, screening: &Screening) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..costs.len()).filter(|&k| costs[k].is_finite()).collect();
+    order.sort_by(|&a, &b| costs[a].total_cmp(&costs[b]));
+    order.truncate(screening.promising);
+    if let Some(&first) = order.first() {
+        let least = screening.gain_of_promising * (fit.cost - costs[first]);
+        order.retain(|&k| fit.cost - costs[k] >= least);
+    }
+    order
 }
 
 #[cfg(test)]

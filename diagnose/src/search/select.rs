@@ -56,7 +56,8 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
         comparison = selector.compare_with_rivals(&best, with_laws)?;
     }
     if exchanged || best.point.effects.len() != grown {
-        screened = selector.screen(&best, selector.open(&best.point, with_laws))?;
+        let open = selector.open(&best.point, with_laws);
+        screened = selector.screen(&best, open)?;
     }
     for (candidate, fit) in &screened {
         if let (Some(score), Some(fit)) = (scores.iter_mut().find(|s| s.candidate == *candidate), fit) {
@@ -105,7 +106,8 @@ fn grow(selector: &mut Selector<'_, '_>, calibrated: &Fit, progress: Progress<'_
     loop {
         let screening = done::SCREENING + done::EFFECT * best.point.effects.len() as f64;
         progress("screening every candidate", screening);
-        let screened = selector.screen(&best, selector.open(&best.point, with_laws))?;
+        let open = selector.open(&best.point, with_laws);
+        let screened = selector.screen(&best, open)?;
         if best.point.effects.is_empty() {
             score_alone(selector, &screened, &mut scores);
             if screened_alone.is_empty() {

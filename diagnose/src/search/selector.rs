@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use super::evidence::HeldOutGain;
-use super::screen::Screen;
+use super::screenings::Screenings;
 use crate::criteria::Criteria;
 use crate::effect::Candidate;
 use crate::error::DiagnoseError;
@@ -22,6 +22,8 @@ pub struct Selector<'p, 'a> {
     testable: Vec<usize>,
     /// Fits already made, by their effects.
     known: BTreeMap<Vec<usize>, Fit>,
+    /// Candidates already screened.
+    screenings: Screenings,
 }
 
 impl<'p, 'a> Selector<'p, 'a> {
@@ -32,6 +34,7 @@ impl<'p, 'a> Selector<'p, 'a> {
             problem,
             testable: (0..all.len()).filter(|&c| all[c].untestable.is_none()).collect(),
             known: BTreeMap::new(),
+            screenings: Screenings::default(),
         }
     }
 
@@ -55,15 +58,10 @@ impl<'p, 'a> Selector<'p, 'a> {
     /// The converged fit of a model. Each set of effects is fitted once, unless the start is better than the fit that is known:
     /// that one had then ended in a local minimum.
     pub fn fitted(&mut self, start: Point) -> Result<Fit, DiagnoseError> {
-        let mut effects = start.effects.clone();
-        effects.sort_unstable();
-        if let Some(known) = self.known.get(&effects) {
-            let acceptance = &self.criteria().acceptance;
-            let cost = self.problem.cost_at(&start)?;
-            if cost > known.cost - acceptance.better_start * acceptance.least_gain {
-                return Ok(known.clone());
-            }
+        if let Some(known) = self.known_beside(&start)? {
+            return Ok(known.clone());
         }
+        let effects = in_order(&start);
         let full = fit(self.problem, start, self.criteria().fitting.converged)?;
         self.known.insert(effects, full.without_sensitivities());
         Ok(full)
@@ -71,11 +69,27 @@ impl<'p, 'a> Selector<'p, 'a> {
 
     /// The same where the start can be simulated; `None` where it cannot, which is no candidate and no failure.
     pub fn fitted_if_simulated(&mut self, start: Point) -> Result<Option<Fit>, DiagnoseError> {
-        match self.fitted(start) {
-            Ok(fit) => Ok(Some(fit)),
-            Err(DiagnoseError::Simulation { .. }) => Ok(None),
+        if_simulated(self.fitted(start))
+    }
+
+    /// A fit that is carried only as far as is needed to judge whether it is worth carrying on; the converged one where it is known. `None`
+    /// where the start cannot be simulated.
+    pub fn fitted_quickly(&self, start: &Point) -> Result<Option<Fit>, DiagnoseError> {
+        if_simulated(match self.known_beside(start) {
+            Ok(Some(known)) => Ok(known.clone()),
+            Ok(None) => fit(self.problem, start.clone(), self.criteria().fitting.quick),
             Err(other) => Err(other),
-        }
+        })
+    }
+
+    /// The known fit of the effects of a start, unless the start is better.
+    fn known_beside(&self, start: &Point) -> Result<Option<&Fit>, DiagnoseError> {
+        let Some(known) = self.known.get(&in_order(start)) else {
+            return Ok(None);
+        };
+        let acceptance = &self.criteria().acceptance;
+        let better = known.cost - acceptance.better_start * acceptance.least_gain;
+        Ok((self.problem.cost_at(start)? > better).then_some(known))
     }
 
     /// Costs of the blocks, each held out.
@@ -134,9 +148,9 @@ impl<'p, 'a> Selector<'p, 'a> {
         self.testable.iter().copied().filter(|&c| !excluded(c)).collect()
     }
 
-    /// Screens candidates beside a fitted model.
-    pub fn screen(&self, fit: &Fit, candidates: Vec<usize>) -> Result<Vec<Screened>, DiagnoseError> {
-        let fits = Screen::new(self.problem, fit)?.all(&candidates)?;
+    /// Screens candidates beside a fitted model, each once.
+    pub fn screen(&mut self, fit: &Fit, candidates: Vec<usize>) -> Result<Vec<Screened>, DiagnoseError> {
+        let fits = self.screenings.screen(self.problem, fit, &candidates)?;
         Ok(candidates.into_iter().zip(fits).collect())
     }
 
@@ -162,6 +176,22 @@ impl<'p, 'a> Selector<'p, 'a> {
     pub fn complete_up_to(&self, fit: &Fit) -> f64 {
         let completeness = &self.criteria().completeness;
         completeness.noise_ratio.max(completeness.over_floor * self.floor(fit))
+    }
+}
+
+/// The effects of a point in the order of the candidates.
+fn in_order(point: &Point) -> Vec<usize> {
+    let mut effects = point.effects.clone();
+    effects.sort_unstable();
+    effects
+}
+
+/// A fit; `None` where its start cannot be simulated.
+fn if_simulated(fit: Result<Fit, DiagnoseError>) -> Result<Option<Fit>, DiagnoseError> {
+    match fit {
+        Ok(fit) => Ok(Some(fit)),
+        Err(DiagnoseError::Simulation { .. }) => Ok(None),
+        Err(other) => Err(other),
     }
 }
 

@@ -16,6 +16,7 @@ use super::gas::GasState;
 use super::model::StrutModel;
 use super::motion::{Cubic, Segment};
 use super::network::{LastSolution, Network, StageEnd, State};
+use super::rod_course::RodCourse;
 use super::rod_forces::RodForces;
 use super::rod_state::{Acceleration, RodState};
 use super::terms::{
@@ -86,6 +87,8 @@ pub struct Strut {
     last: LastSolution,
     pressure_pa: [f64; 4],
     valves: StrutValves<ValveMotion>,
+    /// What the rod goes through, where somebody asked for it.
+    course: Option<Box<RodCourse>>,
 }
 
 impl Strut {
@@ -140,6 +143,7 @@ impl Strut {
             last: LastSolution::default(),
             pressure_pa: [state.p1_pa; 4],
             valves: signals.map(ValveMotion::at_rest),
+            course: None,
         })
     }
 
@@ -285,7 +289,29 @@ impl Strut {
         self.time_s = now_s + h;
         self.actuator_m = end.0;
         self.speed_m_s = end.1;
-        self.rod.follow(stroke_m, h, &self.rod_state());
+        let rod = self.rod_state();
+        self.rod.follow(stroke_m, h, &rod);
+        if let Some(course) = &mut self.course {
+            course.push_step(stroke_m, h, rod);
+        }
+    }
+
+    /// Notes from now on what the rod goes through.
+    pub(super) fn begin_course(&mut self) {
+        self.course = Some(Box::default());
+    }
+
+    /// Notes a sample.
+    pub(super) fn note_sample(&mut self) {
+        let rod = self.rod_state();
+        if let Some(course) = &mut self.course {
+            course.push_sample(rod);
+        }
+    }
+
+    /// What the rod went through, if it was noted.
+    pub(super) fn into_course(self) -> Option<RodCourse> {
+        self.course.map(|course| *course)
     }
 
     fn openings_at(&self, time_s: f64) -> StrutValves<f64> {

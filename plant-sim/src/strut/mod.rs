@@ -48,6 +48,7 @@ mod nitrogen;
 mod orifice;
 mod pressure;
 mod replay;
+mod rod_course;
 mod rod_forces;
 mod rod_state;
 mod smoothing;
@@ -65,7 +66,8 @@ pub use model::{Accumulator, Cylinder, GasCharge, Orifice, Specimen, StrutModel,
 pub use motion::{Motion, Segment};
 pub use nitrogen::Nitrogen;
 pub use pressure::ATMOSPHERE_PA;
-pub use replay::{Inputs, Prediction, replay};
+pub use replay::{Inputs, Prediction, replay, replay_with_course};
+pub use rod_course::RodCourse;
 pub use smoothing::{FreeMotion, smooth_displacement, smooth_free_motion, smooth_uneven_displacement};
 pub use terms::{
     AccumulatorPistonFriction, BumpStop, COLUMNS, DamperLeakage, DampingFade, Effects, EntrainedAir, Equation,

@@ -8,6 +8,7 @@ use super::instruments::{record_column, true_motion};
 use super::integrator::{Strut, StrutOutput};
 use super::model::StrutModel;
 use super::motion::Motion;
+use super::rod_course::RodCourse;
 use super::smoothing::{smooth_displacement, smooth_uneven_displacement};
 use super::terms::COLUMNS;
 
@@ -103,14 +104,32 @@ impl Prediction {
 /// # Errors
 /// Impossible values in the model.
 pub fn replay(model: &StrutModel, inputs: &Inputs) -> Result<Prediction, InvalidValue> {
+    Ok(replayed(model, inputs, false)?.0)
+}
+
+/// The same with what the rod went through, which takes about 200 bytes a sample.
+///
+/// # Errors
+/// Impossible values in the model.
+pub fn replay_with_course(model: &StrutModel, inputs: &Inputs) -> Result<(Prediction, RodCourse), InvalidValue> {
+    let (prediction, strut) = replayed(model, inputs, true)?;
+    Ok((prediction, strut.into_course().unwrap_or_default()))
+}
+
+/// Prediction of a recording, and the strut at its end.
+fn replayed(model: &StrutModel, inputs: &Inputs, with_course: bool) -> Result<(Prediction, Strut), InvalidValue> {
     let effects = &model.effects;
     let truth = true_motion(effects, &inputs.time_s, &inputs.motion);
     let motion = truth.as_ref().unwrap_or(&inputs.motion);
     let signals = inputs.signals.first().copied().unwrap_or_default();
     let mut strut = Strut::at_rest_at(model, signals, motion.start_m)?;
+    if with_course {
+        strut.begin_course();
+    }
     let mut out = Prediction::with_capacity(inputs.time_s.len());
     if !inputs.time_s.is_empty() {
         out.push(strut.output());
+        strut.note_sample();
     }
     for ((segment, time), signals) in motion
         .segments
@@ -128,11 +147,12 @@ pub fn replay(model: &StrutModel, inputs: &Inputs) -> Result<Prediction, Invalid
             output = strut.advance(segment.to_m, duration - (begins + takes), *signals);
         }
         out.push(output);
+        strut.note_sample();
     }
     let [_, force, pressures @ ..] = COLUMNS;
     record_column(effects, force, &inputs.time_s, &mut out.force_n);
     for (column, signal) in pressures.iter().zip(&mut out.pressure_pa) {
         record_column(effects, column, &inputs.time_s, signal);
     }
-    Ok(out)
+    Ok((out, strut))
 }

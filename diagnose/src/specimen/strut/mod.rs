@@ -5,18 +5,20 @@ mod channels;
 mod drawing;
 mod floor;
 mod relations;
+mod rod_memory;
 
 use std::sync::OnceLock;
 
 use oleo_interface::{StrutValves, Valve};
 use oleo_plant_sim::model_file::InvalidValue;
-use oleo_plant_sim::strut::{COLUMNS, Inputs, StrutModel, record_column, replay, smooth_free_motion};
+use oleo_plant_sim::strut::{COLUMNS, Inputs, StrutModel, record_column, smooth_free_motion};
 use rayon::prelude::*;
 
 use calibration::Calibration;
 pub use channels::{CHANNELS, columns};
 use channels::{FORCE, Layout, P1, P2, P3, P4};
 use relations::Measured;
+use rod_memory::RodMemory;
 
 use super::channel::{Channel, Series, StateSeries};
 use super::contract::{BelievedModel, Specimen};
@@ -53,6 +55,8 @@ pub struct TwoStageStrut {
     instruments: Examined,
     /// The inputs with displacement noise once more; made when somebody asks for the floor.
     jittered: OnceLock<Vec<Inputs>>,
+    /// Simulations of each recording that are wanted again.
+    memories: Vec<RodMemory>,
 }
 
 impl TwoStageStrut {
@@ -230,7 +234,9 @@ impl TwoStageStrut {
             candidates: vec![],
             instruments,
             jittered: OnceLock::new(),
+            memories: vec![],
         };
+        strut.memories.resize_with(strut.inputs.len(), RodMemory::default);
         let excited = |recordings: &[Recording], layout: Layout| {
             let columns = excitation::StrutColumns {
                 channels: std::array::from_fn(|c| layout.has(c).then(|| layout.column(c))),
@@ -297,7 +303,7 @@ impl TwoStageStrut {
         let mut model = self.applied(hypothesis);
         // Faults of the displacement sensor change the motion; all other instruments are applied afterwards.
         model.effects.retain_sensor_faults(|column| column == COLUMNS[0]);
-        let p = replay(&model, &self.inputs[recording]).map_err(|e| e.to_string())?;
+        let p = (self.memories[recording].replay(&model, &self.inputs[recording])).map_err(|e| e.to_string())?;
         let [p1, p2, p3, p4] = p.pressure_pa;
         let series = vec![p.force_n, p1, p2, p3, p4];
         if series.iter().all(|s| s.iter().all(|v| v.is_finite())) {

@@ -62,9 +62,7 @@ impl Law {
     }
 
     /// Whether the law changes only what an instrument shows. The displacement is an input: its instrument misleads the simulation.
-    /// Only what swings is treated so; the other laws of instruments are simulated, as the published figures were made.
     pub fn is_of_output_only(&self) -> bool {
-        let is_input = self.place == LawPlace::InstrumentDisplacement;
-        self.depends_on == LawArgument::Phase && matches!(self.site, Site::Sensor(_)) && !is_input
+        matches!(self.site, Site::Sensor(_)) && self.place != LawPlace::InstrumentDisplacement
     }
 }

@@ -12,6 +12,7 @@
 
 pub mod course;
 pub mod handling;
+mod lanes;
 pub mod measures;
 pub mod model_file;
 pub mod rig;

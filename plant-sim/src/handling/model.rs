@@ -24,7 +24,7 @@ use super::steering::SteeringState;
 use super::wheel::{ContactState, Tyre, WheelLoads, WheelMotion, WheelState, WheelTorque};
 use crate::road::Road;
 use crate::strut::{Strut, StrutOutput};
-use crate::vehicle::suspension::{Motion, StrutElement, SuspensionElement};
+use crate::vehicle::suspension::{Motion, StrutElement, Suspension, SuspensionElement};
 use crate::vehicle::{GRAVITY_M_S2, RideError, VehicleParameters};
 
 pub use snapshot::VehicleSnapshot;
@@ -39,7 +39,7 @@ pub struct HandlingModel<E> {
     tyres: Axles<Tyre>,
     probe: Probe,
     road: Arc<dyn Road>,
-    elements: Corners<E>,
+    suspension: Suspension<E>,
     step_s: f64,
     steps: u64,
     rest_height_m: f64,
@@ -81,7 +81,7 @@ impl HandlingVehicle {
 
     /// Outputs of the four struts.
     pub fn strut_output(&self) -> Corners<StrutOutput> {
-        self.elements.each_ref().map(StrutElement::output)
+        self.suspension.output()
     }
 }
 
@@ -140,7 +140,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
             },
             handling: handling.clone(),
             road,
-            elements,
+            suspension: Suspension::new(elements),
             step_s: parameters.solver.step_s,
             steps: 0,
             rest_height_m,
@@ -201,20 +201,21 @@ impl<E: SuspensionElement> HandlingModel<E> {
         (self.velocity, self.angular, self.axle_rates, self.spin, self.twist_rate) = kept;
 
         let places = self.places();
+        let mut motions = Corners::splat(Motion::default());
         for (index, axle) in self.masses.axles.iter() {
             let half = half_twist(index);
             let compression = axle.compression(&places[index], self.axles[index], half * self.twist);
             let rate = axle.compression_rate(&places[index], predicted.axles[index], half * predicted.twist);
             for ((side, compression_m), compression_rate_m_s) in Side::ALL.into_iter().zip(compression).zip(rate) {
                 let corner = index.corner(side);
-                let motion = Motion {
+                motions[corner] = Motion {
                     compression_m,
                     compression_rate_m_s,
                     duration_s: h,
                 };
-                self.elements[corner].advance(motion, signals[corner]);
             }
         }
+        self.suspension.advance(&motions, &signals);
         self.acceleration = self.accelerate(&predicted, controls);
         self.steering
             .give_way(&self.handling.steering, self.swivel_torque_n_m(), h);
@@ -275,6 +276,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
     fn accelerate(&mut self, velocities: &Velocities, controls: Controls) -> Accelerations {
         let places = self.places();
         let axes = self.wheel_axes(&places);
+        let pushes = self.suspension.force_n();
         let mut loads = Loads::default();
         let (stiffness, damping) = (
             self.masses.torsional_stiffness_n_m_rad,
@@ -283,7 +285,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
         loads.twist = -(stiffness * self.twist + damping * velocities.twist);
         for (index, place) in places.iter() {
             let half = half_twist(index);
-            let force = self.elements.of_axle(index).map(SuspensionElement::force_n);
+            let force = pushes.of_axle(index).map(|push| *push);
             let axle = &self.masses.axles[index];
             let (forces, torque) = axle.suspension(place, self.axles[index], half * self.twist, force);
             loads.axles[index] = forces;

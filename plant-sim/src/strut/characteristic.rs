@@ -1,5 +1,7 @@
 //! Tables as the solver reads them: a quantity over another, with its derivative.
 
+use crate::lanes::Number;
+
 /// A quantity over another, linear between points and beyond the ends.
 ///
 /// ```
@@ -14,13 +16,49 @@ pub struct Characteristic {
     lines: Box<[Line]>,
 }
 
-/// `value + slope * argument` for arguments above `from` and up to `to`.
+/// `value + slope * argument` for arguments above `from` and up to `to`; of one table, or of several side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Line {
-    from: f64,
-    to: f64,
-    value: f64,
-    slope: f64,
+pub(super) struct Line<N = f64> {
+    from: N,
+    to: N,
+    value: N,
+    slope: N,
+}
+
+impl<N: Number> Line<N> {
+    /// Where an argument belongs to the line.
+    #[inline(always)]
+    pub fn holds(&self, argument: N) -> N::Mask {
+        argument.above(self.from) & argument.up_to(self.to)
+    }
+
+    /// Value and derivative at an argument that belongs to the line.
+    #[inline(always)]
+    pub fn at(&self, argument: N) -> (N, N) {
+        (self.value + self.slope * argument, self.slope)
+    }
+
+    /// The lines that several tables read at segments that they remember, one table in each lane; `like` is any number of their kind.
+    #[inline(always)]
+    pub fn remembered(tables: &N::Each<Characteristic>, segments: &N::Each<usize>, like: N) -> Self {
+        let line = |lane: usize| tables.as_ref()[lane].remembered(segments.as_ref()[lane]);
+        Self {
+            from: like.gather(|lane| line(lane).from),
+            to: like.gather(|lane| line(lane).to),
+            value: like.gather(|lane| line(lane).value),
+            slope: like.gather(|lane| line(lane).slope),
+        }
+    }
+
+    /// The lines to which arguments belong, and their segments.
+    #[cold]
+    #[inline(never)]
+    pub fn found(tables: &N::Each<Characteristic>, segments: &mut N::Each<usize>, argument: N) -> Self {
+        for (lane, (table, segment)) in tables.as_ref().iter().zip(segments.as_mut()).enumerate() {
+            *segment = table.search(argument.lane(lane));
+        }
+        Self::remembered(tables, segments, argument)
+    }
 }
 
 impl Characteristic {
@@ -53,14 +91,13 @@ impl Characteristic {
     /// other, so the search is usually over before it begins. The result does not depend on it.
     #[inline(always)]
     pub fn at(&self, argument: f64, segment: &mut usize) -> (f64, f64) {
-        let line = match self.lines.get(*segment) {
-            Some(line) if argument > line.from && argument <= line.to => line,
+        match self.lines.get(*segment) {
+            Some(line) if line.holds(argument) => line.at(argument),
             _ => {
                 *segment = self.search(argument);
-                &self.lines[*segment]
+                self.lines[*segment].at(argument)
             }
-        };
-        (line.value + line.slope * argument, line.slope)
+        }
     }
 
     /// Value at an argument, where neither derivative nor neighbourhood matter.
@@ -70,12 +107,10 @@ impl Characteristic {
         self.at(argument, &mut 0).0
     }
 
-    /// Whether an argument lies on the segment that [`Characteristic::at`] remembered.
+    /// The line of a segment that was remembered, and the first one where another table remembered it.
     #[inline(always)]
-    pub(super) fn on_segment(&self, argument: f64, segment: usize) -> bool {
-        self.lines
-            .get(segment)
-            .is_some_and(|line| argument > line.from && argument <= line.to)
+    fn remembered(&self, segment: usize) -> &Line {
+        self.lines.get(segment).unwrap_or(&self.lines[0])
     }
 
     #[cold]

@@ -10,6 +10,7 @@ use oleo_interface::Absolute;
 
 use super::nitrogen::Nitrogen;
 use super::terms::EnergyStep;
+use crate::lanes::{Mask, Number};
 
 /// Specific gas constant of nitrogen, J/kg/K (recordings README).
 pub const NITROGEN_R_J_KG_K: f64 = 296.8;
@@ -18,11 +19,11 @@ pub const NITROGEN_CV_J_KG_K: f64 = 743.0;
 
 /// Volume and temperature of a gas charge.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct GasState {
+pub struct GasState<N = f64> {
     /// Volume of the gas, m3.
-    pub volume_m3: f64,
+    pub volume_m3: N,
     /// Temperature of the gas, K.
-    pub temperature_k: f64,
+    pub temperature_k: N,
 }
 
 /// A gas charge: what does not change while the strut works.
@@ -37,16 +38,16 @@ pub struct GasState {
 /// assert!((gas.pressure(half).pa() - 8.0e6).abs() < 1e-6);
 /// ```
 #[derive(Debug, Clone)]
-pub struct Gas {
-    mass_kg: f64,
-    ambient_k: f64,
+pub struct Gas<N: Number = f64> {
+    mass_kg: N,
+    ambient_k: N,
     /// Inverse of the thermal time constant, 1/s; none: isothermal.
-    cooling_rate_1_s: Option<f64>,
-    real: Option<Nitrogen>,
-    gas_constant: f64,
-    inverse_heat_capacity: f64,
+    cooling_rate_1_s: Option<N>,
+    real: Option<N::Each<Nitrogen>>,
+    gas_constant: N,
+    inverse_heat_capacity: N,
     /// The volume below which a state makes no sense; the gas law is continued by its tangent there.
-    least_volume_m3: f64,
+    least_volume_m3: N,
 }
 
 impl Gas {
@@ -71,7 +72,7 @@ impl Gas {
             cooling_rate_1_s: time_constant_s.map(|tau| 1.0 / tau),
             gas_constant: real.as_ref().map_or(NITROGEN_R_J_KG_K, Nitrogen::gas_constant),
             inverse_heat_capacity: 1.0 / (mass_kg * NITROGEN_CV_J_KG_K),
-            real,
+            real: real.map(|gas| [gas]),
             least_volume_m3: 0.02 * volume_m3,
         }
     }
@@ -87,7 +88,7 @@ impl Gas {
     pub fn volume_at(&self, pressure: Absolute<f64>) -> f64 {
         let density = match &self.real {
             None => pressure.pa() / (NITROGEN_R_J_KG_K * self.ambient_k),
-            Some(gas) => gas.density(pressure, self.ambient_k),
+            Some([gas]) => gas.density(pressure, self.ambient_k),
         };
         self.mass_kg / density
     }
@@ -97,66 +98,61 @@ impl Gas {
     pub fn pressure(&self, state: GasState) -> Absolute<f64> {
         match &self.real {
             None => Absolute(self.mass_kg * NITROGEN_R_J_KG_K * state.temperature_k / state.volume_m3),
-            Some(gas) => gas.state(self.mass_kg / state.volume_m3, state.temperature_k).pressure,
+            Some([gas]) => gas.state(self.mass_kg / state.volume_m3, state.temperature_k).pressure,
         }
     }
 
+    /// The charges of several accumulators side by side, `like` any number of their kind; none where they differ in kind: cooled or
+    /// not, real or ideal.
+    pub fn abreast<N: Number>(gases: &N::Each<&Self>, like: N) -> Option<Gas<N>> {
+        let all = gases.as_ref();
+        let of = |value: fn(&Self) -> f64| like.gather(|lane| value(all[lane]));
+        let same = |kind: fn(&Self) -> bool| all.iter().all(|gas| kind(gas) == kind(all[0]));
+        let alike = same(|gas| gas.cooling_rate_1_s.is_some()) && same(|gas| gas.real.is_some());
+        alike.then(|| Gas {
+            mass_kg: of(|gas| gas.mass_kg),
+            ambient_k: of(|gas| gas.ambient_k),
+            cooling_rate_1_s: (all[0].cooling_rate_1_s).map(|_| of(|gas| gas.cooling_rate_1_s.unwrap_or_default())),
+            real: N::each_of(|lane| all[lane].real.as_ref().map(|[gas]| gas.clone())),
+            gas_constant: of(|gas| gas.gas_constant),
+            inverse_heat_capacity: of(|gas| gas.inverse_heat_capacity),
+            least_volume_m3: of(|gas| gas.least_volume_m3),
+        })
+    }
+}
+
+impl<N: Number> Gas<N> {
     /// Make `real` fit for a step of `duration_s` (s) from `base` with about `flow` (m3/s). It is looked up anew where the
     /// gas has moved by two per cent or four kelvin since the last time: within that, the real gas's curvature is below 1e-5
     /// of the pressure.
     #[inline(always)]
-    pub fn refresh(&self, real: &mut Departure, base: GasState, duration_s: f64, flow: f64) {
-        if self.real.is_some() {
-            let free = base.volume_m3 - duration_s * flow;
-            let volume = if free > self.least_volume_m3 {
-                free
-            } else {
-                self.least_volume_m3
-            };
+    pub fn refresh(&self, real: &mut Departure<N>, base: GasState<N>, duration_s: N, flow: N) {
+        if let Some(gases) = &self.real {
+            let volume = (base.volume_m3 - duration_s * flow).at_least(self.least_volume_m3);
             let density = self.mass_kg / volume;
-            if (density - real.density).abs() > 2e-2 * density || (base.temperature_k - real.temperature_k).abs() > 4.0
-            {
-                *real = self.departure(density, base.temperature_k);
+            let moved = (density - real.density).abs().above(density * 2e-2)
+                | (base.temperature_k - real.temperature_k).abs().above(density.of(4.0));
+            if moved.any() {
+                *real = real.looked_up(gases, moved, density, base.temperature_k);
             }
-        }
-    }
-
-    /// What the real gas adds to the ideal law around a density and a temperature.
-    #[must_use]
-    pub fn departure(&self, density: f64, temperature_k: f64) -> Departure {
-        let Some(gas) = &self.real else {
-            return Departure::default();
-        };
-        let (excess, by_density, by_temperature) = gas.excess(density, temperature_k);
-        Departure {
-            density,
-            temperature_k,
-            excess,
-            by_density,
-            by_temperature,
         }
     }
 
     /// One implicit step of `duration_s` with a flow of oil into the accumulator, `flow` (m3/s), from `base`.
     #[inline(always)]
     #[must_use]
-    pub fn implicit(&self, base: GasState, duration_s: f64, flow: f64, real: &Departure) -> GasStep {
+    pub fn implicit(&self, base: GasState<N>, duration_s: N, flow: N, real: &Departure<N>) -> GasStep<N> {
         let free = base.volume_m3 - duration_s * flow;
         // Below the least volume the pressure goes on rising linearly, so that a hopeless trial (more oil than the
-        // accumulator holds) still has a solution instead of a division by zero. Comparisons, not `f64::max`, which costs four times
-        // as much for its care of NaN.
-        let volume_m3 = if free > self.least_volume_m3 {
-            free
-        } else {
-            self.least_volume_m3
-        };
+        // accumulator holds) still has a solution instead of a division by zero.
+        let volume_m3 = free.at_least(self.least_volume_m3);
         let excess_volume = volume_m3 - free;
-        let inverse_volume = 1.0 / volume_m3;
+        let inverse_volume = volume_m3.recip();
         let density = self.mass_kg * inverse_volume;
         // (dp/dT) at constant volume, Pa/K.
         let heating = density * (self.gas_constant + density * real.by_temperature);
         let (temperature_k, temperature_by_flow) = match self.cooling_rate_1_s {
-            None => (self.ambient_k, 0.0),
+            None => (self.ambient_k, flow.of(0.0)),
             Some(rate) => {
                 let step = EnergyStep {
                     duration_s,
@@ -176,13 +172,13 @@ impl Gas {
             + real.by_temperature * (temperature_k - real.temperature_k);
         let rt = self.gas_constant * temperature_k;
         let p = density * (rt + density * f);
-        let stiffening = rt + density * (2.0 * f + density * real.by_density);
+        let stiffening = rt + density * (f * 2.0 + density * real.by_density);
         GasStep {
             state: GasState {
                 volume_m3,
                 temperature_k,
             },
-            pressure: Absolute(p * (1.0 + excess_volume * inverse_volume)),
+            pressure: Absolute(p * (excess_volume * inverse_volume + 1.0)),
             pressure_by_flow: heating * temperature_by_flow + stiffening * density * duration_s * inverse_volume,
             temperature_by_flow,
         }
@@ -191,26 +187,75 @@ impl Gas {
 
 /// Result of an implicit step.
 #[derive(Debug, Clone, Copy)]
-pub struct GasStep {
+pub struct GasStep<N = f64> {
     /// State at its end.
-    pub state: GasState,
+    pub state: GasState<N>,
     /// Pressure at its end.
-    pub pressure: Absolute<f64>,
+    pub pressure: Absolute<N>,
     /// Its derivative by the flow, Pa s/m3.
-    pub pressure_by_flow: f64,
+    pub pressure_by_flow: N,
     /// Derivative of the temperature by the flow, K s/m3.
-    pub temperature_by_flow: f64,
+    pub temperature_by_flow: N,
 }
 
 /// `p = rho R T + rho^2 f`, `f` linear around a state: exact for the ideal gas (`f = 0`), and for the real one to the square
 /// of the change within a step, which the next step does not inherit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct Departure {
-    density: f64,
-    temperature_k: f64,
-    excess: f64,
-    by_density: f64,
-    by_temperature: f64,
+pub struct Departure<N = f64> {
+    density: N,
+    temperature_k: N,
+    excess: N,
+    by_density: N,
+    by_temperature: N,
+}
+
+impl<N: Number> Departure<N> {
+    /// What stands in a lane.
+    #[inline(always)]
+    pub(super) fn part(&self, lane: usize) -> Departure {
+        Departure {
+            density: self.density.lane(lane),
+            temperature_k: self.temperature_k.lane(lane),
+            excess: self.excess.lane(lane),
+            by_density: self.by_density.lane(lane),
+            by_temperature: self.by_temperature.lane(lane),
+        }
+    }
+
+    /// The same, but what the real gases of some lanes add is looked up around another density and temperature.
+    #[cold]
+    #[inline(never)]
+    fn looked_up(&self, gases: &N::Each<Nitrogen>, moved: N::Mask, density: N, temperature_k: N) -> Self {
+        let lane = |lane: usize| {
+            if !moved.lane(lane) {
+                return self.part(lane);
+            }
+            let (density, temperature_k) = (density.lane(lane), temperature_k.lane(lane));
+            let (excess, by_density, by_temperature) = gases.as_ref()[lane].excess(density, temperature_k);
+            Departure {
+                density,
+                temperature_k,
+                excess,
+                by_density,
+                by_temperature,
+            }
+        };
+        let lanes = N::each(lane);
+        Self::side_by_side(&N::each(|lane| &lanes.as_ref()[lane]), density)
+    }
+
+    /// Several side by side, `like` any number of their kind.
+    #[inline(always)]
+    pub(super) fn side_by_side(each: &N::Each<&Departure>, like: N) -> Self {
+        let each = each.as_ref();
+        Self {
+            density: like.gather_from(each, |d| d.density),
+            temperature_k: like.gather_from(each, |d| d.temperature_k),
+            excess: like.gather_from(each, |d| d.excess),
+            by_density: like.gather_from(each, |d| d.by_density),
+            by_temperature: like.gather_from(each, |d| d.by_temperature),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -227,7 +272,8 @@ mod tests {
         let mut p = 0.0;
         for _ in 0..steps {
             let flow = (from - to) / total_s;
-            let real = gas.departure(gas.mass_kg() / s.volume_m3, s.temperature_k);
+            let mut real = Departure::default();
+            gas.refresh(&mut real, s, 0.0, 0.0);
             let step = gas.implicit(s, h, flow, &real);
             (s, p) = (step.state, step.pressure.pa());
         }
@@ -271,7 +317,9 @@ mod tests {
                     volume_m3: 0.8e-4,
                     temperature_k: if tau.is_some() { 300.0 } else { 293.15 },
                 };
-                let at = |q: f64| gas.implicit(base, 1e-3, q, &gas.departure(gas.mass_kg() / base.volume_m3, 300.0));
+                let mut around = Departure::default();
+                gas.refresh(&mut around, base, 0.0, 0.0);
+                let at = |q: f64| gas.implicit(base, 1e-3, q, &around);
                 let slope = at(1e-3).pressure_by_flow;
                 let quotient = (at(1.001e-3).pressure - at(0.999e-3).pressure) / 2e-6;
                 assert!((slope / quotient - 1.0).abs() < 0.02, "{slope} {quotient}");

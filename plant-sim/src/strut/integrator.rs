@@ -1,9 +1,7 @@
 //! The strut in time: the integrator, which moves the network, the valves and the rod from step to step.
 //!
-//! Stiff by nature: the main chamber (about 1e-12 m3/Pa behind 1e8 to 4e9 Pa s/m3) settles in 0.1 to 4 ms, gas in seconds.
-//! Method: SDIRK2 (Alexander, SIAM J. Numer. Anal. 14(6), 1977), second order, L-stable, stiffly accurate, two equal
-//! stages of `gamma h`, `gamma = 1 - 1/sqrt 2`. Each stage is solved by the network. Steps end at kinks of the valves'
-//! movements, so no stage integrates across one.
+//! Steps end at kinks of the valves' movements, so that no stage integrates across one. What is stiff is solved one level down, by
+//! [`hydraulics`](super::hydraulics).
 
 mod snapshot;
 
@@ -11,23 +9,21 @@ use oleo_interface::{StrutValves, Valve};
 
 use crate::model_file::{Checked, InvalidValue};
 
+use super::abreast::StrutMove;
 use super::characteristic::Characteristic;
 use super::gas::GasState;
+use super::hydraulics::{Flowing, GAMMA, Hydraulics, Step};
 use super::model::StrutModel;
 use super::motion::{Cubic, Segment};
-use super::network::{LastSolution, Network, StageEnd, State};
+use super::network::LastSolution;
 use super::rod_course::RodCourse;
 use super::rod_forces::RodForces;
 use super::rod_state::{Acceleration, RodState};
-use super::terms::{
-    DampingFade, LawArgument, LawPlace, Mount, ValveTransition, law_at, longest_step_s, total_response_s,
-};
+use super::terms::{LawArgument, LawPlace, ValveTransition, law_at, longest_step_s, total_response_s};
 use super::valve::ValveMotion;
 
 pub use snapshot::StrutSnapshot;
 
-/// `1 - 1/sqrt 2`.
-const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 /// Longest step while something moves fast, s.
 const FAST_STEP_S: f64 = 2.5e-3;
 /// Longest step while a valve moves, s: the openings are followed, not only their ends.
@@ -36,6 +32,27 @@ const VALVE_STEP_S: f64 = 2e-3;
 const LEAST_STEP_S: f64 = 1e-6;
 /// Below this speed and change of speed a step may be as long as the recording's sampling interval, m/s.
 const SLOW_M_S: f64 = 0.02;
+
+/// A fraction of an interval that is not worth a step.
+const NOTHING_LEFT: f64 = 1e-9;
+
+/// An interval over which a strut moves, and how far it has come.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Interval {
+    start_s: f64,
+    duration_s: f64,
+    segment: Segment,
+    motion: Cubic,
+    longest_step_s: f64,
+    done_s: f64,
+}
+
+impl Interval {
+    #[inline(always)]
+    pub fn is_over(&self) -> bool {
+        self.done_s / self.duration_s > 1.0 - NOTHING_LEFT
+    }
+}
 
 /// What the instruments of one strut would read without noise.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -62,10 +79,8 @@ pub struct StrutOutput {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Strut {
-    network: Network,
+    pub(super) hydraulics: Hydraulics,
     rod: RodForces,
-    mount: Mount,
-    fade: Option<DampingFade>,
     response_polynomial_s: [f64; 3],
     /// Unmodelled time that is added to the response, s, over the pressure difference.
     response_law: Option<Characteristic>,
@@ -80,12 +95,7 @@ pub struct Strut {
     actuator_m: f64,
     speed_m_s: f64,
     acceleration: Acceleration,
-    /// Displacement that the speeds given to the network add up to. The difference to the true one is made good in the
-    /// next step, so that no oil is gained or lost over an hour.
-    supplied_m: f64,
-    state: State,
-    last: LastSolution,
-    pressure_pa: [f64; 4],
+    pub(super) flowing: Flowing,
     valves: StrutValves<ValveMotion>,
     /// What the rod goes through, where somebody asked for it.
     course: Option<Box<RodCourse>>,
@@ -121,13 +131,11 @@ impl Strut {
     ) -> Result<Self, InvalidValue> {
         model.check()?;
         let effects = &model.effects;
-        let network = Network::of(model);
-        let state = network.at_rest(displacement_m, model.gas.temperature_k);
+        let hydraulics = Hydraulics::of(model);
+        let state = hydraulics.network.at_rest(displacement_m, model.gas.temperature_k);
         Ok(Self {
-            network,
+            hydraulics,
             rod: RodForces::of(effects),
-            mount: (effects.mount_compliance.as_ref()).map_or_else(Mount::default, |mount| mount.mount()),
-            fade: effects.damping_fade.clone(),
             response_polynomial_s: model.response_polynomial_s(),
             response_law: law_at(&effects.unlisted, LawPlace::ValveTiming, LawArgument::PressureDrop),
             movement_law: law_at(&effects.unlisted, LawPlace::ValveMovement, LawArgument::PressureDrop),
@@ -138,10 +146,12 @@ impl Strut {
             actuator_m: displacement_m,
             speed_m_s: 0.0,
             acceleration: Acceleration::default(),
-            supplied_m: displacement_m,
-            state,
-            last: LastSolution::default(),
-            pressure_pa: [state.p1_pa; 4],
+            flowing: Flowing {
+                state,
+                last: LastSolution::default(),
+                pressure_pa: [state.p1_pa; 4],
+                supplied_m: displacement_m,
+            },
             valves: signals.map(ValveMotion::at_rest),
             course: None,
         })
@@ -174,36 +184,97 @@ impl Strut {
         duration_s: f64,
         signals: StrutValves<bool>,
     ) -> StrutOutput {
-        self.switch(signals);
-        let start_s = self.time_s;
         let segment = Segment {
             to_m: displacement_m,
             from_m_s,
             to_m_s,
         };
-        let motion = Cubic::through(self.actuator_m, &segment, duration_s);
-        let fast = from_m_s.abs() > SLOW_M_S || to_m_s.abs() > SLOW_M_S || (to_m_s - from_m_s).abs() > SLOW_M_S;
-        let mut done = 0.0;
-        loop {
-            let h = self.step_length(
-                start_s + done,
-                duration_s - done,
-                if fast { FAST_STEP_S } else { duration_s },
-            );
-            let (from, to) = (done / duration_s, (done + h) / duration_s);
-            let ends = to > 1.0 - 1e-9;
-            let middle = motion.at(from + GAMMA * (to - from));
-            let end = if ends { (displacement_m, to_m_s) } else { motion.at(to) };
-            self.step(h, middle, end);
-            done += h;
-            if ends {
-                break;
-            }
+        self.advance_by(&StrutMove {
+            segment,
+            duration_s,
+            signals,
+        })
+    }
+
+    /// Makes a move.
+    pub fn advance_by(&mut self, by: &StrutMove) -> StrutOutput {
+        let mut interval = self.begin(by);
+        while !interval.is_over() {
+            let step = self.next_step(&interval);
+            self.hydraulics.step(&mut self.flowing, &step);
+            self.conclude(&step, &mut interval);
         }
-        self.time_s = start_s + duration_s;
-        self.actuator_m = displacement_m;
+        self.finish(&interval)
+    }
+
+    /// Begins to make a move.
+    #[inline(always)]
+    pub(super) fn begin(&mut self, by: &StrutMove) -> Interval {
+        self.switch(by.signals);
+        let StrutMove {
+            segment, duration_s, ..
+        } = *by;
+        let (from_m_s, to_m_s) = (segment.from_m_s, segment.to_m_s);
+        let fast = from_m_s.abs() > SLOW_M_S || to_m_s.abs() > SLOW_M_S || (to_m_s - from_m_s).abs() > SLOW_M_S;
+        Interval {
+            start_s: self.time_s,
+            duration_s,
+            segment,
+            motion: Cubic::through(self.actuator_m, &segment, duration_s),
+            longest_step_s: if fast { FAST_STEP_S } else { duration_s },
+            done_s: 0.0,
+        }
+    }
+
+    /// The next step of an interval that is not over.
+    #[inline(always)]
+    pub(super) fn next_step(&self, interval: &Interval) -> Step {
+        let Interval { duration_s, done_s, .. } = *interval;
+        let h = self.step_length(interval.start_s + done_s, duration_s - done_s, interval.longest_step_s);
+        let (from, to) = (done_s / duration_s, (done_s + h) / duration_s);
+        let (middle_m, middle_m_s) = interval.motion.at(from + GAMMA * (to - from));
+        let (end_m, end_m_s) = if to > 1.0 - NOTHING_LEFT {
+            (interval.segment.to_m, interval.segment.to_m_s)
+        } else {
+            interval.motion.at(to)
+        };
+        let now_s = self.time_s;
+        Step {
+            begins_s: now_s,
+            duration_s: h,
+            from_m: self.actuator_m,
+            middle: [middle_m, middle_m_s],
+            end: [end_m, end_m_s],
+            // Sampled a nanosecond before the end: an opening that steps there belongs to the next step.
+            opening: [self.openings_at(now_s + GAMMA * h), self.openings_at(now_s + h - 1e-9)],
+            friction_n: self.rod.friction_n(),
+        }
+    }
+
+    /// Lets time, rod and course follow a step that the hydraulics have taken.
+    #[inline(always)]
+    pub(super) fn conclude(&mut self, step: &Step, interval: &mut Interval) {
+        let [end_m, end_m_s] = step.end;
+        let stroke_m = end_m - self.actuator_m;
+        self.time_s = step.begins_s + step.duration_s;
+        self.actuator_m = end_m;
+        self.speed_m_s = end_m_s;
+        let rod = self.rod_state();
+        self.rod.follow(stroke_m, step.duration_s, &rod);
+        if let Some(course) = &mut self.course {
+            course.push_step(stroke_m, step.duration_s, rod);
+        }
+        interval.done_s += step.duration_s;
+    }
+
+    /// Ends an interval that is over.
+    #[inline(always)]
+    pub(super) fn finish(&mut self, interval: &Interval) -> StrutOutput {
+        let Segment { to_m, from_m_s, to_m_s } = interval.segment;
+        self.time_s = interval.start_s + interval.duration_s;
+        self.actuator_m = to_m;
         self.speed_m_s = to_m_s;
-        self.acceleration.follow(to_m_s - from_m_s, duration_s);
+        self.acceleration.follow(to_m_s - from_m_s, interval.duration_s);
         self.output()
     }
 
@@ -211,8 +282,15 @@ impl Strut {
     /// valve's movement.
     fn step_length(&self, now_s: f64, left_s: f64, limit_s: f64) -> f64 {
         let valves = || self.valves.iter().map(|(_, valve)| valve);
-        let kink_s = valves().fold(f64::INFINITY, |t, valve| t.min(valve.next_kink_s(now_s)));
         let limit_s = limit_s.min(self.longest_step_s);
+        if valves().all(|valve| valve.has_settled(now_s)) {
+            return if left_s <= limit_s {
+                left_s
+            } else {
+                left_s / (left_s / limit_s).ceil()
+            };
+        }
+        let kink_s = valves().fold(f64::INFINITY, |t, valve| t.min(valve.next_kink_s(now_s)));
         let limit_s = if valves().any(|valve| valve.moving(now_s)) {
             limit_s.min(VALVE_STEP_S)
         } else {
@@ -233,7 +311,7 @@ impl Strut {
 
     /// Let edges of the switching signals begin their valve's movement.
     fn switch(&mut self, signals: StrutValves<bool>) {
-        let [p1, p2, p3, p4] = self.pressure_pa;
+        let [p1, p2, p3, p4] = self.flowing.pressure_pa;
         let across = StrutValves::new(p1 - p2, p1 - p3, p3 - p4);
         for valve in Valve::ALL {
             if signals[valve] != self.valves[valve].signal() {
@@ -248,51 +326,6 @@ impl Strut {
                     self.valves[valve].take(law.value(across[valve].abs()), self.time_s);
                 }
             }
-        }
-    }
-
-    /// One step of `h` seconds; `middle` and `end` are displacement and speed of the actuator at the ends of its stages.
-    fn step(&mut self, h: f64, middle: (f64, f64), end: (f64, f64)) {
-        let area_m2 = self.network.chamber.area_m2;
-        let hg = GAMMA * h;
-        // What the speeds have not supplied so far is supplied evenly over this step.
-        let owed_m_s = (self.actuator_m - self.supplied_m) / h;
-        // The mount bends under what the force exceeds the static one.
-        let over_pa = self.state.p1_pa - self.network.chamber.static_pa;
-        let bent_m = self.mount.deflection_m(self.rod.friction_n() + area_m2 * over_pa);
-        let now_s = self.time_s;
-        let mut at = StageEnd {
-            duration_s: hg,
-            since_last_s: hg,
-            time_s: now_s + hg,
-            displacement_m: middle.0 - bent_m,
-            speed_m_s: middle.1 + owed_m_s,
-            opening: self.openings_at(now_s + hg),
-        };
-        self.supplied_m += h * (1.0 - GAMMA) * at.speed_m_s;
-        let first = self.network.stage(&self.state, &at, &mut self.last);
-        let base = self.state.blend(&first.state, (1.0 - GAMMA) / GAMMA);
-        at.since_last_s = h - hg;
-        at.time_s = now_s + h;
-        at.displacement_m = end.0 - bent_m;
-        at.speed_m_s = end.1 + owed_m_s;
-        // Sampled a nanosecond before the end: an opening that steps there belongs to the next step.
-        at.opening = self.openings_at(now_s + h - 1e-9);
-        self.supplied_m += hg * at.speed_m_s;
-        let second = self.network.stage(&base, &at, &mut self.last);
-        self.state = second.state;
-        self.pressure_pa = second.pressure_pa;
-        if let Some(fade) = &self.fade {
-            self.state.heat_j = self.state.heat_j.map(|energy_j| fade.cooled(energy_j, h));
-        }
-        let stroke_m = end.0 - self.actuator_m;
-        self.time_s = now_s + h;
-        self.actuator_m = end.0;
-        self.speed_m_s = end.1;
-        let rod = self.rod_state();
-        self.rod.follow(stroke_m, h, &rod);
-        if let Some(course) = &mut self.course {
-            course.push_step(stroke_m, h, rod);
         }
     }
 
@@ -319,13 +352,13 @@ impl Strut {
     }
 
     fn rod_state(&self) -> RodState {
-        let [p1_pa, ..] = self.pressure_pa;
+        let [p1_pa, ..] = self.flowing.pressure_pa;
         RodState {
             displacement_m: self.actuator_m,
             speed_m_s: self.speed_m_s,
             acceleration: self.acceleration,
             p1_pa,
-            oil_force_n: self.network.chamber.area_m2 * p1_pa,
+            oil_force_n: self.hydraulics.network.chamber.area_m2 * p1_pa,
             time_s: self.time_s,
         }
     }
@@ -335,7 +368,7 @@ impl Strut {
     pub fn output(&self) -> StrutOutput {
         StrutOutput {
             force_n: self.rod.total_n(&self.rod_state()),
-            pressure_pa: self.pressure_pa,
+            pressure_pa: self.flowing.pressure_pa,
         }
     }
 
@@ -354,12 +387,12 @@ impl Strut {
     /// Flows into path 1 and 2, m3/s, out of the main chamber positive.
     #[must_use]
     pub fn flow_m3_s(&self) -> [f64; 2] {
-        self.last.flow
+        self.flowing.last.flow
     }
 
     /// Gas states of accumulators 1 and 2.
     #[must_use]
     pub fn gas(&self) -> [GasState; 2] {
-        self.state.gas
+        self.flowing.state.gas
     }
 }

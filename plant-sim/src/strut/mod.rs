@@ -27,18 +27,22 @@
 //! | `model` | the tables of `model.toml`, their limits |
 //! | `terms` | the vocabulary of effects: one file for each, with struct, limits, equation, source, tests |
 //! | `network` | the hydraulic network and its solver: one implicit stage |
+//! | `hydraulics` | a step of oil, gas and mount, of one strut or of several side by side |
 //! | `integrator` | the strut in time: steps, valves' edges, the rod |
+//! | `abreast` | four struts that are advanced together, in the vectors of the processor |
 //! | `valve`, `rod_forces`, `rod_state`, `friction` | movement of a valve; forces between rod and cylinder, and what they depend on |
 //! | `gas`, `nitrogen`, `orifice`, `damper`, `characteristic` | laws of the elements |
 //! | `instruments` | what faulty instruments make of the columns |
 //! | `motion`, `smoothing` | a motion from sample to sample, and how a recorded displacement becomes one |
 //! | `replay` | a recording's inputs through a model |
 
+mod abreast;
 mod characteristic;
 mod damper;
 mod flow_path;
 mod friction;
 mod gas;
+mod hydraulics;
 mod instruments;
 mod integrator;
 mod model;
@@ -55,6 +59,7 @@ mod smoothing;
 mod terms;
 mod valve;
 
+pub use abreast::{Abreast, StrutMove};
 pub use characteristic::Characteristic;
 pub use damper::DamperTable;
 pub use flow_path::FlowPath;

@@ -3,25 +3,27 @@
 //! `Q = c dp / sqrt(|dp| + p_t)` (recordings README): the square-root law `Q = c sqrt(dp)` made smooth and laminar
 //! below the transition pressure `p_t`, so that it has a finite slope at rest. `c` in m3/s/sqrt(Pa).
 
+use crate::lanes::Number;
+
 /// `dp / sqrt(|dp| + p_t)` and its derivative; flow per unit of flow coefficient.
-#[inline]
+#[inline(always)]
 #[must_use]
-pub fn unit_flow(drop_pa: f64, transition_pa: f64) -> (f64, f64) {
+pub fn unit_flow<N: Number>(drop_pa: N, transition_pa: N) -> (N, N) {
     let a = drop_pa.abs() + transition_pa;
     // One division for both: 1 / a^(3/2).
-    let steep = 1.0 / (a * a.sqrt());
-    (drop_pa * a * steep, (0.5 * drop_pa.abs() + transition_pa) * steep)
+    let steep = (a * a.sqrt()).recip();
+    (drop_pa * a * steep, (drop_pa.abs() * 0.5 + transition_pa) * steep)
 }
 
 /// The pressure drop that drives `flow / coefficient = q`, and its derivative by `q`: the root of
 /// `dp^2 = q^2 (|dp| + p_t)` with the sign of `q`.
-#[inline]
+#[inline(always)]
 #[must_use]
-pub fn unit_drop(q: f64, transition_pa: f64) -> (f64, f64) {
+pub fn unit_drop<N: Number>(q: N, transition_pa: N) -> (N, N) {
     // |dp| = q (q + r) / 2 with r = sqrt(q^2 + 4 p_t), whose derivative by q is q / r; at q = 0 the slope is sqrt(p_t).
     let size = q.abs();
-    let root = (q * q + 4.0 * transition_pa).sqrt();
-    (0.5 * q * (size + root), size + 0.5 * (root + q * q / root))
+    let root = (q * q + transition_pa * 4.0).sqrt();
+    (q * 0.5 * (size + root), size + (root + q * q / root) * 0.5)
 }
 
 #[cfg(test)]

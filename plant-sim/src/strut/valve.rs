@@ -100,6 +100,13 @@ impl ValveMotion {
         }
     }
 
+    /// Whether the valve has done with its last movement at a time, and neither moves nor is about to.
+    #[inline]
+    #[must_use]
+    pub fn has_settled(&self, time_s: f64) -> bool {
+        time_s >= self.ends_s
+    }
+
     /// Whether the valve moves at a time.
     #[inline]
     #[must_use]

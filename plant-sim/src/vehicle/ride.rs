@@ -21,7 +21,7 @@ use oleo_interface::{Axle, Corner, Corners, Side};
 use super::contact::{Contact, Tyre};
 use super::equations::{Coordinates, Equations};
 use super::parameters::VehicleParameters;
-use super::suspension::{CoilElement, Motion, StrutElement, SuspensionElement, tension_n};
+use super::suspension::{CoilElement, Motion, StrutElement, Suspension, SuspensionElement, tension_n};
 use crate::road::Road;
 use crate::strut::{Strut, StrutOutput};
 
@@ -92,7 +92,7 @@ const STATIC_LOAD_TOLERANCE: f64 = 0.25;
 /// The 7-degree-of-freedom ride model on any suspension.
 pub struct RideModel<E> {
     equations: Equations,
-    elements: Corners<E>,
+    suspension: Suspension<E>,
     contacts: Corners<Contact>,
     tyres: Corners<Tyre>,
     step_s: f64,
@@ -130,7 +130,7 @@ impl RideVehicle {
 
     /// Force and pressures of the four struts.
     pub fn strut_output(&self) -> Corners<StrutOutput> {
-        self.elements.each_ref().map(StrutElement::output)
+        self.suspension.output()
     }
 }
 
@@ -190,7 +190,7 @@ impl<E: SuspensionElement> RideModel<E> {
         });
         let mut model = Self {
             equations,
-            elements,
+            suspension: Suspension::new(elements),
             contacts,
             tyres,
             step_s: parameters.solver.step_s,
@@ -227,10 +227,9 @@ impl<E: SuspensionElement> RideModel<E> {
 
         let extension = self.equations.extension(&self.q);
         let extension_rate = self.equations.extension(&predicted);
-        for (corner, element) in self.elements.iter_mut() {
-            let motion = Motion::from_extension(extension[corner], extension_rate[corner], self.step_s);
-            element.advance(motion, signals[corner]);
-        }
+        let motions =
+            Corners::from_fn(|corner| Motion::from_extension(extension[corner], extension_rate[corner], self.step_s));
+        self.suspension.advance(&motions, &signals);
         self.roll_wheels(&predicted);
         self.acceleration = self.accelerate(&predicted);
         self.rate = rate_half.plus(half_s, self.acceleration);
@@ -258,7 +257,7 @@ impl<E: SuspensionElement> RideModel<E> {
     }
 
     fn accelerate(&self, rate: &Coordinates) -> Coordinates {
-        let tension = self.elements.each_ref().map(|element| tension_n(element.force_n()));
+        let tension = self.suspension.force_n().map(tension_n);
         let wheel_force = self.wheels.map(|wheel| wheel.force_n);
         self.equations.acceleration(&self.q, rate, tension, wheel_force)
     }
@@ -303,12 +302,12 @@ impl<E: SuspensionElement> RideModel<E> {
 
     /// Force of the four suspension elements, N, compression positive.
     pub fn suspension_force_n(&self) -> Corners<f64> {
-        self.elements.each_ref().map(SuspensionElement::force_n)
+        self.suspension.force_n()
     }
 
     /// The four suspension elements.
     pub fn elements(&self) -> &Corners<E> {
-        &self.elements
+        self.suspension.elements()
     }
 
     /// Motion of the sprung mass.

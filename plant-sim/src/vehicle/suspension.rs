@@ -8,10 +8,10 @@ use oleo_interface::{Corners, StrutValves};
 use serde::{Deserialize, Serialize};
 
 use super::parameters::{BaselineParameters, VehicleParameters};
-use crate::strut::{Strut, StrutOutput, StrutSnapshot};
+use crate::strut::{Abreast, Segment, Strut, StrutMove, StrutOutput, StrutSnapshot};
 
 /// Motion of one corner's suspension over a step, compression positive.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Motion {
     /// Compression from the static position at the end of the step, m.
     pub compression_m: f64,
@@ -46,6 +46,76 @@ pub trait SuspensionElement {
     fn advance(&mut self, motion: Motion, signal: Self::Signal) -> f64;
     /// Present force, N, compression positive.
     fn force_n(&self) -> f64;
+    /// What four elements need to be advanced together, where that pays.
+    fn abreast(_elements: &Corners<Self>) -> Option<Abreast>
+    where
+        Self: Sized,
+    {
+        None
+    }
+    /// Moves four elements, which may be advanced together.
+    fn advance_all(
+        elements: &mut Corners<Self>,
+        _abreast: Option<&Abreast>,
+        motions: &Corners<Motion>,
+        signals: &Corners<Self::Signal>,
+    ) where
+        Self: Sized,
+    {
+        for (corner, element) in elements.iter_mut() {
+            element.advance(motions[corner], signals[corner]);
+        }
+    }
+}
+
+/// The four elements of a vehicle's suspension.
+#[derive(Debug, Clone)]
+pub struct Suspension<E> {
+    elements: Corners<E>,
+    abreast: Option<Abreast>,
+}
+
+impl<E: SuspensionElement> Suspension<E> {
+    /// A suspension of four elements.
+    pub fn new(elements: Corners<E>) -> Self {
+        let abreast = E::abreast(&elements);
+        Self { elements, abreast }
+    }
+
+    /// Moves the elements to the end of a step.
+    pub fn advance(&mut self, motions: &Corners<Motion>, signals: &Corners<E::Signal>) {
+        E::advance_all(&mut self.elements, self.abreast.as_ref(), motions, signals);
+    }
+
+    /// Present forces, N, compression positive.
+    pub fn force_n(&self) -> Corners<f64> {
+        self.elements.each_ref().map(SuspensionElement::force_n)
+    }
+
+    /// The elements.
+    pub fn elements(&self) -> &Corners<E> {
+        &self.elements
+    }
+}
+
+impl Suspension<StrutElement> {
+    /// Force and pressures of the struts at the end of the last step.
+    pub fn output(&self) -> Corners<StrutOutput> {
+        self.elements.each_ref().map(StrutElement::output)
+    }
+
+    /// The present state of the struts.
+    #[must_use]
+    pub fn snapshot(&self) -> Corners<StrutElementSnapshot> {
+        self.elements.each_ref().map(StrutElement::snapshot)
+    }
+
+    /// Puts the struts into a state that they, or others of the same models, were in.
+    pub fn restore(&mut self, kept: &Corners<StrutElementSnapshot>) {
+        for (corner, element) in self.elements.iter_mut() {
+            element.restore(&kept[corner]);
+        }
+    }
 }
 
 /// The two-stage hydropneumatic strut. Signals: `true` opens a valve.
@@ -80,6 +150,18 @@ impl StrutElement {
         &self.strut
     }
 
+    fn next_move(&self, motion: Motion, signals: StrutValves<bool>) -> StrutMove {
+        StrutMove {
+            segment: Segment {
+                to_m: motion.compression_m,
+                from_m_s: self.rate_m_s,
+                to_m_s: motion.compression_rate_m_s,
+            },
+            duration_s: motion.duration_s,
+            signals,
+        }
+    }
+
     /// The present state.
     #[must_use]
     pub fn snapshot(&self) -> StrutElementSnapshot {
@@ -108,19 +190,39 @@ impl SuspensionElement for StrutElement {
     type Signal = StrutValves<bool>;
 
     fn advance(&mut self, motion: Motion, signal: StrutValves<bool>) -> f64 {
-        self.output = self.strut.advance_with_speeds(
-            motion.compression_m,
-            self.rate_m_s,
-            motion.compression_rate_m_s,
-            motion.duration_s,
-            signal,
-        );
+        self.output = self.strut.advance_by(&self.next_move(motion, signal));
         self.rate_m_s = motion.compression_rate_m_s;
         self.output.force_n
     }
 
     fn force_n(&self) -> f64 {
         self.output.force_n
+    }
+
+    fn abreast(elements: &Corners<Self>) -> Option<Abreast> {
+        Some(Abreast::of(
+            &elements.each_ref().map(|element| &element.strut).into_array(),
+        ))
+    }
+
+    fn advance_all(
+        elements: &mut Corners<Self>,
+        abreast: Option<&Abreast>,
+        motions: &Corners<Motion>,
+        signals: &Corners<StrutValves<bool>>,
+    ) {
+        let Some(abreast) = abreast else {
+            return elements.iter_mut().for_each(|(corner, element)| {
+                element.advance(motions[corner], signals[corner]);
+            });
+        };
+        let moves = Corners::from_fn(|corner| elements[corner].next_move(motions[corner], signals[corner]));
+        let struts = elements.each_mut().map(|element| &mut element.strut).into_array();
+        let outputs = Corners::from_array(abreast.advance(struts, moves.as_array()));
+        for (corner, element) in elements.iter_mut() {
+            element.output = outputs[corner];
+            element.rate_m_s = motions[corner].compression_rate_m_s;
+        }
     }
 }
 

@@ -102,12 +102,12 @@ impl<E: SuspensionElement> HandlingModel<E> {
 
     /// Force of the four suspension elements, N, compression positive.
     pub fn suspension_force_n(&self) -> Corners<f64> {
-        self.elements.each_ref().map(SuspensionElement::force_n)
+        self.suspension.force_n()
     }
 
     /// The four suspension elements.
     pub fn elements(&self) -> &Corners<E> {
-        &self.elements
+        self.suspension.elements()
     }
 
     /// What an accelerometer at a place of the body reads; the place in body axes (ahead, left, up) from its centre of mass, m.

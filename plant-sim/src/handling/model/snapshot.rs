@@ -10,7 +10,7 @@ use crate::handling::axle_place::AxleCoordinates;
 use crate::handling::dynamics::Accelerations;
 use crate::handling::steering::SteeringState;
 use crate::handling::wheel::{ContactState, WheelState};
-use crate::vehicle::suspension::{StrutElement, StrutElementSnapshot};
+use crate::vehicle::suspension::StrutElementSnapshot;
 
 /// Everything that a vehicle carries from one step to the next. A vehicle of the same parameters on the same road that is put into this state goes
 /// on with the same bits.
@@ -56,7 +56,7 @@ impl HandlingVehicle {
             steering: self.steering,
             acceleration: self.acceleration,
             wheels: self.wheels,
-            struts: self.elements.each_ref().map(StrutElement::snapshot),
+            struts: self.suspension.snapshot(),
         }
     }
 
@@ -78,8 +78,6 @@ impl HandlingVehicle {
         self.steering = kept.steering;
         self.acceleration = kept.acceleration;
         self.wheels = kept.wheels;
-        for (corner, element) in self.elements.iter_mut() {
-            element.restore(&kept.struts[corner]);
-        }
+        self.suspension.restore(&kept.struts);
     }
 }

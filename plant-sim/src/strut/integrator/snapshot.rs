@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Strut;
 use crate::model_file::InvalidValue;
+use crate::strut::hydraulics::Flowing;
 use crate::strut::model::StrutModel;
 use crate::strut::network::{LastSolution, State};
 use crate::strut::rod_state::Acceleration;
@@ -48,10 +49,10 @@ impl Strut {
             actuator_m: self.actuator_m,
             speed_m_s: self.speed_m_s,
             acceleration: self.acceleration,
-            supplied_m: self.supplied_m,
-            state: self.state,
-            last: self.last,
-            pressure_pa: self.pressure_pa,
+            supplied_m: self.flowing.supplied_m,
+            state: self.flowing.state,
+            last: self.flowing.last,
+            pressure_pa: self.flowing.pressure_pa,
             valves: self.valves.into_array(),
             friction_n: self.rod.friction_n(),
         }
@@ -63,10 +64,12 @@ impl Strut {
         self.actuator_m = kept.actuator_m;
         self.speed_m_s = kept.speed_m_s;
         self.acceleration = kept.acceleration;
-        self.supplied_m = kept.supplied_m;
-        self.state = kept.state;
-        self.last = kept.last;
-        self.pressure_pa = kept.pressure_pa;
+        self.flowing = Flowing {
+            state: kept.state,
+            last: kept.last,
+            pressure_pa: kept.pressure_pa,
+            supplied_m: kept.supplied_m,
+        };
         self.valves = StrutValves::from_array(kept.valves);
         self.rod.set_friction_n(kept.friction_n);
     }

@@ -7,42 +7,45 @@
 use oleo_interface::Gauge;
 
 use super::state::State;
+use crate::lanes::{Mask, Number};
 use crate::strut::model::StrutModel;
-use crate::strut::terms::{ChamberLaws, EntrainedAir, OilCount, held_at_static_density, taken_up_at_chamber_density};
+use crate::strut::terms::{
+    Bubbles, ChamberLaws, EntrainedAir, OilCount, held_at_static_density, taken_up_at_chamber_density,
+};
 
 /// The main chamber as the network sees it.
 #[derive(Debug, Clone)]
-pub(in crate::strut) struct Chamber {
+pub(in crate::strut) struct Chamber<N = f64> {
     /// Area of the piston, m2.
-    pub area_m2: f64,
+    pub area_m2: N,
     /// Oil volume at displacement zero, m3.
-    pub oil_volume_m3: f64,
+    pub oil_volume_m3: N,
     /// One over the bulk modulus, 1/Pa; 0 for rigid oil.
-    pub compressibility_1_pa: f64,
+    pub compressibility_1_pa: N,
     /// Gauge pressure at which the strut stands, Pa.
-    pub static_pa: f64,
+    pub static_pa: N,
     counts_at_static_density: bool,
-    air: Option<EntrainedAir>,
+    air: Option<Bubbles<N>>,
     /// Volume that the mount's deflection adds, m3/Pa.
-    mount_m3_pa: f64,
+    mount_m3_pa: N,
     /// Unmodelled laws; `None` where the model has none.
     laws: Option<Box<ChamberLaws>>,
 }
 
 /// What the chamber does between the beginning of a stage and a trial pressure at its end.
-pub(super) struct TakenUp {
+pub(super) struct TakenUp<N> {
     /// Volume taken up since the beginning of the stage, m3.
-    pub volume_m3: f64,
+    pub volume_m3: N,
     /// Its derivative by the pressure, m3/Pa.
-    pub slope: f64,
+    pub slope: N,
     /// `State::held_m3` at the end.
-    pub held_m3: f64,
+    pub held_m3: N,
     /// Its derivative by the pressure, m3/Pa.
-    pub held_slope: f64,
+    pub held_slope: N,
     /// `State::compressed` at the end.
-    pub compressed: f64,
+    pub compressed: N,
     /// Its derivative by the pressure, 1/Pa.
-    pub compressed_slope: f64,
+    pub compressed_slope: N,
 }
 
 impl Chamber {
@@ -56,42 +59,72 @@ impl Chamber {
             compressibility_1_pa: oil.map_or(0.0, |oil| 1.0 / oil.bulk_modulus_pa),
             static_pa: model.cylinder.static_pressure_pa,
             counts_at_static_density: oil.is_some_and(|oil| oil.counted_at == OilCount::Static),
-            air: effects.entrained_air.clone(),
+            air: effects.entrained_air.as_ref().map(EntrainedAir::bubbles),
             mount_m3_pa: (effects.mount_compliance.as_ref())
                 .map_or(0.0, |mount| mount.mount().volume_per_pressure_m3_pa(area_m2)),
             laws: (!effects.unlisted.is_empty()).then(|| Box::new(ChamberLaws::of(&effects.unlisted))),
         }
     }
 
+    /// The chambers of several struts side by side, `like` any number of their kind; none where they differ in kind.
+    pub fn abreast<N: Number>(chambers: &N::Each<&Self>, like: N) -> Option<Chamber<N>> {
+        let all = chambers.as_ref();
+        let of = |value: fn(&Self) -> f64| like.gather(|lane| value(all[lane]));
+        let same = |kind: fn(&Self) -> bool| all.iter().all(|chamber| kind(chamber) == kind(all[0]));
+        let alike = same(|chamber| chamber.counts_at_static_density)
+            && same(|chamber| chamber.air.is_some())
+            && all.iter().all(|chamber| chamber.laws.is_none());
+        alike.then(|| Chamber {
+            area_m2: of(|chamber| chamber.area_m2),
+            oil_volume_m3: of(|chamber| chamber.oil_volume_m3),
+            compressibility_1_pa: of(|chamber| chamber.compressibility_1_pa),
+            static_pa: of(|chamber| chamber.static_pa),
+            counts_at_static_density: all[0].counts_at_static_density,
+            air: all[0].air.map(|_| Bubbles {
+                volume_fraction: of(|chamber| chamber.air.map_or(0.0, |air| air.volume_fraction)),
+                polytropic_exponent: of(|chamber| chamber.air.map_or(1.0, |air| air.polytropic_exponent)),
+            }),
+            mount_m3_pa: of(|chamber| chamber.mount_m3_pa),
+            laws: None,
+        })
+    }
+}
+
+impl<N: Number> Chamber<N> {
+    #[inline(always)]
+    fn laws(&self) -> Option<&ChamberLaws> {
+        if N::IS_SINGLE { self.laws.as_deref() } else { None }
+    }
+
     /// Flow that the piston supplies to the chamber at a speed (m/s), less what the chamber loses at the time (s) and at the
     /// gauge pressure from which the stage starts, m3/s.
     #[inline(always)]
-    pub fn supply_m3_s(&self, speed_m_s: f64, p1_pa: f64, time_s: f64) -> f64 {
+    pub fn supply_m3_s(&self, speed_m_s: N, p1_pa: N, time_s: N) -> N {
         let supply = self.area_m2 * speed_m_s;
-        match &self.laws {
-            Some(laws) => supply - laws.loss(p1_pa, time_s),
+        match self.laws() {
+            Some(laws) => supply - supply.gather(|lane| laws.loss(p1_pa.lane(lane), time_s.lane(lane))),
             None => supply,
         }
     }
 
     /// Volume that the chamber holds at a gauge pressure beyond what it holds at static pressure, m3, and its derivative.
     #[inline(always)]
-    pub fn held_m3(&self, p1_pa: f64, displacement_m: f64) -> (f64, f64) {
+    pub fn held_m3(&self, p1_pa: N, displacement_m: N) -> (N, N) {
         let over = p1_pa - self.static_pa;
         let (mut volume, mut slope) = (self.mount_m3_pa * over, self.mount_m3_pa);
         if self.counts_at_static_density {
             let oil = self.oil_volume_m3 - self.area_m2 * displacement_m;
             let (held, by_pressure) = held_at_static_density(oil, over, self.compressibility_1_pa);
-            volume += held;
-            slope += by_pressure;
+            volume = volume + held;
+            slope = slope + by_pressure;
             if let Some(air) = &self.air {
-                let (left, shrinking) = air.bubbles(Gauge(p1_pa));
-                volume -= self.oil_volume_m3 * left;
-                slope += self.oil_volume_m3 * shrinking;
+                let (left, shrinking) = air.volume(Gauge(p1_pa));
+                volume = volume - self.oil_volume_m3 * left;
+                slope = slope + self.oil_volume_m3 * shrinking;
             }
-            if let Some((taken_up, by_pressure)) = self.laws.as_ref().and_then(|laws| laws.volume(p1_pa)) {
-                volume += taken_up;
-                slope += by_pressure;
+            if let Some((taken_up, by_pressure)) = self.volume_by_laws(p1_pa) {
+                volume = volume + taken_up;
+                slope = slope + by_pressure;
             }
         }
         (volume, slope)
@@ -101,39 +134,48 @@ impl Chamber {
     /// modulus makes of it, and its derivative, 1/Pa: undissolved air and an unmodelled compliance, where they are counted
     /// as the recordings' equation counts oil.
     #[inline(always)]
-    pub fn compressed(&self, p1_pa: f64) -> (f64, f64) {
-        let (mut fraction, mut slope) = (0.0, 0.0);
+    pub fn compressed(&self, p1_pa: N) -> (N, N) {
+        let (mut fraction, mut slope) = (p1_pa.of(0.0), p1_pa.of(0.0));
         if !self.counts_at_static_density {
             if let Some(air) = &self.air {
-                let (left, shrinking) = air.bubbles(Gauge(p1_pa));
-                fraction -= left;
-                slope += shrinking;
+                let (left, shrinking) = air.volume(Gauge(p1_pa));
+                fraction = fraction - left;
+                slope = slope + shrinking;
             }
-            if let Some((taken_up, by_pressure)) = self.laws.as_ref().and_then(|laws| laws.volume(p1_pa)) {
-                fraction += taken_up / self.oil_volume_m3;
-                slope += by_pressure / self.oil_volume_m3;
+            if let Some((taken_up, by_pressure)) = self.volume_by_laws(p1_pa) {
+                fraction = fraction + taken_up / self.oil_volume_m3;
+                slope = slope + by_pressure / self.oil_volume_m3;
             }
         }
         (fraction, slope)
     }
 
+    #[inline(always)]
+    fn volume_by_laws(&self, p1_pa: N) -> Option<(N, N)> {
+        let laws = self.laws()?;
+        p1_pa.map_pair(|p1_pa| laws.volume(p1_pa))
+    }
+
     /// What the chamber takes up from `base` to a gauge pressure. Differences of volumes: exact however far it moves.
     #[inline(always)]
-    pub(super) fn taken_up(&self, base: &State, p1_pa: f64, displacement_m: f64) -> TakenUp {
+    pub(super) fn taken_up(&self, base: &State<N>, p1_pa: N, displacement_m: N) -> TakenUp<N> {
         let (held_m3, held_slope) = self.held_m3(p1_pa, displacement_m);
         let (mut volume_m3, mut slope) = (held_m3 - base.held_m3, held_slope);
         if !self.counts_at_static_density {
             let oil = self.oil_volume_m3 - self.area_m2 * displacement_m;
             let (taken_up, by_pressure) =
                 taken_up_at_chamber_density(oil, p1_pa - base.p1_pa, self.compressibility_1_pa);
-            volume_m3 += taken_up;
-            slope += by_pressure;
+            volume_m3 = volume_m3 + taken_up;
+            slope = slope + by_pressure;
         }
         let (compressed, compressed_slope) = self.compressed(p1_pa);
-        if compressed_slope != 0.0 {
+        // Compressing takes up volume; where nothing but oil of constant bulk modulus is counted here, the slope is zero.
+        let compresses = compressed_slope.abs().above(slope.of(0.0));
+        if compresses.any() {
             let content = self.oil_volume_m3 - self.area_m2 * displacement_m;
-            volume_m3 += content * (compressed - base.compressed);
-            slope += content * compressed_slope;
+            let more = volume_m3 + content * (compressed - base.compressed);
+            volume_m3 = N::choose(compresses, more, volume_m3);
+            slope = N::choose(compresses, slope + content * compressed_slope, slope);
         }
         TakenUp {
             volume_m3,

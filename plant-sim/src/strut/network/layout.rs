@@ -2,6 +2,7 @@
 
 use super::chamber::Chamber;
 use super::path::Path;
+use crate::lanes::Number;
 use crate::strut::characteristic::Characteristic;
 use crate::strut::flow_path::FlowPath;
 use crate::strut::model::StrutModel;
@@ -9,15 +10,15 @@ use crate::strut::terms::{Course, LawArgument, LawPlace, law_at, throttle, valve
 
 /// Main chamber, two paths, and valve 3 between the second path and its accumulator.
 #[derive(Debug, Clone)]
-pub(in crate::strut) struct Network {
+pub(in crate::strut) struct Network<N: Number = f64> {
     /// The main chamber of the strut.
-    pub chamber: Chamber,
+    pub chamber: Chamber<N>,
     /// Paths 1 and 2.
-    pub(super) paths: [Path; 2],
+    pub(super) paths: [Path<N>; 2],
     /// Flow coefficient of valve 3 when it is open, m3/s/sqrt(Pa).
-    pub(super) valve3_coefficient: f64,
+    pub(super) valve3_coefficient: N,
     /// Flow coefficient of its leak, m3/s/sqrt(Pa).
-    pub(super) valve3_leak: f64,
+    pub(super) valve3_leak: N,
     /// Unmodelled factor on its flow.
     pub(super) valve3_throttle: Option<Characteristic>,
     /// Unmodelled factor on its flow over time.
@@ -25,9 +26,9 @@ pub(in crate::strut) struct Network {
     /// Unmodelled openings beside it, over displacement and over time.
     pub(super) beside_valve3: [Option<Characteristic>; 2],
     /// Inertance of line 2, kg/m4.
-    pub(super) inertance_kg_m4: f64,
+    pub(super) inertance_kg_m4: N,
     /// Transition pressure of all orifices, Pa.
-    pub(super) transition_pa: f64,
+    pub(super) transition_pa: N,
     /// Whether some table is read whose kinks the solver does not look for.
     pub(super) has_unlisted_laws: bool,
 }
@@ -55,5 +56,27 @@ impl Network {
             transition_pa: model.orifice.transition_pressure_pa,
             has_unlisted_laws: !effects.unlisted.is_empty(),
         }
+    }
+    /// The networks of several struts side by side, `like` any number of their kind; none where they differ in kind, or where one has a
+    /// law without a name.
+    pub fn abreast<N: Number>(networks: &N::Each<&Self>, like: N) -> Option<Network<N>> {
+        let all = networks.as_ref();
+        if all.iter().any(|network| network.has_unlisted_laws) {
+            return None;
+        }
+        let of = |value: fn(&Self) -> f64| like.gather(|lane| value(all[lane]));
+        let path = |which: FlowPath| Path::abreast(&N::each(|lane| which.of(all[lane].paths.each_ref())), like);
+        Some(Network {
+            chamber: Chamber::abreast(&N::each(|lane| &all[lane].chamber), like)?,
+            paths: [path(FlowPath::One)?, path(FlowPath::Two)?],
+            valve3_coefficient: of(|network| network.valve3_coefficient),
+            valve3_leak: of(|network| network.valve3_leak),
+            valve3_throttle: None,
+            valve3_in_time: Course::default(),
+            beside_valve3: [None, None],
+            inertance_kg_m4: of(|network| network.inertance_kg_m4),
+            transition_pa: of(|network| network.transition_pa),
+            has_unlisted_laws: false,
+        })
     }
 }

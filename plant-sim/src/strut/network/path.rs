@@ -4,11 +4,13 @@ use oleo_interface::Absolute;
 
 use super::stage_end::StageEnd;
 use super::state::State;
-use crate::strut::characteristic::Characteristic;
+use crate::lanes::{Mask, Number};
+use crate::strut::characteristic::{Characteristic, Line};
 use crate::strut::flow_path::FlowPath;
 use crate::strut::gas::{Departure, Gas, GasState};
 use crate::strut::model::StrutModel;
 use crate::strut::orifice::unit_flow;
+use crate::strut::pressure::gauge;
 use crate::strut::terms::{LaminarLine, PackFade, PathLaws, PistonSeal};
 
 /// What a Newton step that is taken without another look may neglect in a pressure drop, Pa. All quantities follow the
@@ -23,69 +25,69 @@ const PRESLIDING_M3: f64 = 1e-7;
 
 /// One path as the network sees it.
 #[derive(Debug, Clone)]
-pub(super) struct Path {
-    pack: Characteristic,
-    valve_coefficient: f64,
-    leak_coefficient: f64,
-    line: LaminarLine,
-    pub gas: Gas,
-    pub static_gas_m3: f64,
-    piston_seal: PistonSeal,
-    pub fade: PackFade,
+pub(super) struct Path<N: Number = f64> {
+    pack: N::Each<Characteristic>,
+    valve_coefficient: N,
+    leak_coefficient: N,
+    line: LaminarLine<N>,
+    pub gas: Gas<N>,
+    pub static_gas_m3: N,
+    piston_seal: PistonSeal<N>,
+    pub fade: PackFade<N>,
     /// Unmodelled laws; `None` where the model has none, which then costs one comparison.
     laws: Option<Box<PathLaws>>,
 }
 
 /// Where a path starts from in a stage, and what does not change while the stage is solved.
-pub(super) struct PathStart<'a> {
-    duration_s: f64,
-    time_s: f64,
-    gas: GasState,
-    shear: f64,
+pub(super) struct PathStart<'a, N> {
+    duration_s: N,
+    time_s: N,
+    gas: GasState<N>,
+    shear: N,
     /// What the pack's drop is divided by.
-    weakening: f64,
+    weakening: N,
     /// Flow coefficient of all that is in parallel with the pack: bypass valve, leaks and grooves.
-    beside_pack: f64,
+    beside_pack: N,
     /// The bypass valve's part of it.
-    bypass: f64,
-    transition_pa: f64,
-    real: &'a Departure,
+    bypass: N,
+    transition_pa: N,
+    real: &'a Departure<N>,
     /// Pressure that the floating piston's seal can hold back, Pa.
-    breakaway_pa: f64,
+    breakaway_pa: N,
     /// Mean of the relative gas volume before the stage, and how much of a departure from it is left at the stage's end.
-    mean_volume: f64,
-    remembered: f64,
+    mean_volume: N,
+    remembered: N,
 }
 
 /// What a path answers to a trial of the drop across its pack. Slopes are derivatives by the path's flow, but for that
 /// of the flow itself, which is by the drop.
-pub(super) struct PathAnswer {
-    pub flow: f64,
-    pub flow_slope: f64,
+pub(super) struct PathAnswer<N> {
+    pub flow: N,
+    pub flow_slope: N,
     /// Gauge pressure on the oil side of the accumulator, Pa.
-    pub oil_pa: f64,
-    pub oil_slope: f64,
+    pub oil_pa: N,
+    pub oil_slope: N,
     /// Drop along the line, Pa.
-    pub line_pa: f64,
-    pub line_slope: f64,
-    pub gas: GasState,
-    temperature_slope: f64,
-    pub shear: f64,
-    shear_slope: f64,
+    pub line_pa: N,
+    pub line_slope: N,
+    pub gas: GasState<N>,
+    temperature_slope: N,
+    pub shear: N,
+    shear_slope: N,
     /// Mean of the relative gas volume at the stage's end.
-    pub mean_volume: f64,
+    pub mean_volume: N,
 }
 
-impl PathAnswer {
+impl<N: Number> PathAnswer<N> {
     /// The answer after the pack's drop has changed by a little.
     #[inline(always)]
-    pub fn moved(mut self, step_pa: f64, duration_s: f64) -> Self {
+    pub fn moved(mut self, step_pa: N, duration_s: N) -> Self {
         let flow = self.flow_slope * step_pa;
-        self.flow += flow;
-        self.oil_pa += self.oil_slope * flow;
-        self.shear += self.shear_slope * flow;
-        self.gas.temperature_k += self.temperature_slope * flow;
-        self.gas.volume_m3 -= duration_s * flow;
+        self.flow = self.flow + flow;
+        self.oil_pa = self.oil_pa + self.oil_slope * flow;
+        self.shear = self.shear + self.shear_slope * flow;
+        self.gas.temperature_k = self.gas.temperature_k + self.temperature_slope * flow;
+        self.gas.volume_m3 = self.gas.volume_m3 - duration_s * flow;
         self
     }
 }
@@ -99,7 +101,7 @@ impl Path {
         let charge_error = (effects.gas_charge_error.as_ref()).map_or(0.0, |error| error.relative_error(which));
         let static_gas_m3 = which.pick(accumulator_1, accumulator_2).static_gas_volume_m3 * (1.0 + charge_error);
         Self {
-            pack: which.pick(damper_1, damper_2).characteristic(),
+            pack: [which.pick(damper_1, damper_2).characteristic()],
             valve_coefficient: which.pick(valve_1, valve_2).total_flow_coefficient(),
             leak_coefficient: (effects.damper_leakage.as_ref()).map_or(0.0, |leak| leak.flow_coefficient(which)),
             line: (effects.line_resistance.as_ref()).map_or_else(LaminarLine::default, |lines| lines.line(which)),
@@ -123,20 +125,54 @@ impl Path {
         }
     }
 
+    /// The same path of several struts side by side, `like` any number of their kind; none where they differ in kind.
+    pub fn abreast<N: Number>(paths: &N::Each<&Self>, like: N) -> Option<Path<N>> {
+        let all = paths.as_ref();
+        if all.iter().any(|path| path.laws.is_some()) {
+            return None;
+        }
+        let of = |value: fn(&Self) -> f64| like.gather(|lane| value(all[lane]));
+        Some(Path {
+            pack: N::each(|lane| all[lane].pack[0].clone()),
+            valve_coefficient: of(|path| path.valve_coefficient),
+            leak_coefficient: of(|path| path.leak_coefficient),
+            line: LaminarLine {
+                resistance_pa_s_m3: of(|path| path.line.resistance_pa_s_m3),
+            },
+            gas: Gas::abreast(&N::each(|lane| &all[lane].gas), like)?,
+            static_gas_m3: of(|path| path.static_gas_m3),
+            piston_seal: PistonSeal {
+                breakaway_pa: of(|path| path.piston_seal.breakaway_pa),
+                presliding_m3: of(|path| path.piston_seal.presliding_m3),
+            },
+            fade: PackFade {
+                per_j: of(|path| path.fade.per_j),
+            },
+            laws: None,
+        })
+    }
+}
+
+impl<N: Number> Path<N> {
+    #[inline(always)]
+    fn laws(&self) -> Option<&PathLaws> {
+        if N::IS_SINGLE { self.laws.as_deref() } else { None }
+    }
+
     /// Where the path starts from in a stage. `which` is this path: a constant at every call, so that the state's arrays
     /// are read at fixed places.
     #[inline(always)]
     pub fn start<'a>(
         &self,
         which: FlowPath,
-        base: &State,
-        at: &StageEnd,
-        transition_pa: f64,
-        real: &'a Departure,
-    ) -> PathStart<'a> {
+        base: &State<N>,
+        at: &StageEnd<N>,
+        transition_pa: N,
+        real: &'a Departure<N>,
+    ) -> PathStart<'a, N> {
         let mut bypass = at.opening[which.bypass_valve()] * self.valve_coefficient;
-        if let Some(laws) = &self.laws {
-            bypass *= laws.valve_in_time(at.time_s);
+        if let Some(laws) = self.laws() {
+            bypass = bypass * at.time_s.map(|time_s| laws.valve_in_time(time_s));
         }
         let mut start = PathStart {
             duration_s: at.duration_s,
@@ -150,68 +186,109 @@ impl Path {
             real,
             breakaway_pa: self.piston_seal.breakaway_pa,
             mean_volume: which.of(base.mean_volume),
-            remembered: 0.0,
+            remembered: at.time_s.of(0.0),
         };
-        if let Some(laws) = &self.laws {
-            start.weakening *= laws.weakening(at.displacement_m, at.time_s);
-            start.beside_pack += laws.groove(at.displacement_m, at.time_s);
-            let held_back_pa = laws.held_back_pa(start.gas.volume_m3 / self.static_gas_m3);
-            start.breakaway_pa += held_back_pa.unwrap_or(0.0);
-            start.remembered = laws.remembered(at.duration_s);
+        if let Some(laws) = self.laws() {
+            let placed = |law: &dyn Fn(f64, f64) -> f64| {
+                (at.time_s).gather(|lane| law(at.displacement_m.lane(lane), at.time_s.lane(lane)))
+            };
+            start.weakening = start.weakening * placed(&|x, t| laws.weakening(x, t));
+            start.beside_pack = start.beside_pack + placed(&|x, t| laws.groove(x, t));
+            let relative_volume = start.gas.volume_m3 / self.static_gas_m3;
+            let held_back_pa = relative_volume.map(|volume| laws.held_back_pa(volume).unwrap_or(0.0));
+            start.breakaway_pa = start.breakaway_pa + held_back_pa;
+            start.remembered = at.duration_s.map(|duration_s| laws.remembered(duration_s));
         }
         start
     }
 
-    /// The path's answer to a trial drop across its pack. `segment` is where in the pack's table the last one was.
+    /// The line of the pack's table at a segment that was remembered.
     #[inline(always)]
-    pub fn answer(&self, start: &PathStart<'_>, drop_pa: f64, segment: &mut usize) -> PathAnswer {
-        let (mut flow, mut flow_slope) = self.pack.at(drop_pa * start.weakening, segment);
-        flow_slope *= start.weakening;
-        if start.beside_pack > 0.0 {
+    pub fn line(&self, segment: &N::Each<usize>, like: N) -> Line<N> {
+        Line::remembered(&self.pack, segment, like)
+    }
+
+    /// The path's answer to a trial drop across its pack. `line` is the part of the pack's table that the last one was on.
+    #[inline(always)]
+    pub fn answer(
+        &self,
+        start: &PathStart<'_, N>,
+        drop_pa: N,
+        segment: &mut N::Each<usize>,
+        line: &mut Line<N>,
+    ) -> PathAnswer<N> {
+        let (flow, flow_slope) = self.flow(start, drop_pa, segment, line);
+        self.answer_to_flow(start, flow, flow_slope)
+    }
+
+    /// Flow at a trial drop, m3/s, and its derivative by the drop.
+    #[inline(always)]
+    pub fn flow(
+        &self,
+        start: &PathStart<'_, N>,
+        drop_pa: N,
+        segment: &mut N::Each<usize>,
+        line: &mut Line<N>,
+    ) -> (N, N) {
+        let cold_drop_pa = drop_pa * start.weakening;
+        if !line.holds(cold_drop_pa).all() {
+            *line = Line::found(&self.pack, segment, cold_drop_pa);
+        }
+        let (mut flow, flow_slope) = line.at(cold_drop_pa);
+        let mut flow_slope = flow_slope * start.weakening;
+        let bypassed = start.beside_pack.above(drop_pa.of(0.0));
+        if bypassed.any() {
             let (unit, slope) = unit_flow(drop_pa, start.transition_pa);
             let mut coefficient = start.beside_pack;
-            if let Some(laws) = &self.laws {
-                coefficient -= start.bypass * laws.throttled_fraction(drop_pa);
+            if let Some(laws) = self.laws() {
+                coefficient = coefficient - start.bypass * drop_pa.map(|drop_pa| laws.throttled_fraction(drop_pa));
             }
-            flow += coefficient * unit;
-            flow_slope += coefficient * slope;
+            flow = N::choose(bypassed, flow + coefficient * unit, flow);
+            flow_slope = N::choose(bypassed, flow_slope + coefficient * slope, flow_slope);
         }
-        if let Some(laws) = &self.laws
-            && let Some((parallel, slope)) = laws.parallel_flow(drop_pa)
+        if let Some(laws) = self.laws()
+            && let Some((parallel, slope)) = drop_pa.map_pair(|drop_pa| laws.parallel_flow(drop_pa))
         {
-            flow += parallel;
-            flow_slope += slope;
+            flow = flow + parallel;
+            flow_slope = flow_slope + slope;
         }
-        self.answer_to_flow(start, flow, flow_slope)
+        (flow, flow_slope)
     }
 
     /// The part of the answer that follows from the flow.
     #[inline(always)]
-    pub fn answer_to_flow(&self, start: &PathStart<'_>, flow: f64, flow_slope: f64) -> PathAnswer {
+    pub fn answer_to_flow(&self, start: &PathStart<'_, N>, flow: N, flow_slope: N) -> PathAnswer<N> {
         let step = self.gas.implicit(start.gas, start.duration_s, flow, start.real);
-        let (mut oil_pa, mut oil_slope) = (step.pressure.gauge().pa(), step.pressure_by_flow);
+        let (mut oil_pa, mut oil_slope) = (gauge(step.pressure).pa(), step.pressure_by_flow);
         let mut mean_volume = start.mean_volume;
-        if let Some(laws) = &self.laws {
+        if let Some(laws) = self.laws() {
             let relative_volume = step.state.volume_m3 / self.static_gas_m3;
             let changed = start.remembered * (relative_volume - start.mean_volume);
             mean_volume = relative_volume - changed;
-            if let Some(factor) = laws.gas_factor(relative_volume, changed, start.time_s) {
-                oil_pa = Absolute(factor * step.pressure.pa()).gauge().pa();
-                oil_slope *= factor;
+            let factor = N::each_of(|lane| {
+                laws.gas_factor(relative_volume.lane(lane), changed.lane(lane), start.time_s.lane(lane))
+            });
+            if let Some(factor) = factor {
+                let factor = flow.gather(|lane| factor.as_ref()[lane]);
+                oil_pa = gauge(Absolute(factor * step.pressure.pa())).pa();
+                oil_slope = oil_slope * factor;
             }
         }
-        let (mut shear, mut shear_slope) = (start.shear, 0.0);
-        if start.breakaway_pa > 0.0 {
-            (shear, shear_slope) = self.piston_seal.sheared(start.shear, start.duration_s, flow);
-            oil_pa += start.breakaway_pa * shear;
-            oil_slope += start.breakaway_pa * shear_slope;
+        let (mut shear, mut shear_slope) = (start.shear, flow.of(0.0));
+        let rubs = start.breakaway_pa.above(flow.of(0.0));
+        if rubs.any() {
+            let (sheared, slope) = self.piston_seal.sheared(start.shear, start.duration_s, flow);
+            shear = N::choose(rubs, sheared, shear);
+            shear_slope = N::choose(rubs, slope, shear_slope);
+            oil_pa = N::choose(rubs, oil_pa + start.breakaway_pa * shear, oil_pa);
+            oil_slope = N::choose(rubs, oil_slope + start.breakaway_pa * shear_slope, oil_slope);
         }
         let (mut line_pa, mut line_slope) = self.line.drop(flow);
-        if let Some(laws) = &self.laws
-            && let Some((drop, slope)) = laws.series_drop(flow)
+        if let Some(laws) = self.laws()
+            && let Some((drop, slope)) = flow.map_pair(|flow| laws.series_drop(flow))
         {
-            line_pa += drop;
-            line_slope += slope;
+            line_pa = line_pa + drop;
+            line_slope = line_slope + slope;
         }
         PathAnswer {
             flow,
@@ -228,20 +305,20 @@ impl Path {
         }
     }
 
-    /// Whether a step from a drop may be taken linearly as far as pack, orifice and piston seal go.
+    /// Where a step from a drop may be taken linearly as far as pack, orifice and piston seal go.
     #[inline(always)]
     pub fn is_nearly_linear(
         &self,
-        start: &PathStart<'_>,
-        answer: &PathAnswer,
-        drop_pa: f64,
-        step_pa: f64,
-        segment: usize,
-    ) -> bool {
-        let orifice = step_pa * step_pa <= 2.0 * NEGLECTED_PA * (start.transition_pa + drop_pa.abs());
-        let crosses_kink =
-            step_pa.abs() > ACROSS_KINK_PA && !self.pack.on_segment((drop_pa + step_pa) * start.weakening, segment);
+        start: &PathStart<'_, N>,
+        answer: &PathAnswer<N>,
+        drop_pa: N,
+        step_pa: N,
+        line: &Line<N>,
+    ) -> N::Mask {
+        let orifice = (step_pa * step_pa).up_to((start.transition_pa + drop_pa.abs()) * (2.0 * NEGLECTED_PA));
+        let stays_on_line =
+            step_pa.abs().up_to(step_pa.of(ACROSS_KINK_PA)) | line.holds((drop_pa + step_pa) * start.weakening);
         let sheared = start.breakaway_pa * answer.shear_slope * answer.flow_slope * step_pa;
-        orifice && !crosses_kink && sheared * sheared <= NEGLECTED_PA * start.breakaway_pa
+        orifice & stays_on_line & (sheared * sheared).up_to(start.breakaway_pa * NEGLECTED_PA)
     }
 }

@@ -22,8 +22,10 @@ use super::layout::Network;
 use super::path::{NEGLECTED_PA, PathAnswer};
 use super::stage_end::StageEnd;
 use super::state::State;
+use crate::lanes::{Mask, Number};
 use crate::strut::flow_path::FlowPath;
 use crate::strut::orifice::{unit_drop, unit_flow};
+use crate::strut::pressure::absolute;
 use crate::strut::terms::{LEAST_BUBBLE_PRESSURE, OilColumn, passed, throttled};
 
 /// The longest Newton step in the drops, Pa, that is taken linearly where the model has unmodelled laws: the kinks of
@@ -34,64 +36,104 @@ const MOST_ROUNDS: u32 = 40;
 /// Kinks of the tables can make full Newton steps cycle between two lines. After this many rounds the steps are halved,
 /// which monotone residuals cannot resist.
 const FULL_STEP_ROUNDS: u32 = 8;
+
+/// Valve 3 lets oil through in all lanes, in none, or in some.
+const CONNECTED: u8 = 0;
+const CLOSED: u8 = 1;
+const MIXED: u8 = 2;
+
 /// Result of a stage.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::strut) struct Stage {
+pub(in crate::strut) struct Stage<N = f64> {
     /// State at its end.
-    pub state: State,
+    pub state: State<N>,
     /// Gauge pressures p1 to p4, Pa.
-    pub pressure_pa: [f64; 4],
+    pub pressure_pa: [N; 4],
 }
 
 /// The loop of path 2 at a trial: what is left over in it, and the drop across valve 3; each with its derivatives by `d1`
 /// and `d2`.
-struct SecondLoop {
-    residual: f64,
-    by_d1: f64,
-    by_d2: f64,
-    drop: f64,
-    drop_by: [f64; 2],
+struct SecondLoop<N> {
+    residual: N,
+    by_d1: N,
+    by_d2: N,
+    drop: N,
+    drop_by: [N; 2],
 }
 
-impl Network {
-    /// Solve one stage from `base`. The result does not depend on `last` beyond the solver's tolerance.
-    pub fn stage(&self, base: &State, at: &StageEnd, last: &mut LastSolution) -> Stage {
+impl<N: Number> Network<N> {
+    #[inline(always)]
+    fn has_laws(&self) -> bool {
+        N::IS_SINGLE && self.has_unlisted_laws
+    }
+
+    /// Flow coefficient of all that lets oil through between path 2 and its accumulator, m3/s/sqrt(Pa).
+    #[inline(always)]
+    fn valve3_passes(&self, at: &StageEnd<N>) -> N {
         let mut open = at.opening[Valve::Spring] * self.valve3_coefficient;
-        if self.has_unlisted_laws {
-            open *= passed(&self.valve3_in_time, at.time_s);
+        if self.has_laws() {
+            open = open * at.time_s.map(|time_s| passed(&self.valve3_in_time, time_s));
         }
-        let mut c3 = open + self.valve3_leak;
-        if self.has_unlisted_laws {
-            c3 += self.beside_valve3(at);
+        let mut passes = open + self.valve3_leak;
+        if self.has_laws() {
+            passes = passes + self.beside_valve3(at);
         }
-        if c3 > 0.0 {
-            self.solve::<true>(base, at, 1.0 / c3, last)
-        } else {
-            self.solve::<false>(base, at, 0.0, last)
-        }
+        passes
     }
 
     /// Flow coefficient of an unmodelled opening beside valve 3, m3/s/sqrt(Pa).
     #[cold]
-    fn beside_valve3(&self, at: &StageEnd) -> f64 {
-        [at.displacement_m, at.time_s]
-            .into_iter()
-            .zip(&self.beside_valve3)
-            .filter_map(|(argument, law)| Some(law.as_ref()?.value(argument).max(0.0)))
-            .sum()
+    fn beside_valve3(&self, at: &StageEnd<N>) -> N {
+        at.time_s.gather(|lane| {
+            [at.displacement_m.lane(lane), at.time_s.lane(lane)]
+                .into_iter()
+                .zip(&self.beside_valve3)
+                .filter_map(|(argument, law)| Some(law.as_ref()?.value(argument).max(0.0)))
+                .sum()
+        })
     }
 
-    /// `CONNECTED`: valve 3 lets oil through. `inverse_c3` is one over its flow coefficient as far as it is open.
-    fn solve<const CONNECTED: bool>(
+    /// Solve one stage from `base`. The result does not depend on `last` beyond the solver's tolerance.
+    #[inline(always)]
+    pub fn stage(&self, base: &State<N>, at: &StageEnd<N>, last: &mut LastSolution<N>) -> Stage<N> {
+        let passes = self.valve3_passes(at);
+        let connected = passes.above(passes.of(0.0));
+        if connected.all() {
+            self.solve::<CONNECTED>(base, at, passes, last)
+        } else if N::IS_SINGLE || !connected.any() {
+            self.solve::<CLOSED>(base, at, passes, last)
+        } else {
+            self.solve::<MIXED>(base, at, passes, last)
+        }
+    }
+
+    /// `VALVE_3` says in which lanes it lets oil through, `passes` its flow coefficient (m3/s/sqrt(Pa)).
+    #[inline(always)]
+    fn solve<const VALVE_3: u8>(
         &self,
-        base: &State,
-        at: &StageEnd,
-        inverse_c3: f64,
-        last: &mut LastSolution,
-    ) -> Stage {
+        base: &State<N>,
+        at: &StageEnd<N>,
+        passes: N,
+        last: &mut LastSolution<N>,
+    ) -> Stage<N> {
+        let zero = passes.of(0.0);
+        let connected = if VALVE_3 == CLOSED {
+            zero.above(zero)
+        } else {
+            passes.above(zero)
+        };
+        let inverse_c3 = match VALVE_3 {
+            CONNECTED => passes.recip(),
+            CLOSED => zero,
+            _ => N::choose(connected, passes.recip(), zero),
+        };
         let supply = self.chamber.supply_m3_s(at.speed_m_s, base.p1_pa, at.time_s);
-        let explained = last.explained::<CONNECTED>(supply);
-        let [mut d1, mut d2] = last.predicted::<CONNECTED>(explained, at.since_last_s);
+        let mut explained = last.explained(supply);
+        let [mut d1, mut d2] = last.predicted(explained, at.since_last_s);
+        if VALVE_3 != CONNECTED {
+            explained[1] = N::choose(connected, explained[1], zero);
+            d2 = N::choose(connected, d2, zero);
+        }
         let [path1, path2] = &self.paths;
         let LastSolution { segment, real, .. } = last;
         path1
@@ -102,23 +144,32 @@ impl Network {
             .refresh(&mut real[1], base.gas[1], at.duration_s, last.flow[1]);
         let first = path1.start(FlowPath::One, base, at, self.transition_pa, &real[0]);
         let second = path2.start(FlowPath::Two, base, at, self.transition_pa, &real[1]);
-        let inverse_duration = 1.0 / at.duration_s;
+        let mut line1 = path1.line(&segment[0], zero);
+        let mut line2 = path2.line(&segment[1], zero);
+        let inverse_duration = at.duration_s.recip();
         let column = OilColumn::during(self.inertance_kg_m4, inverse_duration);
 
         let mut round = 0;
+        // A lane that is done is given the same trial again until all are: the same answer, to the bit.
+        let mut done = zero.above(zero);
         loop {
-            let one = path1.answer(&first, d1, &mut segment[0]);
+            let one = path1.answer(&first, d1, &mut segment[0], &mut line1);
             let p1 = one.oil_pa + one.line_pa + d1;
-            let p1_slope = 1.0 + (one.oil_slope + one.line_slope) * one.flow_slope;
+            let p1_slope = (one.oil_slope + one.line_slope) * one.flow_slope + 1.0;
             let chamber = self.chamber.taken_up(base, p1, at.displacement_m);
             let (stored, c) = (chamber.volume_m3 * inverse_duration, chamber.slope * inverse_duration);
-            let two = if CONNECTED {
-                path2.answer(&second, d2, &mut segment[1])
-            } else {
-                path2.answer_to_flow(&second, 0.0, 0.0)
-            };
-            let (d3, d3_by, step1, step2, gain);
-            if CONNECTED {
+            let (mut flow2, mut flow2_slope) = (zero, zero);
+            if VALVE_3 != CLOSED {
+                (flow2, flow2_slope) = path2.flow(&second, d2, &mut segment[1], &mut line2);
+            }
+            if VALVE_3 == MIXED {
+                flow2 = N::choose(connected, flow2, zero);
+                flow2_slope = N::choose(connected, flow2_slope, zero);
+            }
+            let two = path2.answer_to_flow(&second, flow2, flow2_slope);
+            let (mut d3, mut d3_by) = (zero, [zero; 2]);
+            let (mut step1, mut step2, mut gain) = (zero, zero, [zero; 2]);
+            if VALVE_3 != CLOSED {
                 let continuity = supply - stored - one.flow - two.flow;
                 let c_d1 = -c * p1_slope - one.flow_slope;
                 let second_loop = self.second_loop(p1, p1_slope, d2, &two, column, base.q2_m3_s, inverse_c3);
@@ -126,41 +177,54 @@ impl Network {
                     residual, by_d1, by_d2, ..
                 } = second_loop;
                 (d3, d3_by) = (second_loop.drop, second_loop.drop_by);
-                let inverse = 1.0 / (c_d1 * by_d2 + two.flow_slope * by_d1);
+                let inverse = (c_d1 * by_d2 + two.flow_slope * by_d1).recip();
                 gain = [-by_d2 * inverse, by_d1 * inverse];
                 step1 = gain[0] * continuity - two.flow_slope * inverse * residual;
                 step2 = gain[1] * continuity - c_d1 * inverse * residual;
-            } else {
-                (d3, d3_by) = (0.0, [0.0; 2]);
-                gain = [1.0 / (c * p1_slope + one.flow_slope), 0.0];
-                step1 = gain[0] * (supply - stored - one.flow);
-                step2 = 0.0;
+            }
+            if VALVE_3 != CONNECTED {
+                let gain1 = (c * p1_slope + one.flow_slope).recip();
+                gain = [
+                    N::choose(connected, gain[0], gain1),
+                    N::choose(connected, gain[1], zero),
+                ];
+                step1 = N::choose(connected, step1, gain1 * (supply - stored - one.flow));
+                step2 = N::choose(connected, step2, zero);
+                d3 = N::choose(connected, d3, zero);
+                d3_by = [
+                    N::choose(connected, d3_by[0], zero),
+                    N::choose(connected, d3_by[1], zero),
+                ];
             }
             round += 1;
             let p1_step = p1_slope * step1;
             let d3_step = d3_by[0] * step1 + d3_by[1] * step2;
-            let least = if Gauge(p1).absolute() > LEAST_BUBBLE_PRESSURE {
-                Gauge(p1).absolute()
-            } else {
-                LEAST_BUBBLE_PRESSURE
-            };
-            let nearly_linear = p1_step * p1_step <= NEGLECTED_PA * least.pa()
-                && path1.is_nearly_linear(&first, &one, d1, step1, segment[0])
-                && (!CONNECTED
-                    || (path2.is_nearly_linear(&second, &two, d2, step2, segment[1])
-                        && d3_step * d3_step <= 2.0 * NEGLECTED_PA * (self.transition_pa + d3.abs())))
-                && (!self.has_unlisted_laws || step1.abs().max(step2.abs()) <= UNLISTED_STEP_PA);
-            if nearly_linear || round == MOST_ROUNDS {
+            let least = absolute(Gauge(p1)).pa().at_least(p1.of(LEAST_BUBBLE_PRESSURE.pa()));
+            let mut nearly_linear = (p1_step * p1_step).up_to(least * NEGLECTED_PA)
+                & path1.is_nearly_linear(&first, &one, d1, step1, &line1);
+            if VALVE_3 != CLOSED {
+                let behind = path2.is_nearly_linear(&second, &two, d2, step2, &line2)
+                    & (d3_step * d3_step).up_to((self.transition_pa + d3.abs()) * (2.0 * NEGLECTED_PA));
+                nearly_linear = nearly_linear & (behind | passes.up_to(zero));
+            }
+            if self.has_laws() {
+                let longest = zero.of(UNLISTED_STEP_PA);
+                nearly_linear = nearly_linear & step1.abs().up_to(longest) & step2.abs().up_to(longest);
+            }
+            done = done | nearly_linear;
+            if done.all() || round == MOST_ROUNDS {
                 let (p1, one) = (p1 + p1_step, one.moved(step1, at.duration_s));
                 let (d3, two) = (d3 + d3_step, two.moved(step2, at.duration_s));
                 last.drop = [d1 + step1, d2 + step2];
-                last.drift = [0, 1].map(|i| (last.drop[i] - explained[i]) / at.since_last_s);
+                let [explained1, explained2] = explained;
+                let [drop1, drop2] = last.drop;
+                last.drift = [
+                    (drop1 - explained1) / at.since_last_s,
+                    (drop2 - explained2) / at.since_last_s,
+                ];
                 last.flow = [one.flow, two.flow];
                 (last.supply, last.gain) = (supply, gain);
-                let heat = |i: usize| {
-                    let fade = &self.paths[i].fade;
-                    fade.heated(base.heat_j[i], at.duration_s, last.drop[i], last.flow[i])
-                };
+                let [heat1, heat2] = base.heat_j;
                 return Stage {
                     state: State {
                         p1_pa: p1,
@@ -169,15 +233,18 @@ impl Network {
                         gas: [one.gas, two.gas],
                         q2_m3_s: two.flow,
                         shear: [one.shear, two.shear],
-                        heat_j: [heat(0), heat(1)],
+                        heat_j: [
+                            path1.fade.heated(heat1, at.duration_s, drop1, one.flow),
+                            path2.fade.heated(heat2, at.duration_s, drop2, two.flow),
+                        ],
                         mean_volume: [one.mean_volume, two.mean_volume],
                     },
-                    pressure_pa: [p1, one.oil_pa, if CONNECTED { two.oil_pa + d3 } else { p1 }, two.oil_pa],
+                    pressure_pa: [p1, one.oil_pa, N::choose(connected, two.oil_pa + d3, p1), two.oil_pa],
                 };
             }
             let relax = if round < FULL_STEP_ROUNDS { 1.0 } else { 0.5 };
-            d1 += relax * bounded(step1);
-            d2 += relax * bounded(step2);
+            d1 = N::choose(done, d1, d1 + bounded(step1) * relax);
+            d2 = N::choose(done, d2, d2 + bounded(step2) * relax);
         }
     }
 
@@ -189,20 +256,22 @@ impl Network {
     )]
     fn second_loop(
         &self,
-        p1: f64,
-        p1_slope: f64,
-        d2: f64,
-        two: &PathAnswer,
-        column: OilColumn,
-        q2_before: f64,
-        inverse_c3: f64,
-    ) -> SecondLoop {
+        p1: N,
+        p1_slope: N,
+        d2: N,
+        two: &PathAnswer<N>,
+        column: OilColumn<N>,
+        q2_before: N,
+        inverse_c3: N,
+    ) -> SecondLoop<N> {
         let behind = p1 - d2 - two.line_pa - column.drop(q2_before, two.flow) - two.oil_pa;
-        let behind_d2 = -1.0 - (two.line_slope + column.slope + two.oil_slope) * two.flow_slope;
-        if let Some(law) = &self.valve3_throttle {
+        let behind_d2 = -((two.line_slope + column.slope + two.oil_slope) * two.flow_slope) - 1.0;
+        if N::IS_SINGLE
+            && let Some(law) = &self.valve3_throttle
+        {
             // A flow that falls with its drop cannot be solved for the drop: the loop is closed in flows. The slope leaves
             // the law's own fall out; it is then too steep, never of the wrong sign.
-            let through = throttled(law, behind) / inverse_c3;
+            let through = behind.map(|behind| throttled(law, behind)) / inverse_c3;
             let (unit, unit_slope) = unit_flow(behind, self.transition_pa);
             SecondLoop {
                 residual: two.flow - through * unit,
@@ -218,7 +287,7 @@ impl Network {
                 by_d1: p1_slope,
                 by_d2: behind_d2 - slope * inverse_c3 * two.flow_slope,
                 drop,
-                drop_by: [0.0, slope * inverse_c3 * two.flow_slope],
+                drop_by: [two.flow.of(0.0), slope * inverse_c3 * two.flow_slope],
             }
         }
     }

@@ -2,50 +2,115 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::Number;
 use crate::strut::gas::GasState;
 
 /// The differential states of the network.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(in crate::strut) struct State {
+pub(in crate::strut) struct State<N = f64> {
     /// Gauge pressure of the main chamber, Pa.
-    pub p1_pa: f64,
+    pub p1_pa: N,
     /// Gas of accumulators 1 and 2.
-    pub gas: [GasState; 2],
+    pub gas: [GasState<N>; 2],
     /// Volume that the main chamber holds beyond what it holds at static pressure, m3. It is a state of its own beside
     /// p1: stages must blend volumes, since the pressure near vacuum is anything but linear in them.
-    pub held_m3: f64,
+    pub held_m3: N,
     /// Fraction by which the chamber's content has been compressed beyond what a constant bulk modulus makes of it. The
     /// recordings' equation multiplies it by the chamber as it is at the moment, so it is a state of its own too.
-    pub compressed: f64,
+    pub compressed: N,
     /// Flow of path 2, m3/s, which the oil column of its line carries on.
-    pub q2_m3_s: f64,
+    pub q2_m3_s: N,
     /// Shear of the seals of the floating pistons, -1 to 1.
-    pub shear: [f64; 2],
+    pub shear: [N; 2],
     /// Energy held by the oil of the dampers, J.
-    pub heat_j: [f64; 2],
+    pub heat_j: [N; 2],
     /// Mean of the gas volumes over the static ones, over the time constant of a law with a memory.
-    pub mean_volume: [f64; 2],
+    pub mean_volume: [N; 2],
 }
 
 impl State {
-    /// `self + weight (other - self)`, state by state: the recombination that the stages of a Runge-Kutta step need.
-    #[inline]
-    pub fn blend(&self, other: &Self, weight: f64) -> Self {
-        let mix = |a: f64, b: f64| a + weight * (b - a);
-        let both = |a: [f64; 2], b: [f64; 2]| [mix(a[0], b[0]), mix(a[1], b[1])];
+    /// Several side by side, `like` any number of their kind.
+    #[inline(always)]
+    pub fn side_by_side<N: Number>(each: &[&Self], like: N) -> State<N> {
         let gas = |i: usize| GasState {
-            volume_m3: mix(self.gas[i].volume_m3, other.gas[i].volume_m3),
-            temperature_k: mix(self.gas[i].temperature_k, other.gas[i].temperature_k),
+            volume_m3: like.gather_from(each, |s| s.gas[i].volume_m3),
+            temperature_k: like.gather_from(each, |s| s.gas[i].temperature_k),
         };
-        Self {
-            p1_pa: mix(self.p1_pa, other.p1_pa),
+        State {
+            p1_pa: like.gather_from(each, |s| s.p1_pa),
             gas: [gas(0), gas(1)],
-            held_m3: mix(self.held_m3, other.held_m3),
-            compressed: mix(self.compressed, other.compressed),
-            q2_m3_s: mix(self.q2_m3_s, other.q2_m3_s),
-            shear: both(self.shear, other.shear),
-            heat_j: both(self.heat_j, other.heat_j),
-            mean_volume: both(self.mean_volume, other.mean_volume),
+            held_m3: like.gather_from(each, |s| s.held_m3),
+            compressed: like.gather_from(each, |s| s.compressed),
+            q2_m3_s: like.gather_from(each, |s| s.q2_m3_s),
+            shear: [
+                like.gather_from(each, |s| s.shear[0]),
+                like.gather_from(each, |s| s.shear[1]),
+            ],
+            heat_j: [
+                like.gather_from(each, |s| s.heat_j[0]),
+                like.gather_from(each, |s| s.heat_j[1]),
+            ],
+            mean_volume: [
+                like.gather_from(each, |s| s.mean_volume[0]),
+                like.gather_from(each, |s| s.mean_volume[1]),
+            ],
         }
+    }
+}
+
+impl<N: Number> State<N> {
+    /// What stands in a lane.
+    #[inline(always)]
+    pub fn part(&self, lane: usize) -> State {
+        let gas = |i: usize| GasState {
+            volume_m3: self.gas[i].volume_m3.lane(lane),
+            temperature_k: self.gas[i].temperature_k.lane(lane),
+        };
+        State {
+            p1_pa: self.p1_pa.lane(lane),
+            gas: [gas(0), gas(1)],
+            held_m3: self.held_m3.lane(lane),
+            compressed: self.compressed.lane(lane),
+            q2_m3_s: self.q2_m3_s.lane(lane),
+            shear: [self.shear[0].lane(lane), self.shear[1].lane(lane)],
+            heat_j: [self.heat_j[0].lane(lane), self.heat_j[1].lane(lane)],
+            mean_volume: [self.mean_volume[0].lane(lane), self.mean_volume[1].lane(lane)],
+        }
+    }
+
+    /// `self + weight (other - self)`, state by state: the recombination that the stages of a Runge-Kutta step need.
+    #[inline(always)]
+    pub fn blend(&self, other: &Self, weight: f64) -> Self {
+        Self {
+            p1_pa: mixed(self.p1_pa, other.p1_pa, weight),
+            gas: [
+                mixed_gas(self.gas[0], other.gas[0], weight),
+                mixed_gas(self.gas[1], other.gas[1], weight),
+            ],
+            held_m3: mixed(self.held_m3, other.held_m3, weight),
+            compressed: mixed(self.compressed, other.compressed, weight),
+            q2_m3_s: mixed(self.q2_m3_s, other.q2_m3_s, weight),
+            shear: both_mixed(self.shear, other.shear, weight),
+            heat_j: both_mixed(self.heat_j, other.heat_j, weight),
+            mean_volume: both_mixed(self.mean_volume, other.mean_volume, weight),
+        }
+    }
+}
+
+#[inline(always)]
+fn mixed<N: Number>(a: N, b: N, weight: f64) -> N {
+    a + (b - a) * weight
+}
+
+#[inline(always)]
+fn both_mixed<N: Number>([a1, a2]: [N; 2], [b1, b2]: [N; 2], weight: f64) -> [N; 2] {
+    [mixed(a1, b1, weight), mixed(a2, b2, weight)]
+}
+
+#[inline(always)]
+fn mixed_gas<N: Number>(a: GasState<N>, b: GasState<N>, weight: f64) -> GasState<N> {
+    GasState {
+        volume_m3: mixed(a.volume_m3, b.volume_m3, weight),
+        temperature_k: mixed(a.temperature_k, b.temperature_k, weight),
     }
 }

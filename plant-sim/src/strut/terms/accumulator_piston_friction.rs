@@ -6,6 +6,7 @@
 use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::Number;
 use crate::model_file::{Checked, Limit, Range};
 use crate::strut::flow_path::FlowPath;
 
@@ -55,11 +56,11 @@ impl AccumulatorPistonFriction {
 
 /// The seal of one floating piston.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PistonSeal {
+pub struct PistonSeal<N = f64> {
     /// Breakaway pressure, Pa; 0 for a piston without friction.
-    pub breakaway_pa: f64,
+    pub breakaway_pa: N,
     /// Oil volume that shears the seal from rest to sliding, m3.
-    pub presliding_m3: f64,
+    pub presliding_m3: N,
 }
 
 /// Pressure beyond the piston, and the shear `s` of its seal.
@@ -74,17 +75,19 @@ impl PistonSeal {
         breakaway_pa: 0.0,
         presliding_m3: 1.0,
     };
+}
 
+impl<N: Number> PistonSeal<N> {
     /// Shear of the seal, -1 to 1, after oil has flowed in for `duration_s`, and its derivative by the flow, s/m3. One
     /// implicit step.
     #[inline(always)]
     #[must_use]
-    pub fn sheared(&self, shear: f64, duration_s: f64, flow_m3_s: f64) -> (f64, f64) {
+    pub fn sheared(&self, shear: N, duration_s: N, flow_m3_s: N) -> (N, N) {
         let k = duration_s / self.presliding_m3;
-        let divisor = 1.0 + k * flow_m3_s.abs();
+        let divisor = k * flow_m3_s.abs() + 1.0;
         (
             (shear + k * flow_m3_s) / divisor,
-            k * (1.0 - shear * flow_m3_s.signum()) / (divisor * divisor),
+            k * (shear.of(1.0) - shear * flow_m3_s.map(f64::signum)) / (divisor * divisor),
         )
     }
 }

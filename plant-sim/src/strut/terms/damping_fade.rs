@@ -6,6 +6,7 @@
 use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::Number;
 use crate::model_file::{Checked, Limit, Range};
 use crate::strut::flow_path::FlowPath;
 
@@ -43,19 +44,36 @@ impl DampingFade {
         }
     }
 
+    /// What cools its packs.
+    #[must_use]
+    pub fn cooling(&self) -> PackCooling {
+        PackCooling {
+            time_s: self.cooling_time_s,
+        }
+    }
+}
+
+/// The cooling of both packs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PackCooling<N = f64> {
+    /// Time constant, s.
+    pub time_s: N,
+}
+
+impl<N: Number> PackCooling<N> {
     /// What is left of the energy held (J) after it has cooled for a while (s), J. One implicit step.
     #[inline(always)]
     #[must_use]
-    pub fn cooled(&self, energy_j: f64, duration_s: f64) -> f64 {
-        energy_j * (1.0 / (1.0 + duration_s / self.cooling_time_s))
+    pub fn cooled(&self, energy_j: N, duration_s: N) -> N {
+        energy_j * (duration_s / self.time_s + 1.0).recip()
     }
 }
 
 /// The fade of one pack; none by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct PackFade {
+pub struct PackFade<N = f64> {
     /// Relative weakening for each joule held, 1/J.
-    pub per_j: f64,
+    pub per_j: N,
 }
 
 /// Drop of a pack whose oil holds the energy `E`.
@@ -64,24 +82,21 @@ pub const EQUATION: Equation = Equation {
     source: "lumped energy balance, assumed",
 };
 
-impl PackFade {
+impl<N: Number> PackFade<N> {
     /// What the pack's pressure drop is divided by while its oil holds an energy (J).
     #[inline(always)]
     #[must_use]
-    pub fn weakening(&self, energy_j: f64) -> f64 {
-        1.0 + self.per_j * energy_j
+    pub fn weakening(&self, energy_j: N) -> N {
+        self.per_j * energy_j + 1.0
     }
 
     /// Energy held, J, after oil has flowed (m3/s) across a pressure drop (Pa) for a while (s). A pack that does not fade
     /// is not heated.
     #[inline(always)]
     #[must_use]
-    pub fn heated(&self, energy_j: f64, duration_s: f64, drop_pa: f64, flow_m3_s: f64) -> f64 {
-        if self.per_j > 0.0 {
-            energy_j + duration_s * drop_pa * flow_m3_s
-        } else {
-            energy_j
-        }
+    pub fn heated(&self, energy_j: N, duration_s: N, drop_pa: N, flow_m3_s: N) -> N {
+        let fades = self.per_j.above(self.per_j.of(0.0));
+        N::choose(fades, energy_j + duration_s * drop_pa * flow_m3_s, energy_j)
     }
 }
 
@@ -101,7 +116,7 @@ mod tests {
         let pack = FADE.pack(FlowPath::One);
         let mut energy = 0.0;
         for _ in 0..60_000 {
-            energy = FADE.cooled(pack.heated(energy, 1e-3, 1e6, 1e-4), 1e-3);
+            energy = FADE.cooling().cooled(pack.heated(energy, 1e-3, 1e6, 1e-4), 1e-3);
         }
         assert!(
             (energy / (100.0 * 60.0 * (1.0 - libm::exp(-1.0))) - 1.0).abs() < 1e-4,

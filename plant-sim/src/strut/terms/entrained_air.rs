@@ -7,8 +7,9 @@ use super::equation::Equation;
 use oleo_interface::{Absolute, Gauge};
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::{Mask, Number};
 use crate::model_file::{Checked, Limit, Range};
-use crate::strut::pressure::ATMOSPHERE_PA;
+use crate::strut::pressure::{ATMOSPHERE_PA, absolute};
 
 /// The oil in the main chamber holds bubbles of air.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -39,31 +40,53 @@ pub const EQUATION: Equation = Equation {
 };
 
 impl EntrainedAir {
+    /// Its bubbles.
+    #[must_use]
+    pub fn bubbles(&self) -> Bubbles {
+        Bubbles {
+            volume_fraction: self.volume_fraction,
+            polytropic_exponent: self.polytropic_exponent,
+        }
+    }
+}
+
+/// The bubbles of entrained air.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bubbles<N = f64> {
+    /// Volume of the air over that of the oil at atmospheric pressure.
+    pub volume_fraction: N,
+    /// Polytropic exponent of the bubbles.
+    pub polytropic_exponent: N,
+}
+
+impl<N: Number> Bubbles<N> {
     /// Volume of the air over that of the oil at a pressure, and minus its derivative, 1/Pa.
     ///
     /// `a (p_atm/p)^(1/n)`. As the pressure nears vacuum the bubbles take up the whole flow; this is also what keeps a
     /// strut in violent rebound from pulling on its oil.
-    #[inline]
+    #[inline(always)]
     #[must_use]
-    pub fn bubbles(&self, pressure: Gauge<f64>) -> (f64, f64) {
-        let absolute = pressure.absolute();
-        let held = if absolute > LEAST_BUBBLE_PRESSURE {
-            absolute
-        } else {
-            LEAST_BUBBLE_PRESSURE
-        };
-        let inverse = 1.0 / held.pa();
-        let ratio = ATMOSPHERE_PA * inverse;
+    pub fn volume(&self, pressure: Gauge<N>) -> (N, N) {
+        let pressure = absolute(pressure).pa();
+        let held = pressure.at_least(pressure.of(LEAST_BUBBLE_PRESSURE.pa()));
+        let inverse = held.recip();
+        let ratio = inverse * ATMOSPHERE_PA;
         let n = self.polytropic_exponent;
+        let one = n.of(1.0);
         // Isothermal bubbles, the usual choice, need no power function.
-        let (power, shrinking) = if n == 1.0 {
+        let isothermal = n.up_to(one) & one.up_to(n);
+        let (power, shrinking) = if isothermal.all() {
             (ratio, inverse)
         } else {
-            (libm::pow(ratio, 1.0 / n), inverse / n)
+            let power = |lane| match n.lane(lane) {
+                1.0 => ratio.lane(lane),
+                n => libm::pow(ratio.lane(lane), 1.0 / n),
+            };
+            (ratio.gather(power), inverse / n)
         };
         let volume = self.volume_fraction * power;
         let slope = volume * shrinking;
-        (volume + slope * (held - absolute), slope)
+        (volume + slope * (held - pressure), slope)
     }
 }
 
@@ -77,8 +100,8 @@ mod tests {
             volume_fraction: 0.01,
             polytropic_exponent: 1.0,
         };
-        assert_eq!(air.bubbles(Gauge(0.0)).0, 0.01);
-        let (volume, _) = air.bubbles(Gauge(3.0 * ATMOSPHERE_PA));
+        assert_eq!(air.bubbles().volume(Gauge(0.0)).0, 0.01);
+        let (volume, _) = air.bubbles().volume(Gauge(3.0 * ATMOSPHERE_PA));
         assert!((volume - 0.0025).abs() < 1e-15);
     }
 
@@ -91,8 +114,9 @@ mod tests {
             };
             for gauge in [-1.1 * ATMOSPHERE_PA, -0.99 * ATMOSPHERE_PA, -5e4, 0.0, 4e6] {
                 let h = 1e-4 * (gauge + 1.2 * ATMOSPHERE_PA);
-                let quotient = (air.bubbles(Gauge(gauge - h)).0 - air.bubbles(Gauge(gauge + h)).0) / (2.0 * h);
-                let (_, slope) = air.bubbles(Gauge(gauge));
+                let quotient =
+                    (air.bubbles().volume(Gauge(gauge - h)).0 - air.bubbles().volume(Gauge(gauge + h)).0) / (2.0 * h);
+                let (_, slope) = air.bubbles().volume(Gauge(gauge));
                 assert!((slope / quotient - 1.0).abs() < 1e-3, "{n} {gauge}: {slope} {quotient}");
             }
         }

@@ -7,6 +7,7 @@
 use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::Number;
 use crate::model_file::{Checked, Limit, Range};
 use crate::strut::flow_path::FlowPath;
 
@@ -44,36 +45,36 @@ pub const EQUATION: Equation = Equation {
 };
 
 /// One implicit step of the energy equation: everything but the wall.
-pub(in crate::strut) struct EnergyStep {
+pub(in crate::strut) struct EnergyStep<N> {
     /// Length of the step, s.
-    pub duration_s: f64,
+    pub duration_s: N,
     /// Flow of oil into the accumulator, m3/s.
-    pub flow_m3_s: f64,
+    pub flow_m3_s: N,
     /// `(dp/dT)_V` of the gas, Pa/K.
-    pub heating_pa_k: f64,
+    pub heating_pa_k: N,
     /// `1 / (m c_v)`, K/J.
-    pub inverse_heat_capacity_k_j: f64,
+    pub inverse_heat_capacity_k_j: N,
     /// Gas volume at the beginning of the step, m3.
-    pub volume_before_m3: f64,
+    pub volume_before_m3: N,
     /// One over the gas volume at the end of the step, 1/m3.
-    pub inverse_volume_1_m3: f64,
+    pub inverse_volume_1_m3: N,
     /// Gas temperature at the beginning of the step, K.
-    pub temperature_before_k: f64,
+    pub temperature_before_k: N,
     /// Ambient temperature, K.
-    pub ambient_k: f64,
+    pub ambient_k: N,
 }
 
-impl EnergyStep {
+impl<N: Number> EnergyStep<N> {
     /// Temperature at the end of the step, K, and its derivative by the flow, K s/m3. `cooling_rate_1_s` is `1 / tau`.
     ///
     /// The implicit equation is linear in the new temperature, so this is its closed form. Its divisor is kept above 0.05:
     /// below, one step would heat the gas twentyfold, which only a hopeless trial of the solver asks for.
     #[inline(always)]
-    pub fn temperature(&self, cooling_rate_1_s: f64) -> (f64, f64) {
+    pub fn temperature(&self, cooling_rate_1_s: N) -> (N, N) {
         let k = self.duration_s * self.heating_pa_k * self.inverse_heat_capacity_k_j;
         let s = self.duration_s * cooling_rate_1_s;
-        let divisor = 1.0 + s - k * self.flow_m3_s;
-        let inverse = 1.0 / if divisor > 0.05 { divisor } else { 0.05 };
+        let divisor = s + 1.0 - k * self.flow_m3_s;
+        let inverse = divisor.at_least(divisor.of(0.05)).recip();
         let t = (self.temperature_before_k + s * self.ambient_k) * inverse;
         (t, t * k * self.volume_before_m3 * self.inverse_volume_1_m3 * inverse)
     }
@@ -84,7 +85,7 @@ mod tests {
     use super::*;
 
     /// A gram of nitrogen in 0.1 l.
-    fn step(flow_m3_s: f64, duration_s: f64, temperature_before_k: f64) -> EnergyStep {
+    fn step(flow_m3_s: f64, duration_s: f64, temperature_before_k: f64) -> EnergyStep<f64> {
         let (mass, volume) = (1e-3, 1e-4);
         EnergyStep {
             duration_s,

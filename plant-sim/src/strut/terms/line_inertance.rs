@@ -5,6 +5,7 @@
 use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::Number;
 use crate::model_file::{Checked, Limit, Range};
 
 /// The oil column of line 2 has mass.
@@ -32,15 +33,15 @@ pub const EQUATION: Equation = Equation {
 
 /// An oil column during one implicit step: `dp = (I / h) (Q - Q_before)`.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::strut) struct OilColumn {
+pub(in crate::strut) struct OilColumn<N> {
     /// Derivative of the drop by the flow, `I / h`, Pa s/m3.
-    pub slope: f64,
+    pub slope: N,
 }
 
-impl OilColumn {
+impl<N: Number> OilColumn<N> {
     /// A column of an inertance (kg/m4, 0 for none) during a step; `inverse_duration` is one over its length, 1/s.
     #[inline(always)]
-    pub fn during(inertance_kg_m4: f64, inverse_duration: f64) -> Self {
+    pub fn during(inertance_kg_m4: N, inverse_duration: N) -> Self {
         Self {
             slope: inertance_kg_m4 * inverse_duration,
         }
@@ -48,7 +49,7 @@ impl OilColumn {
 
     /// Pressure drop that changes the flow from the one to the other within the step, Pa.
     #[inline(always)]
-    pub fn drop(self, before_m3_s: f64, after_m3_s: f64) -> f64 {
+    pub fn drop(self, before_m3_s: N, after_m3_s: N) -> N {
         self.slope * (after_m3_s - before_m3_s)
     }
 }

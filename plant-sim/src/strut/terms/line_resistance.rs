@@ -5,6 +5,7 @@
 use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::Number;
 use crate::model_file::{Checked, Limit, Range};
 use crate::strut::flow_path::FlowPath;
 
@@ -46,9 +47,9 @@ impl LineResistance {
 
 /// The line of one path; without resistance by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct LaminarLine {
+pub struct LaminarLine<N = f64> {
     /// Hydraulic resistance of the line, Pa s/m3.
-    pub resistance_pa_s_m3: f64,
+    pub resistance_pa_s_m3: N,
 }
 
 /// Drop in series with the path.
@@ -57,11 +58,11 @@ pub const EQUATION: Equation = Equation {
     source: "Hagen-Poiseuille",
 };
 
-impl LaminarLine {
+impl<N: Number> LaminarLine<N> {
     /// Pressure drop at a flow, Pa, and its derivative by the flow, Pa s/m3.
     #[inline(always)]
     #[must_use]
-    pub fn drop(&self, flow_m3_s: f64) -> (f64, f64) {
+    pub fn drop(&self, flow_m3_s: N) -> (N, N) {
         (self.resistance_pa_s_m3 * flow_m3_s, self.resistance_pa_s_m3)
     }
 }

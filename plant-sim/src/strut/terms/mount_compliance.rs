@@ -5,6 +5,7 @@
 use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::Number;
 use crate::model_file::{Checked, Limit, Range};
 
 /// The mounting is soft.
@@ -34,9 +35,9 @@ impl MountCompliance {
 
 /// A mount; rigid by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Mount {
+pub struct Mount<N = f64> {
     /// One over the stiffness, m/N.
-    pub flexibility_m_n: f64,
+    pub flexibility_m_n: N,
 }
 
 /// Displacement that reaches the strut.
@@ -45,14 +46,16 @@ pub const EQUATION: Equation = Equation {
     source: "Theron & Els, final report 2002, section 3.3",
 };
 
-impl Mount {
+impl<N: Number> Mount<N> {
     /// Deflection under a force above the static one, m.
     #[inline(always)]
     #[must_use]
-    pub fn deflection_m(&self, force_n: f64) -> f64 {
+    pub fn deflection_m(&self, force_n: N) -> N {
         force_n * self.flexibility_m_n
     }
+}
 
+impl Mount {
     /// Volume by which the mount's deflection makes the chamber of a piston larger when its pressure rises, m3/Pa.
     #[must_use]
     pub fn volume_per_pressure_m3_pa(&self, piston_area_m2: f64) -> f64 {

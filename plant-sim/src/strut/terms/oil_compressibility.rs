@@ -12,6 +12,7 @@
 use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::Number;
 use crate::model_file::{Checked, Limit, Range};
 
 /// The density at which the main chamber's balance counts oil.
@@ -58,7 +59,7 @@ pub const EQUATION: Equation = Equation {
 /// Oil that a chamber of `oil_m3` takes up when its pressure rises by `rise_pa`, counted at the chamber's density, m3, and
 /// its derivative by the pressure, m3/Pa. `compressibility` is `1 / beta`, 1/Pa; 0 for rigid oil.
 #[inline(always)]
-pub(in crate::strut) fn taken_up_at_chamber_density(oil_m3: f64, rise_pa: f64, compressibility: f64) -> (f64, f64) {
+pub(in crate::strut) fn taken_up_at_chamber_density<N: Number>(oil_m3: N, rise_pa: N, compressibility: N) -> (N, N) {
     let slope = oil_m3 * compressibility;
     (slope * rise_pa, slope)
 }
@@ -69,11 +70,11 @@ pub(in crate::strut) fn taken_up_at_chamber_density(oil_m3: f64, rise_pa: f64, c
 /// `V (exp(y) - 1)` with `y = over / beta`. `y` is at most a few per cent, so the series is cut after `y^3 / 6`; the term
 /// left out is `y^4 / 24`, 1e-8 of the volume.
 #[inline(always)]
-pub(in crate::strut) fn held_at_static_density(oil_m3: f64, over_pa: f64, compressibility: f64) -> (f64, f64) {
+pub(in crate::strut) fn held_at_static_density<N: Number>(oil_m3: N, over_pa: N, compressibility: N) -> (N, N) {
     let y = over_pa * compressibility;
     (
-        oil_m3 * y * (1.0 + y * (0.5 + y * (1.0 / 6.0))),
-        oil_m3 * compressibility * (1.0 + y * (1.0 + 0.5 * y)),
+        oil_m3 * y * (y * (y * (1.0 / 6.0) + 0.5) + 1.0),
+        oil_m3 * compressibility * (y * (y * 0.5 + 1.0) + 1.0),
     )
 }
 

@@ -1,0 +1,270 @@
+//! Four struts that move together, side by side in the vectors of the processor.
+//!
+//! The results have the same bits as those of four struts that move one after the other: the hydraulics are one source, compiled
+//! for one number and for four ([`lanes`](crate::lanes)). What is not worth a vector (the valves' movements, the rod) is worked out strut
+//! by strut. Where a processor has no vectors of four numbers, or the four struts differ in kind, they take their steps alone.
+
+use oleo_interface::StrutValves;
+use pulp::Simd;
+
+use super::hydraulics::{Flowing, Hydraulics, Step};
+use super::integrator::{Strut, StrutOutput};
+use super::motion::Segment;
+use crate::lanes::{Four, LANES, Vectors, each_lane, vectors};
+
+/// How a strut is to move over an interval, and the switching signals of its valves meanwhile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StrutMove {
+    /// Where it ends, and the speeds at its two ends.
+    pub segment: Segment,
+    /// Duration of the interval, s.
+    pub duration_s: f64,
+    /// Switching signals, true for open.
+    pub signals: StrutValves<bool>,
+}
+
+/// What four struts need to move together.
+///
+/// ```
+/// use oleo_interface::StrutValves;
+/// use oleo_plant_sim::strut::{Abreast, Segment, Strut, StrutModel, StrutMove};
+/// let closed = StrutValves::default();
+/// let strut = |load_n| Strut::at_rest(&StrutModel::defender110(load_n), closed);
+/// let mut struts = [strut(4000.0)?, strut(5000.0)?, strut(6000.0)?, strut(8000.0)?];
+/// let mut alone = struts[2].clone();
+/// let moves = [0.01, 0.02, -0.01, 0.0].map(|to_m| StrutMove {
+///     segment: Segment { to_m, from_m_s: 0.0, to_m_s: 1.0 },
+///     duration_s: 0.01,
+///     signals: closed,
+/// });
+/// let together = Abreast::of(&struts.each_ref()).advance(struts.each_mut(), &moves);
+/// assert_eq!(together[2], alone.advance_with_speeds(-0.01, 0.0, 1.0, 0.01, closed));
+/// # Ok::<(), oleo_plant_sim::model_file::InvalidValue>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Abreast {
+    side_by_side: Option<SideBySide<Vectors>>,
+}
+
+impl Abreast {
+    /// For four struts, now and as long as they are the same struts in whatever state.
+    #[must_use]
+    pub fn of(struts: &[&Strut; LANES]) -> Self {
+        Self {
+            side_by_side: vectors().and_then(|simd| SideBySide::of(simd, struts)),
+        }
+    }
+
+    /// Makes a move with each strut; the outputs at their ends.
+    pub fn advance(&self, mut struts: [&mut Strut; LANES], moves: &[StrutMove; LANES]) -> [StrutOutput; LANES] {
+        match &self.side_by_side {
+            Some(side_by_side) => side_by_side.advance(struts, moves),
+            None => each_lane(|lane| struts[lane].advance_by(&moves[lane])),
+        }
+    }
+}
+
+/// The hydraulics of four struts in vectors.
+#[derive(Debug, Clone)]
+struct SideBySide<S: Simd> {
+    simd: S,
+    hydraulics: Hydraulics<Four<S>>,
+}
+
+impl<S: Simd> SideBySide<S> {
+    fn of(simd: S, struts: &[&Strut; LANES]) -> Option<Self> {
+        let hydraulics = Hydraulics::abreast(&struts.map(|strut| &strut.hydraulics), Four::zero(simd))?;
+        Some(Self { simd, hydraulics })
+    }
+
+    fn advance(&self, mut struts: [&mut Strut; LANES], moves: &[StrutMove; LANES]) -> [StrutOutput; LANES] {
+        let mut intervals = each_lane(|lane| struts[lane].begin(&moves[lane]));
+        while let Some(first) = intervals.iter().position(|interval| !interval.is_over()) {
+            // Where a strut has arrived, the first that has not is computed once more, and nothing is kept of it.
+            let computed = each_lane(|lane| if intervals[lane].is_over() { first } else { lane });
+            let steps = each_lane(|lane| struts[computed[lane]].next_step(&intervals[computed[lane]]));
+            self.simd.vectorize(TakeStep {
+                hydraulics: &self.hydraulics,
+                like: Four::zero(self.simd),
+                struts: &mut struts,
+                steps: &steps,
+                computed,
+            });
+            for lane in (0..LANES).filter(|lane| computed[*lane] == *lane) {
+                struts[lane].conclude(&steps[lane], &mut intervals[lane]);
+            }
+        }
+        each_lane(|lane| struts[lane].finish(&intervals[lane]))
+    }
+}
+
+/// One step of four struts, of which some may stand in for others.
+struct TakeStep<'a, 'b, S: Simd> {
+    hydraulics: &'a Hydraulics<Four<S>>,
+    like: Four<S>,
+    struts: &'a mut [&'b mut Strut; LANES],
+    steps: &'a [Step; LANES],
+    /// Which strut each lane computes.
+    computed: [usize; LANES],
+}
+
+impl<S: Simd> pulp::NullaryFnOnce for TakeStep<'_, '_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let Self {
+            hydraulics,
+            like,
+            struts,
+            steps,
+            computed,
+        } = self;
+        let step = Step::side_by_side(&each_lane(|lane| &steps[lane]), like);
+        let mut flowing = Flowing::side_by_side(&each_lane(|lane| &struts[computed[lane]].flowing), like);
+        hydraulics.step(&mut flowing, &step);
+        for lane in 0..LANES {
+            if computed[lane] == lane {
+                struts[lane].flowing = flowing.part(lane);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::strut::model::StrutModel;
+    use crate::strut::terms::Effects;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    const REST: StrutMove = StrutMove {
+        segment: Segment {
+            to_m: 0.0,
+            from_m_s: 0.0,
+            to_m_s: 0.0,
+        },
+        duration_s: 0.01,
+        signals: StrutValves::new(false, false, false),
+    };
+
+    /// Every term that is solved with the oil, and those of the rod.
+    fn every_term() -> Effects {
+        toml::from_str(
+            r#"
+            oil_compressibility = { bulk_modulus_Pa = 1.4e9 }
+            entrained_air = { volume_fraction = 0.005, polytropic_exponent = 1.2 }
+            gas_heat_transfer = { time_constant_1_s = 2.6, time_constant_2_s = 6.5 }
+            real_gas = { equation = "reference" }
+            seal_friction = { coulomb_force_N = 300.0, breakaway_force_N = 400.0, stribeck_speed_m_s = 0.02, presliding_stiffness_N_m = 2e6 }
+            accumulator_piston_friction = { pressure_1_Pa = 3e4, pressure_2_Pa = 2e4 }
+            damper_leakage = { flow_coefficient_1 = 8e-8, flow_coefficient_2 = 5e-8 }
+            line_resistance = { resistance_1_Pa_s_m3 = 1e8, resistance_2_Pa_s_m3 = 1e8 }
+            line_inertance = { inertance_2_kg_m4 = 5e6 }
+            valve_delay = { response_polynomial_s = [0.04, 0.002, 0.0001] }
+            valve_transition = { shape = "linear" }
+            bump_stop = { bump_clearance_m = 0.07, rebound_clearance_m = 0.08, stiffness_N_m = 5e4, progression_N_m3 = 1e9 }
+            mount_compliance = { stiffness_N_m = 5e6 }
+            damping_fade = { fade_1_per_J = 1e-4, fade_2_per_J = 1e-4, cooling_time_s = 60.0 }
+            "#,
+        )
+        .unwrap()
+    }
+
+    /// Struts whose parameters differ from lane to lane.
+    fn models(effects: &Effects, random: &mut ChaCha8Rng) -> [StrutModel; LANES] {
+        each_lane(|lane| {
+            let mut model = StrutModel::defender110(random.random_range(3500.0..9000.0));
+            model.effects = effects.clone();
+            model.gas.temperature_k = random.random_range(250.0..330.0);
+            model.damper = model.damper.map(|damper| damper.scaled(random.random_range(0.6..1.5)));
+            model.valve[2].flow_coefficient *= random.random_range(0.5..2.0);
+            if let Some(air) = &mut model.effects.entrained_air {
+                air.polytropic_exponent = [1.0, 1.2, 1.4, 1.0][lane];
+            }
+            // Beside one that rubs, one whose piston is free and whose pack neither leaks nor fades.
+            if let (0, Some(friction)) = (lane, &mut model.effects.accumulator_piston_friction) {
+                friction.pressure_1_pa = 0.0;
+            }
+            if let (1, Some(leak)) = (lane, &mut model.effects.damper_leakage) {
+                leak.flow_coefficient_1 = 0.0;
+            }
+            if let (2, Some(fade)) = (lane, &mut model.effects.damping_fade) {
+                fade.fade_2_per_j = 0.0;
+            }
+            model
+        })
+    }
+
+    /// Calm ones, violent ones down to vacuum, with valves that switch at times of their own.
+    fn moves(count: usize, random: &mut ChaCha8Rng) -> Vec<StrutMove> {
+        let (amplitude_m, frequency_1_s) = (random.random_range(0.0..0.1), random.random_range(1.0..60.0));
+        let mut time_s = 0.0;
+        (0..count)
+            .map(|k| {
+                let duration_s = [0.001, 0.004, 0.01][k % 3];
+                let speed = |t: f64| amplitude_m * frequency_1_s * libm::cos(frequency_1_s * t);
+                let from_m_s = speed(time_s);
+                time_s += duration_s;
+                StrutMove {
+                    segment: Segment {
+                        to_m: amplitude_m * libm::sin(frequency_1_s * time_s),
+                        from_m_s,
+                        to_m_s: speed(time_s),
+                    },
+                    duration_s,
+                    signals: StrutValves::from_fn(|_| random.random_range(0..60) < 30),
+                }
+            })
+            .collect()
+    }
+
+    fn have_the_same_bits<S: Simd>(simd: S, effects: &Effects) {
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        for _ in 0..6 {
+            let models = models(effects, &mut random);
+            let signals = StrutValves::new(true, false, random.random_range(0..2) == 0);
+            let mut together = models.each_ref().map(|model| Strut::at_rest(model, signals).unwrap());
+            let mut alone = together.clone();
+            let mut moves = each_lane(|_| moves(300, &mut random).into_iter());
+            let mut by = each_lane(|_| REST);
+            let side_by_side = SideBySide::of(simd, &together.each_ref()).unwrap();
+            for k in 0..300 {
+                by = each_lane(|lane| moves[lane].next().unwrap_or(by[lane]));
+                let outputs = side_by_side.advance(together.each_mut(), &by);
+                assert_eq!(outputs, each_lane(|lane| alone[lane].advance_by(&by[lane])), "move {k}");
+                assert!(outputs.iter().all(|output| output.force_n.is_finite()));
+            }
+            for lane in 0..LANES {
+                // The state too: it comes to rest alone as if it had never been beside others.
+                let mut rest = by[lane];
+                (rest.segment.from_m_s, rest.segment.to_m_s) = (0.0, 0.0);
+                for _ in 0..20 {
+                    assert_eq!(together[lane].advance_by(&rest), alone[lane].advance_by(&rest));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn lanes_have_the_bits_of_a_strut_alone() {
+        for effects in [StrutModel::defender110(5000.0).effects, every_term()] {
+            have_the_same_bits(pulp::Scalar256b, &effects);
+            match vectors() {
+                Some(simd) => have_the_same_bits(simd, &effects),
+                None => eprintln!("SKIPPED vectors of four numbers: this processor has none"),
+            }
+        }
+    }
+
+    #[test]
+    fn struts_of_different_kinds_move_alone() {
+        let plain = StrutModel::defender110(5000.0);
+        let mut bare = plain.clone();
+        bare.effects.gas_heat_transfer = None;
+        let still = StrutValves::default();
+        let struts = [&plain, &plain, &bare, &plain].map(|model| Strut::at_rest(model, still).unwrap());
+        assert!(SideBySide::of(pulp::Scalar256b, &struts.each_ref()).is_none());
+    }
+}

@@ -1,0 +1,202 @@
+//! What is solved implicitly in a step of a strut: oil, gas and mount; of one strut, or of several side by side.
+//!
+//! Stiff by nature: the main chamber (about 1e-12 m3/Pa behind 1e8 to 4e9 Pa s/m3) settles in 0.1 to 4 ms, gas in seconds.
+//! Method: SDIRK2 (Alexander, SIAM J. Numer. Anal. 14(6), 1977), second order, L-stable, stiffly accurate, two equal
+//! stages of `gamma h`, `gamma = 1 - 1/sqrt 2`. Each stage is solved by the network.
+
+use oleo_interface::{StrutValves, Valve};
+
+use super::model::StrutModel;
+use super::network::{LastSolution, Network, StageEnd, State};
+use super::terms::{Mount, PackCooling};
+use crate::lanes::Number;
+
+/// `1 - 1/sqrt 2`.
+pub(super) const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
+
+/// What of it does not change while a strut works.
+#[derive(Debug, Clone)]
+pub(super) struct Hydraulics<N: Number = f64> {
+    pub network: Network<N>,
+    mount: Mount<N>,
+    cooling: Option<PackCooling<N>>,
+}
+
+/// What of it is carried from one step to the next.
+#[derive(Debug, Clone)]
+pub(super) struct Flowing<N: Number = f64> {
+    pub state: State<N>,
+    pub last: LastSolution<N>,
+    /// Gauge pressures p1 to p4, Pa.
+    pub pressure_pa: [N; 4],
+    /// Displacement that the speeds given to the network add up to, m. The difference to the true one is made good in the
+    /// next step, so that no oil is gained or lost over an hour.
+    pub supplied_m: N,
+}
+
+/// One step as it is known beforehand.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Step<N = f64> {
+    /// Time at which it begins, s.
+    pub begins_s: N,
+    /// Its length, s.
+    pub duration_s: N,
+    /// Displacement of the actuator at its beginning, m.
+    pub from_m: N,
+    /// Displacement, m, and speed, m/s, of the actuator at the end of the first stage.
+    pub middle: [N; 2],
+    /// The same at its end.
+    pub end: [N; 2],
+    /// Openings of the valves at the ends of both stages.
+    pub opening: [StrutValves<N>; 2],
+    /// Friction of the rod, N.
+    pub friction_n: N,
+}
+
+impl Flowing {
+    /// Those of several struts side by side, `like` any number of their kind.
+    #[inline(always)]
+    pub fn side_by_side<N: Number>(each: &N::Each<&Self>, like: N) -> Flowing<N> {
+        let all = each.as_ref();
+        Flowing {
+            state: State::side_by_side(N::each(|lane| &all[lane].state).as_ref(), like),
+            last: LastSolution::side_by_side(&N::each(|lane| &all[lane].last), like),
+            pressure_pa: [
+                like.gather_from(all, |f| f.pressure_pa[0]),
+                like.gather_from(all, |f| f.pressure_pa[1]),
+                like.gather_from(all, |f| f.pressure_pa[2]),
+                like.gather_from(all, |f| f.pressure_pa[3]),
+            ],
+            supplied_m: like.gather_from(all, |f| f.supplied_m),
+        }
+    }
+}
+
+impl<N: Number> Flowing<N> {
+    /// What stands in a lane.
+    #[inline(always)]
+    pub fn part(&self, lane: usize) -> Flowing {
+        Flowing {
+            state: self.state.part(lane),
+            last: self.last.part(lane),
+            pressure_pa: [
+                self.pressure_pa[0].lane(lane),
+                self.pressure_pa[1].lane(lane),
+                self.pressure_pa[2].lane(lane),
+                self.pressure_pa[3].lane(lane),
+            ],
+            supplied_m: self.supplied_m.lane(lane),
+        }
+    }
+}
+
+impl Step {
+    /// Those of several struts side by side, `like` any number of their kind.
+    #[inline(always)]
+    pub fn side_by_side<N: Number>(each: &[&Self], like: N) -> Step<N> {
+        let opening = |i: usize| {
+            StrutValves::new(
+                like.gather_from(each, |step| step.opening[i][Valve::Bypass1]),
+                like.gather_from(each, |step| step.opening[i][Valve::Bypass2]),
+                like.gather_from(each, |step| step.opening[i][Valve::Spring]),
+            )
+        };
+        Step {
+            begins_s: like.gather_from(each, |step| step.begins_s),
+            duration_s: like.gather_from(each, |step| step.duration_s),
+            from_m: like.gather_from(each, |step| step.from_m),
+            middle: [
+                like.gather_from(each, |step| step.middle[0]),
+                like.gather_from(each, |step| step.middle[1]),
+            ],
+            end: [
+                like.gather_from(each, |step| step.end[0]),
+                like.gather_from(each, |step| step.end[1]),
+            ],
+            opening: [opening(0), opening(1)],
+            friction_n: like.gather_from(each, |step| step.friction_n),
+        }
+    }
+}
+
+impl Hydraulics {
+    pub fn of(model: &StrutModel) -> Self {
+        let effects = &model.effects;
+        Self {
+            network: Network::of(model),
+            mount: (effects.mount_compliance.as_ref()).map_or_else(Mount::default, |mount| mount.mount()),
+            cooling: effects.damping_fade.as_ref().map(|fade| fade.cooling()),
+        }
+    }
+
+    /// Those of several struts side by side, `like` any number of their kind; none where they differ in kind, or where one has a law
+    /// without a name.
+    pub fn abreast<N: Number>(struts: &N::Each<&Self>, like: N) -> Option<Hydraulics<N>> {
+        let all = struts.as_ref();
+        let of = |value: fn(&Self) -> f64| like.gather(|lane| value(all[lane]));
+        if all.iter().any(|one| one.cooling.is_some() != all[0].cooling.is_some()) {
+            return None;
+        }
+        Some(Hydraulics {
+            network: Network::abreast(&N::each(|lane| &all[lane].network), like)?,
+            mount: Mount {
+                flexibility_m_n: of(|one| one.mount.flexibility_m_n),
+            },
+            cooling: all[0].cooling.map(|_| PackCooling {
+                time_s: of(|one| one.cooling.map_or(1.0, |cooling| cooling.time_s)),
+            }),
+        })
+    }
+}
+
+impl<N: Number> Hydraulics<N> {
+    /// One step.
+    #[inline(always)]
+    pub fn step(&self, flowing: &mut Flowing<N>, step: &Step<N>) {
+        let h = step.duration_s;
+        let hg = h * GAMMA;
+        let [first, second] = self.stage_ends(flowing, step);
+        flowing.supplied_m = flowing.supplied_m + h * (1.0 - GAMMA) * first.speed_m_s;
+        let one = self.network.stage(&flowing.state, &first, &mut flowing.last);
+        let base = flowing.state.blend(&one.state, (1.0 - GAMMA) / GAMMA);
+        flowing.supplied_m = flowing.supplied_m + hg * second.speed_m_s;
+        let two = self.network.stage(&base, &second, &mut flowing.last);
+        flowing.state = two.state;
+        flowing.pressure_pa = two.pressure_pa;
+        if let Some(cooling) = &self.cooling {
+            let [heat1, heat2] = flowing.state.heat_j;
+            flowing.state.heat_j = [cooling.cooled(heat1, h), cooling.cooled(heat2, h)];
+        }
+    }
+
+    #[inline(always)]
+    fn stage_ends(&self, flowing: &Flowing<N>, step: &Step<N>) -> [StageEnd<N>; 2] {
+        let h = step.duration_s;
+        let hg = h * GAMMA;
+        // What the speeds have not supplied so far is supplied evenly over this step.
+        let owed_m_s = (step.from_m - flowing.supplied_m) / h;
+        // The mount bends under what the force exceeds the static one.
+        let over_pa = flowing.state.p1_pa - self.network.chamber.static_pa;
+        let bent_m = (self.mount).deflection_m(step.friction_n + self.network.chamber.area_m2 * over_pa);
+        let [middle_m, middle_m_s] = step.middle;
+        let [end_m, end_m_s] = step.end;
+        let [opening_middle, opening_end] = step.opening;
+        let first = StageEnd {
+            duration_s: hg,
+            since_last_s: hg,
+            time_s: step.begins_s + hg,
+            displacement_m: middle_m - bent_m,
+            speed_m_s: middle_m_s + owed_m_s,
+            opening: opening_middle,
+        };
+        let second = StageEnd {
+            duration_s: hg,
+            since_last_s: h - hg,
+            time_s: step.begins_s + h,
+            displacement_m: end_m - bent_m,
+            speed_m_s: end_m_s + owed_m_s,
+            opening: opening_end,
+        };
+        [first, second]
+    }
+}

@@ -25,7 +25,7 @@ use crate::valves::ValveCommand;
 /// let outputs = tick(&Configuration::defender110(), &mut state, &Inputs::default());
 /// assert_eq!(outputs.mode, Mode::StartUp); // no reading is valid yet
 /// ```
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 // In the order of the declaration: the checks of the readings come first, where one instruction of a Cortex-M4F reaches them.
 #[repr(C)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -39,11 +39,29 @@ pub struct State {
     switching: SwitchingLimit,
 }
 
+impl Default for State {
+    fn default() -> Self {
+        Self::INITIAL
+    }
+}
+
 impl State {
+    /// Every bit of it is zero, so that neither a table of it nor code that makes it is in the flash of a board: memory is cleared. Each
+    /// part has such a state.
+    const INITIAL: Self = Self {
+        plausibility: plausibility::State::INITIAL,
+        estimate: estimate::State::INITIAL,
+        strategy: strategy::State::INITIAL,
+        springs: Springs::INITIAL,
+        dwell: Dwell::INITIAL,
+        failsafe: failsafe::State::INITIAL,
+        switching: SwitchingLimit::INITIAL,
+    };
+
     /// Before the first tick: valves closed, mode start-up.
     #[inline]
     pub fn new() -> Self {
-        Self::default()
+        Self::INITIAL
     }
 
     /// Latches the safe state: from the next tick on all valves stay closed, for this cause. A restart that must not end the latched
@@ -214,7 +232,7 @@ mod tests {
             tick(&configuration, &mut state, &leaning(n));
         }
         let all_open = ValveCommand::from_word(BYPASS_BITS);
-        state.dwell = Dwell::default();
+        state.dwell = Dwell::INITIAL;
         while state.dwell.step(all_open, false) != all_open {}
         let outputs = tick(&configuration, &mut state, &leaning(guard_at));
         assert!(outputs.rollover_guard);

@@ -8,7 +8,7 @@ use oleo_controller::{Configuration, Corners, FaultCode, Inputs, Mode, Node, Out
 use super::bus::{self, Crossing, OnBus};
 use super::plan::{Event, Plan, What};
 use super::readings;
-use super::rules::{Broken, Observation, Restart, Rules};
+use super::rules::{Broken, Observation, Restart, Rules, TIMEOUT};
 use super::vehicle::Vehicle;
 
 /// Ticks that were spent in each mode, and under each fault.
@@ -58,6 +58,8 @@ struct World {
     outputs: Outputs,
     sensors_silent: u32,
     commands_silent: u32,
+    /// Ticks since something happened to a sensor's frame, or the controller was restarted.
+    undisturbed: u32,
     reading_missing: u32,
 }
 
@@ -76,6 +78,7 @@ pub fn drive(plan: &Plan, mut change: impl FnMut(&mut Observation)) -> Result<Re
         outputs: Outputs::default(),
         sensors_silent: 0,
         commands_silent: 0,
+        undisturbed: 0,
         reading_missing: 0,
     };
     let mut faults: Vec<Fault> = (plan.events.iter())
@@ -126,7 +129,12 @@ impl World {
                 .pressure
                 .values()
                 .any(|strut| strut.iter().any(|(_, reading)| !reading.is_valid()));
-        self.reading_missing = if missing && !touched && restart.is_none() {
+        self.undisturbed = if touched || restart.is_some() {
+            0
+        } else {
+            self.undisturbed.saturating_add(1)
+        };
+        self.reading_missing = if missing && self.undisturbed > TIMEOUT {
             self.reading_missing + 1
         } else {
             0

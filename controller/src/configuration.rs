@@ -141,6 +141,13 @@ mod tests {
         );
         assert_eq!(
             name(|b| {
+                b.tuning.strategy.road_and_cornering.rough_m_s2 = Hysteresis { begin: 0.8, end: 1.0 };
+            }),
+            Err("tuning.strategy.road_and_cornering.rough_m_s2")
+        );
+        #[cfg(feature = "comparison")]
+        assert_eq!(
+            name(|b| {
                 b.tuning.strategy.ride_handling.running_rms.ratio = Hysteresis { begin: 0.8, end: 1.0 };
             }),
             Err("tuning.strategy.ride_handling.running_rms.ratio")

@@ -265,6 +265,7 @@ mod tests {
         assert!((measured - 0.5).abs() < 0.06, "{measured}");
     }
 
+    #[cfg(feature = "comparison")]
     #[test]
     fn leaky_integrator_integrates_and_forgets() {
         let (filter, mut state) = (LeakyIntegrator::from_corner_hz(0.2), 0.0);

@@ -177,9 +177,7 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::strategy::Strategy;
-    use crate::valves::BYPASS_BITS;
-    use oleo_interface::{Corner, Gauge, Side, StrutPressures};
+    use oleo_interface::{Corner, Gauge, StrutPressures};
 
     /// No input leads to a number that is not finite, so the memory is damaged by hand.
     #[test]
@@ -202,7 +200,9 @@ mod tests {
     }
 
     /// The vehicle leans to one side within half a second, on four struts of 0.5 l of gas at 2 MPa with all valves open.
+    #[cfg(feature = "comparison")]
     fn leaning(tick: u32) -> Inputs {
+        use oleo_interface::Side;
         let lean_m = 0.06 * (tick as f32 / 100.0).min(1.0);
         let displacement_m = Corners::from_fn(|corner| match corner.side() {
             Side::Left => -lean_m,
@@ -216,9 +216,10 @@ mod tests {
     }
 
     /// Bypass valves rest for 100 ms after a change. The roll-over guard closes them without that rest.
+    #[cfg(feature = "comparison")]
     #[test]
     fn an_emergency_closes_bypass_valves_that_have_just_opened() {
-        let configuration = Configuration::defender110().with_strategy(Strategy::RideHandling);
+        let configuration = Configuration::defender110().with_strategy(crate::strategy::Strategy::RideHandling);
         let mut state = State::new();
         for _ in 0..200 {
             tick(&configuration, &mut state, &leaning(0));
@@ -231,7 +232,7 @@ mod tests {
         for n in 1..guard_at {
             tick(&configuration, &mut state, &leaning(n));
         }
-        let all_open = ValveCommand::from_word(BYPASS_BITS);
+        let all_open = ValveCommand::from_word(crate::valves::BYPASS_BITS);
         state.dwell = Dwell::INITIAL;
         while state.dwell.step(all_open, false) != all_open {}
         let outputs = tick(&configuration, &mut state, &leaning(guard_at));

@@ -58,8 +58,8 @@ pub struct Observation {
     pub sensors_silent: u32,
     /// Number of ticks for which no command has reached the output stage.
     pub commands_silent: u32,
-    /// Number of ticks for which a sensor has said that it has no value, on a bus that had been without faults for the time-out before:
-    /// so long right frames may be refused because they do not follow from a wrong one.
+    /// Largest number of ticks in a row for which a sensor has said that it has no value of one of its readings, on a bus that had been
+    /// without faults for the time-out before: so long right frames may be refused because they do not follow from a wrong one.
     pub reading_missing: u32,
 }
 

@@ -94,6 +94,17 @@ mod tests {
     }
 
     #[test]
+    fn a_valve_that_has_rested_stays_where_it_is_wanted_while_another_moves() {
+        let mut dwell = Dwell::INITIAL;
+        let one = ValveCommand::SAFE.with(Corner::FrontRight, Valve::Bypass1, true);
+        let two = one.with(Corner::RearLeft, Valve::Bypass2, true);
+        for _ in 0..3 * BYPASS_DWELL_TICKS {
+            dwell.step(one, false);
+        }
+        assert_eq!(dwell.step(two, false), two);
+    }
+
+    #[test]
     fn each_valve_rests_for_itself() {
         let mut dwell = Dwell::INITIAL;
         let one = ValveCommand::SAFE.with(Corner::RearLeft, Valve::Bypass1, true);

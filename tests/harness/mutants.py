@@ -368,7 +368,7 @@ def report(mutants, outcome, arguments):
     explained = {}
     for line in EXPLAINED.read_text().splitlines() if EXPLAINED.exists() else []:
         if line and not line.startswith("#"):
-            key, _, reason = line.partition(" | ")
+            key, _, reason = line.rpartition(" | ")  # a change may contain " | "
             explained[key] = reason
     survived = {m["key"]: m["name"] for m in mutants if outcome[m["number"]] == "survived"}
     known = {m["key"] for m in mutants}

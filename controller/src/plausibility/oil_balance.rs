@@ -202,6 +202,19 @@ mod tests {
     }
 
     #[test]
+    fn the_first_gas_carries_what_the_second_has_not_taken() {
+        for (x, trapped) in [(0.02, 0.0), (0.02, 0.01), (-0.03, 0.005), (0.0, -0.01)] {
+            let mut balance = settled(2.4e6);
+            turn(&mut balance, x, &strut(2.4e6, trapped, x), false);
+            let carried = balance.carried_m();
+            assert!(
+                (carried - (x - trapped)).abs() < 1e-4,
+                "{x} m, {trapped} m: {carried} m"
+            );
+        }
+    }
+
+    #[test]
     fn holds_at_any_displacement_with_any_oil_behind_the_valve() {
         let mut balance = OilBalance::INITIAL;
         for n in 0..2000_u16 {

@@ -106,6 +106,15 @@ mod tests {
     use proptest::prelude::*;
     use std::vec::Vec;
 
+    #[test]
+    fn an_opening_waits_for_199_ticks_after_the_ninth_switching_before() {
+        for (ticks, opens) in [(SPAN_TICKS - 1, false), (SPAN_TICKS, true)] {
+            let mut history = History::INITIAL;
+            assert!((0..9).all(|n| history.add(1_000 + n, n % 2 == 0)));
+            assert_eq!(history.add(1_000 + ticks, true), opens, "{ticks} ticks");
+        }
+    }
+
     /// Most switchings of any valve within a second.
     fn most_a_second(words: &[u16]) -> usize {
         (0..12)

@@ -294,6 +294,18 @@ mod tests {
         assert_eq!(found, [Some(30), Some(50), None]);
     }
 
+    #[test]
+    fn a_delay_is_forgotten_after_four_windows_that_agree_on_none() {
+        let mut state = State {
+            delay: Some(30),
+            ..State::INITIAL
+        };
+        for window in 1..=FORGET_WINDOWS {
+            state.choose();
+            assert_eq!(state.delay.is_some(), window < 4, "window {window}");
+        }
+    }
+
     /// Every fourth delay agrees on the left in each tick and on the right in every third one, or less.
     #[test]
     fn counters_count() {

@@ -359,5 +359,10 @@ mod tests {
         }));
         second.poll();
         assert_eq!(second.node().counters().foreign, 1);
+        let mut third = port();
+        third.report_board(crate::can::BoardMessage::default());
+        third.tick();
+        let board = Id::Standard(StandardId::new(crate::can::BOARD.id).unwrap());
+        assert!(third.can.sent.iter().any(|frame| frame.id == board));
     }
 }

@@ -182,7 +182,7 @@ mod tests {
     /// No input leads to a number that is not finite, so the memory is damaged by hand.
     #[test]
     fn arithmetic_that_is_not_finite_latches_in_the_same_tick() {
-        let (configuration, mut state) = (Configuration::defender110(), State::new());
+        let (configuration, mut state) = (Configuration::defender110(), State::default());
         let inputs = Inputs::from_values(Corners::splat(0.0), Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
         for _ in 0..200 {
             tick(&configuration, &mut state, &inputs);

@@ -141,6 +141,18 @@ mod tests {
         );
         assert_eq!(
             name(|b| {
+                b.tuning.strategy.road_and_cornering.rough_m_s2 = Hysteresis { begin: 0.8, end: 1.0 };
+            }),
+            Err("tuning.strategy.road_and_cornering.rough_m_s2")
+        );
+        assert_eq!(
+            name(|b| b.tuning.strategy.road_and_cornering.cornering.floor_m_s2 = 0.0),
+            Err("tuning.strategy.road_and_cornering.cornering.floor_m_s2")
+        );
+        assert!(name(|b| b.tuning.strategy.road_and_cornering.rollover_guard.lateral_m_s2 = 0.0).is_err());
+        #[cfg(feature = "comparison")]
+        assert_eq!(
+            name(|b| {
                 b.tuning.strategy.ride_handling.running_rms.ratio = Hysteresis { begin: 0.8, end: 1.0 };
             }),
             Err("tuning.strategy.ride_handling.running_rms.ratio")

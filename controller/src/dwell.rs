@@ -11,7 +11,7 @@ use crate::valves::{BYPASS_BITS, VALVES, ValveCommand, bits};
 const BYPASS_DWELL_TICKS: u32 = ticks(100) as u32;
 
 /// State of the eight bypass signals.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Dwell {
     open: ValveCommand,
@@ -22,6 +22,12 @@ pub struct Dwell {
 }
 
 impl Dwell {
+    pub const INITIAL: Self = Self {
+        open: ValveCommand::SAFE,
+        now: 0,
+        changed_at: [0; VALVES],
+    };
+
     /// One tick: takes over the bypass signals of `wanted` whose valves have rested, and returns all of them. The spring
     /// valves are closed in what it returns. `at_once` lets a closing pass without rest.
     pub fn step(&mut self, wanted: ValveCommand, at_once: bool) -> ValveCommand {
@@ -57,7 +63,7 @@ mod tests {
 
     #[test]
     fn a_chattering_signal_moves_the_valve_at_most_every_twenty_ticks() {
-        let mut dwell = Dwell::default();
+        let mut dwell = Dwell::INITIAL;
         let (mut changes, mut before) = (0, ValveCommand::SAFE);
         for n in 0..400 {
             let wanted = if n % 2 == 0 { BYPASS } else { ValveCommand::SAFE };
@@ -88,8 +94,19 @@ mod tests {
     }
 
     #[test]
+    fn a_valve_that_has_rested_stays_where_it_is_wanted_while_another_moves() {
+        let mut dwell = Dwell::INITIAL;
+        let one = ValveCommand::SAFE.with(Corner::FrontRight, Valve::Bypass1, true);
+        let two = one.with(Corner::RearLeft, Valve::Bypass2, true);
+        for _ in 0..3 * BYPASS_DWELL_TICKS {
+            dwell.step(one, false);
+        }
+        assert_eq!(dwell.step(two, false), two);
+    }
+
+    #[test]
     fn each_valve_rests_for_itself() {
-        let mut dwell = Dwell::default();
+        let mut dwell = Dwell::INITIAL;
         let one = ValveCommand::SAFE.with(Corner::RearLeft, Valve::Bypass1, true);
         let two = one.with(Corner::RearLeft, Valve::Bypass2, true);
         for _ in 0..BYPASS_DWELL_TICKS {

@@ -187,7 +187,7 @@ impl Estimate {
 /// let estimate = state.step(&parameters, &under(2.2e6));
 /// assert!((estimate.vertical_acceleration_m_s2 - 0.980_665).abs() < 1e-3);
 /// ```
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     speed: Corners<DerivativeState>,
@@ -199,7 +199,23 @@ pub struct State {
     started: bool,
 }
 
+impl Default for State {
+    fn default() -> Self {
+        Self::INITIAL
+    }
+}
+
 impl State {
+    pub(crate) const INITIAL: Self = Self {
+        speed: Corners::splat(DerivativeState::INITIAL),
+        static_load_n: Corners::splat(0.0),
+        lateral: lateral::State::INITIAL,
+        wheelbase: wheelbase::State::INITIAL,
+        lateral_mean_square: 0.0,
+        vertical_mean_square: 0.0,
+        started: false,
+    };
+
     /// The static load on each strut, N.
     pub(crate) fn static_load_n(&self) -> &Corners<f32> {
         &self.static_load_n

@@ -157,6 +157,11 @@ pub struct Health {
 }
 
 impl Health {
+    pub(crate) const GOOD: Self = Self {
+        affected: Corners::splat(false),
+        cause: FaultCode::None,
+    };
+
     /// Whether nothing is wrong.
     pub fn is_good(&self) -> bool {
         self.cause == FaultCode::None && self.affected == Corners::splat(false)
@@ -188,7 +193,7 @@ fn affected_axles(affected: Corners<bool>) -> Axles<bool> {
 /// broken.affected[Corner::FrontLeft] = false;
 /// assert_eq!((0..200).map(|_| state.step(&broken)).last(), Some(Mode::Degraded));
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     mode: Mode,
@@ -203,7 +208,7 @@ pub struct State {
 }
 
 /// How often something has happened, where a minute without it takes one away.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Recurrence {
     count: u8,
@@ -211,6 +216,8 @@ struct Recurrence {
 }
 
 impl Recurrence {
+    const INITIAL: Self = Self { count: 0, calm: 0 };
+
     /// Counts one more occurrence.
     fn happens(&mut self) {
         self.count = self.count.saturating_add(1);
@@ -231,7 +238,7 @@ impl Recurrence {
 }
 
 /// Whether an axle is restricted, and for how long after its last fault.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct AxleState {
     restricted: bool,
@@ -241,6 +248,12 @@ struct AxleState {
 }
 
 impl AxleState {
+    const INITIAL: Self = Self {
+        restricted: false,
+        healthy: 0,
+        faults: Recurrence::INITIAL,
+    };
+
     /// One tick; returns whether the axle is restricted.
     #[inline(never)]
     fn step(&mut self, affected: bool) -> bool {
@@ -261,13 +274,29 @@ impl AxleState {
     }
 }
 
+impl Default for State {
+    fn default() -> Self {
+        Self::INITIAL
+    }
+}
+
 impl State {
+    pub(crate) const INITIAL: Self = Self {
+        mode: Mode::StartUp,
+        first_cause: FaultCode::None,
+        axles: Axles::splat(AxleState::INITIAL),
+        healthy: 0,
+        severe: 0,
+        safe_entries: Recurrence::INITIAL,
+        was_normal: false,
+    };
+
     /// A machine that is latched from its first tick on, for a fault before a restart.
     pub fn latched(cause: FaultCode) -> Self {
         Self {
             mode: Mode::Latched,
             first_cause: cause,
-            ..Self::default()
+            ..Self::INITIAL
         }
     }
 

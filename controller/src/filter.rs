@@ -67,9 +67,14 @@ pub struct SecondOrder {
 }
 
 /// State of [`SecondOrder`].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SecondOrderState([f32; 2]);
+
+impl SecondOrderState {
+    /// Without a past.
+    pub const INITIAL: Self = Self([0.0; 2]);
+}
 
 impl SecondOrder {
     /// With a natural frequency, Hz, above 0 and below half the tick's rate, and a damping ratio, above 0.
@@ -124,7 +129,7 @@ pub struct Derivative {
 }
 
 /// State of [`Derivative`].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DerivativeState {
     lagged: f32,
@@ -132,8 +137,11 @@ pub struct DerivativeState {
 }
 
 impl DerivativeState {
+    /// The state in which the input has been 0 for ever.
+    pub const INITIAL: Self = Self::at_rest(0.0);
+
     /// The state in which the input has been constant for ever.
-    pub fn at_rest(input: f32) -> Self {
+    pub const fn at_rest(input: f32) -> Self {
         Self {
             lagged: input,
             rate: 0.0,
@@ -257,6 +265,7 @@ mod tests {
         assert!((measured - 0.5).abs() < 0.06, "{measured}");
     }
 
+    #[cfg(feature = "comparison")]
     #[test]
     fn leaky_integrator_integrates_and_forgets() {
         let (filter, mut state) = (LeakyIntegrator::from_corner_hz(0.2), 0.0);

@@ -25,6 +25,9 @@ const MOST_LATE_TICKS: u8 = 2;
 /// Number of challenges to which an answer is accepted.
 const CHALLENGES: usize = 1 + MOST_LATE_TICKS as usize;
 
+/// What the challenges begin with: the bits of the golden ratio.
+const SEED: u32 = 0x9E37_79B9;
+
 /// The counter in the header of a frame.
 #[inline]
 pub fn counter(data: &[u8; crate::can::FRAME_BYTES]) -> u8 {
@@ -44,7 +47,7 @@ struct Seen {
 /// What is known of the time at the other end of the bus.
 #[derive(Clone, Copy, Debug)]
 pub struct Freshness {
-    /// State of the generator of challenges; it is never 0.
+    /// State of the generator of challenges; 0 before the first one, and never again.
     random: u32,
     /// The last challenges, the youngest first. Before the first one, 0 stands for "nothing heard yet".
     challenges: [u8; CHALLENGES],
@@ -55,26 +58,24 @@ pub struct Freshness {
     counter_ahead: Option<u8>,
 }
 
-impl Default for Freshness {
-    #[inline]
-    fn default() -> Self {
-        Self {
-            random: 0x9E37_79B9,
-            challenges: [0; CHALLENGES],
-            now: 0,
-            seen: Axles::splat(None),
-            counter_ahead: None,
-        }
-    }
-}
-
 impl Freshness {
+    pub const INITIAL: Self = Self {
+        random: 0,
+        challenges: [0; CHALLENGES],
+        now: 0,
+        seen: Axles::splat(None),
+        counter_ahead: None,
+    };
+
     /// The next challenge, which ends a tick.
     #[inline]
     pub fn challenge(&mut self) -> u8 {
         self.now = self.now.wrapping_add(1);
         // Xorshift (Marsaglia 2003), of which the highest byte is sent. Three instructions; a crate of generators would
         // bring none that is as small and free of panics.
+        if self.random == 0 {
+            self.random = SEED;
+        }
         self.random ^= self.random << 13;
         self.random ^= self.random >> 17;
         self.random ^= self.random << 5;
@@ -171,7 +172,7 @@ mod tests {
     #[test]
     fn two_ticks_late_is_fresh_and_three_is_not() {
         for late in 0..600_usize {
-            let (mut freshness, mut challenges) = (Freshness::default(), std::vec![]);
+            let (mut freshness, mut challenges) = (Freshness::INITIAL, std::vec![]);
             let mut fresh = 0;
             for n in 0..4000_usize {
                 challenges.push(last(&freshness));
@@ -188,7 +189,7 @@ mod tests {
 
     #[test]
     fn senders_with_different_pasts_are_both_doubted() {
-        let mut freshness = Freshness::default();
+        let mut freshness = Freshness::INITIAL;
         let answer = last(&freshness);
         step(&mut freshness, 5, answer);
         let both = Axles::new(
@@ -200,7 +201,7 @@ mod tests {
 
     #[test]
     fn sampling_that_has_stopped_is_found_behind_a_counter_that_runs() {
-        let mut freshness = Freshness::default();
+        let mut freshness = Freshness::INITIAL;
         step(&mut freshness, 5, 0);
         let stopped = message(5, last(&freshness));
         let fresh = freshness.displacements(Axles::new(Some((stopped, 6)), None));
@@ -209,7 +210,7 @@ mod tests {
 
     #[test]
     fn a_pressure_message_out_of_step_is_found() {
-        let mut freshness = Freshness::default();
+        let mut freshness = Freshness::INITIAL;
         assert!(!freshness.is_in_step(0), "nothing to compare with");
         freshness.displacements(Axles::new(Some((message(14, 0), 14)), None));
         for late in 0..16_u8 {
@@ -226,7 +227,7 @@ mod tests {
     fn challenges_are_the_highest_bytes_of_xorshift() {
         let mut freshness = Freshness {
             random: 2_463_534_242,
-            ..Freshness::default()
+            ..Freshness::INITIAL
         };
         for published in [
             723_471_715_u32,

@@ -138,29 +138,28 @@ pub(crate) struct State {
     started: bool,
 }
 
-impl Default for State {
-    #[inline]
-    fn default() -> Self {
-        Self {
-            body: Bessel::default(),
-            twist: Bessel::default(),
-            body_slow: SecondOrderState::default(),
-            twist_slow: SecondOrderState::default(),
-            front: [0.0; HISTORY],
-            now: 0,
-            known: 0,
-            bias: 0.0,
-            started: false,
-        }
-    }
+impl State {
+    pub const INITIAL: Self = Self {
+        body: Bessel::INITIAL,
+        twist: Bessel::INITIAL,
+        body_slow: SecondOrderState::INITIAL,
+        twist_slow: SecondOrderState::INITIAL,
+        front: [0.0; HISTORY],
+        now: 0,
+        known: 0,
+        bias: 0.0,
+        started: false,
+    };
 }
 
 /// States of the fourth-order low-pass.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Bessel([SecondOrderState; 2]);
 
 impl Bessel {
+    const INITIAL: Self = Self([SecondOrderState::INITIAL; 2]);
+
     fn at_rest(c: &Parameters, x: f32, u: f32) -> Self {
         let [first, second] = &c.sections;
         Self([first.at_rest(x, u), second.at_rest(x, 0.0)])
@@ -187,13 +186,10 @@ impl State {
         let half = 0.5 * c.inertia_per_arm_m;
         let (roll, twist) = (half * (front_rad + rear_rad), half * (rear_rad - front_rad));
         if !self.started {
-            *self = Self {
-                body: Bessel::at_rest(c, quasi_static_m_s2, roll),
-                twist: Bessel::at_rest(c, 0.0, twist),
-                body_slow: c.slow.at_rest(quasi_static_m_s2, 0.0),
-                started: true,
-                ..Self::default()
-            };
+            self.started = true;
+            self.body = Bessel::at_rest(c, quasi_static_m_s2, roll);
+            self.twist = Bessel::at_rest(c, 0.0, twist);
+            self.body_slow = c.slow.at_rest(quasi_static_m_s2, 0.0);
         }
         let plain = self.body.step(c, quasi_static_m_s2, roll);
         let witness = self.twist.step(c, 0.0, twist);
@@ -241,7 +237,7 @@ impl State {
         Self {
             started: true,
             bias: f32::NAN,
-            ..Self::default()
+            ..Self::INITIAL
         }
     }
 }
@@ -255,7 +251,7 @@ mod tests {
     /// RMS of the quick estimate and of the witness over the last 5 s on a road whose front axle rolls by 0.5 degrees at a
     /// frequency and whose rear axle follows 33 ticks later, under a body that stays upright.
     fn on_a_wavy_road(frequency_hz: f32, delay: Option<u8>) -> (f32, f32) {
-        let (c, mut state) = (Parameters::new(1.8, 1.5), State::default());
+        let (c, mut state) = (Parameters::new(1.8, 1.5), State::INITIAL);
         let axle = |tick: usize| 0.0087 * libm::sinf(2.0 * PI * frequency_hz * tick as f32 * TICK_S);
         let (mut error_2, mut witness_2) = (0.0, 0.0);
         for tick in 0..4_000 {
@@ -287,7 +283,7 @@ mod tests {
 
     #[test]
     fn a_bend_is_seen_and_makes_no_witness() {
-        let (c, mut state) = (Parameters::new(1.8, 1.5), State::default());
+        let (c, mut state) = (Parameters::new(1.8, 1.5), State::INITIAL);
         let mut last = Lateral::default();
         // A vehicle that leans by 2 degrees at once: both axles see the same.
         for tick in 0..400 {
@@ -301,7 +297,7 @@ mod tests {
 
     #[test]
     fn a_side_slope_is_forgotten() {
-        let (c, mut state) = (Parameters::new(1.8, 1.5), State::default());
+        let (c, mut state) = (Parameters::new(1.8, 1.5), State::INITIAL);
         state.step(&c, 0.0, 0.0, 0.0, None);
         let mut last = Lateral::default();
         for _ in 0..12_000 {

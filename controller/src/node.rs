@@ -15,11 +15,11 @@
 
 use heapless::Vec;
 use oleo_interface::tick::TICK_MS;
-use oleo_interface::{Axles, Side, StrutPressures};
+use oleo_interface::{Axles, Corners, Side, StrutPressures};
 
 use crate::can::{
-    BOARD, BoardMessage, COMMAND, CheckStatus, CommandMessage, DISPLACEMENT, DisplacementMessage, FRAME_BYTES, Frame,
-    PRESSURE, PressureMessage, Protector, STATUS, StatusMessage, sensor_message,
+    BOARD, BoardMessage, COMMAND, CheckStatus, CommandMessage, Contract, Counter, DISPLACEMENT, DisplacementMessage,
+    FRAME_BYTES, Frame, PRESSURE, PressureMessage, STATUS, StatusMessage, sensor_message,
 };
 use crate::configuration::Configuration;
 use crate::failsafe::FaultCode;
@@ -32,6 +32,10 @@ use crate::tick::{Outputs, State, tick};
 /// Most frames that a tick sends: the command, every 100 ms the status, and every second the state of the board.
 pub const MAX_SENT: usize = 3;
 
+const NOTHING_RECEIVED: PerSensorMessage<Receiver> = PerSensorMessage {
+    pressure: Corners::splat(Receiver::INITIAL),
+    displacement: Axles::splat(Receiver::INITIAL),
+};
 const STATUS_TICKS: u32 = STATUS.period_ms / TICK_MS;
 const BOARD_TICKS: u32 = BOARD.period_ms / TICK_MS;
 
@@ -90,10 +94,10 @@ pub struct Node {
     freshness: Freshness,
     inputs: Inputs,
     echo_tick: u8,
-    command: Protector,
-    status: Protector,
+    command: Counter,
+    status: Counter,
     status_countdown: u32,
-    board: Protector,
+    board: Counter,
     board_state: Option<BoardMessage>,
     board_countdown: u32,
     counters: BusCounters,
@@ -106,17 +110,14 @@ impl Node {
         Self {
             state: State::new(),
             configuration,
-            receivers: PerSensorMessage {
-                pressure: PRESSURE.map(|contract| Receiver::new(&contract)),
-                displacement: DISPLACEMENT.map(|contract| Receiver::new(&contract)),
-            },
-            freshness: Freshness::default(),
+            receivers: NOTHING_RECEIVED,
+            freshness: Freshness::INITIAL,
             inputs: Inputs::default(),
             echo_tick: 0,
-            command: Protector::new(&COMMAND),
-            status: Protector::new(&STATUS),
+            command: Counter::INITIAL,
+            status: Counter::INITIAL,
             status_countdown: 0,
-            board: Protector::new(&BOARD),
+            board: Counter::INITIAL,
             board_state: None,
             board_countdown: 0,
             counters: BusCounters::default(),
@@ -152,7 +153,7 @@ impl Node {
         self.counters.received = self.counters.received.wrapping_add(1);
         // A frame of the wrong length cannot carry the right CRC: it has the same consequence.
         let data = <&[u8; FRAME_BYTES]>::try_from(data).unwrap_or(&[0xFF; FRAME_BYTES]);
-        let status = self.receivers.get_mut(message).receive(data);
+        let status = self.receivers.get_mut(message).receive(message.contract(), data);
         match status {
             CheckStatus::WrongCrc => {
                 self.counters.wrong_crc = self.counters.wrong_crc.wrapping_add(1);
@@ -185,15 +186,24 @@ impl Node {
     /// One period: decides, and returns the frames to send. Call it every [`TICK_MS`].
     #[inline]
     pub fn tick(&mut self) -> (Outputs, Vec<Frame, MAX_SENT>) {
+        let mut frames = Vec::new();
+        let outputs = self.tick_and_send(|frame| {
+            // There is room for as many frames as are ever sent in a tick.
+            let _ = frames.push(frame);
+        });
+        (outputs, frames)
+    }
+
+    /// The same; hands over each frame as it is made.
+    #[inline]
+    pub(crate) fn tick_and_send(&mut self, mut take: impl FnMut(Frame)) -> Outputs {
         self.end_of_reception();
         let outputs = tick(&self.configuration, &mut self.state, &self.inputs);
         self.inputs.foreign_sender = false;
 
-        let mut frames = Vec::new();
-        let mut send = |id: u16, mut data: [u8; FRAME_BYTES], protector: &mut Protector| {
-            protector.protect(&mut data);
-            // There is room for as many frames as are ever sent in a tick.
-            let _ = frames.push(Frame { id, data });
+        let mut send = |contract: &Contract, mut data: [u8; FRAME_BYTES], counter: &mut Counter| {
+            counter.protect(contract, &mut data);
+            take(Frame { id: contract.id, data });
         };
         let command = CommandMessage {
             command: outputs.command,
@@ -202,21 +212,21 @@ impl Node {
             mode: outputs.mode,
             fault: outputs.fault,
         };
-        send(COMMAND.id, command.encode(), &mut self.command);
+        send(&COMMAND, command.encode(), &mut self.command);
         if self.status_countdown == 0 {
             self.status_countdown = STATUS_TICKS;
             let status = status(&outputs, self.inputs.lost_messages);
-            send(STATUS.id, status.encode(), &mut self.status);
+            send(&STATUS, status.encode(), &mut self.status);
         }
         self.status_countdown = self.status_countdown.saturating_sub(1);
         if let Some(state) = self.board_state {
             if self.board_countdown == 0 {
                 self.board_countdown = BOARD_TICKS;
-                send(BOARD.id, state.encode(), &mut self.board);
+                send(&BOARD, state.encode(), &mut self.board);
             }
             self.board_countdown = self.board_countdown.saturating_sub(1);
         }
-        (outputs, frames)
+        outputs
     }
 
     /// Takes over what the messages of this tick say, and makes the readings of lost messages invalid.
@@ -233,12 +243,13 @@ impl Node {
             if receiver.candidate().is_some() && !fresh[axle] {
                 receiver.distrust();
             }
-            let left_and_right = match receiver.end_of_tick() {
+            let contract = &DISPLACEMENT[axle];
+            let left_and_right = match receiver.end_of_tick(contract) {
                 Some(data) => {
                     let DisplacementMessage { left, right, .. } = DisplacementMessage::decode(&data);
                     (left, right)
                 }
-                None if receiver.is_lost() => {
+                None if receiver.is_lost(contract) => {
                     inputs.lost_messages.insert(SensorMessage::Displacement(axle));
                     (Reading::INVALID, Reading::INVALID)
                 }
@@ -254,9 +265,10 @@ impl Node {
             if receiver.candidate().is_some_and(late) {
                 receiver.distrust();
             }
-            match receiver.end_of_tick() {
+            let contract = &PRESSURE[corner];
+            match receiver.end_of_tick(contract) {
                 Some(data) => inputs.pressure[corner] = PressureMessage::decode(&data).pressure,
-                None if receiver.is_lost() => {
+                None if receiver.is_lost(contract) => {
                     inputs.lost_messages.insert(SensorMessage::Pressure(corner));
                     inputs.pressure[corner] = StrutPressures::splat(Reading::INVALID);
                 }
@@ -292,7 +304,7 @@ mod tests {
     use super::*;
     use crate::failsafe::Mode;
     use crate::plant_end::PlantEnd;
-    use oleo_interface::{Corner, Corners, Gauge};
+    use oleo_interface::{Corner, Gauge};
 
     /// A node with the other end of its bus, at rest.
     struct Pair {

@@ -91,11 +91,11 @@ impl OutputStage {
     /// A stage that has received nothing: all valves are closed.
     pub fn new() -> Self {
         Self {
-            receiver: Receiver::new(&COMMAND),
+            receiver: Receiver::INITIAL,
             frames: 0,
             heard: None,
             command: ValveCommand::SAFE,
-            switching: SwitchingLimit::default(),
+            switching: SwitchingLimit::INITIAL,
             answered_late: false,
             errors: 0,
         }
@@ -105,7 +105,7 @@ impl OutputStage {
     pub fn receive(&mut self, data: &[u8]) -> CheckStatus {
         // A frame of the wrong length cannot carry the right CRC: it has the same consequence.
         let data = <&[u8; FRAME_BYTES]>::try_from(data).unwrap_or(&[0xFF; FRAME_BYTES]);
-        let status = self.receiver.receive(data);
+        let status = self.receiver.receive(&COMMAND, data);
         self.frames = self.frames.saturating_add(1);
         if status.is_error() {
             self.errors = self.errors.wrapping_add(1);
@@ -136,9 +136,9 @@ impl OutputStage {
                 self.distrust();
             }
         }
-        let new = self.receiver.end_of_tick().is_some();
+        let new = self.receiver.end_of_tick(&COMMAND).is_some();
         let wanted = match heard {
-            _ if self.receiver.is_lost() => ValveCommand::SAFE,
+            _ if self.receiver.is_lost(&COMMAND) => ValveCommand::SAFE,
             Some(heard) => {
                 let obeyed = new && alone;
                 if obeyed && heard.permitted == ValveCommand::SAFE {
@@ -161,7 +161,7 @@ impl OutputStage {
         self.command
     }
 
-    /// Number of ticks since a command was last obeyed; it saturates at 255.
+    /// Number of ticks since a command was last obeyed; it saturates at 255, which also means that none ever was.
     pub fn ticks_without_command(&self) -> u8 {
         self.receiver.age()
     }

@@ -127,15 +127,14 @@ impl<C: Can> Port<C> {
     /// [`TICK_MS`](oleo_interface::tick::TICK_MS).
     pub fn tick(&mut self) -> Outputs {
         self.poll();
-        let (outputs, frames) = self.node.tick();
-        for frame in frames {
+        let outputs = self.node.tick_and_send(|frame| {
             if self.queue.is_full() {
                 self.queue.pop_front();
                 self.counters.dropped = self.counters.dropped.wrapping_add(1);
             }
             // There is room now.
             let _ = self.queue.push_back(frame);
-        }
+        });
         self.send();
         outputs
     }
@@ -360,5 +359,10 @@ mod tests {
         }));
         second.poll();
         assert_eq!(second.node().counters().foreign, 1);
+        let mut third = port();
+        third.report_board(crate::can::BoardMessage::default());
+        third.tick();
+        let board = Id::Standard(StandardId::new(crate::can::BOARD.id).unwrap());
+        assert!(third.can.sent.iter().any(|frame| frame.id == board));
     }
 }

@@ -6,7 +6,7 @@
 //! a tick without a frame one more is accepted. Each tick that brings one frame as it should takes such an allowance back: a frame
 //! that was lost long ago does not come any more, and somebody else's must not pass for it.
 
-use crate::can::{CheckStatus, Checker, Contract, FRAME_BYTES, Period, StateMachine};
+use crate::can::{CheckStatus, Contract, FRAME_BYTES, Period, Sequence, StateMachine};
 
 /// What a tick's frames say together.
 #[derive(Clone, Copy, Debug)]
@@ -25,37 +25,35 @@ impl Gathered {
     };
 }
 
-/// What is known of one message.
+/// What is known of one message. Its contract is the caller's, and the same in every call.
 #[derive(Clone, Copy, Debug)]
+// Whole words, which a small image clears and copies without a call.
+#[repr(align(4))]
 pub struct Receiver {
-    checker: Checker,
+    sequence: Sequence,
     trust: StateMachine,
     trusted: bool,
     gathered: Gathered,
-    timeout_ticks: u8,
-    /// Ticks since the last new data, saturating.
-    age: u8,
+    /// Ticks for which the last new data are still remembered: all of them in their tick, 0 if there were none.
+    memory: u8,
     /// Number of ticks without a frame for which a late one may still come.
     owed: u8,
 }
 
 impl Receiver {
     /// Has received nothing: the message is lost until its first usable frame.
-    pub const fn new(contract: &Contract) -> Self {
-        Self {
-            checker: Checker::new(contract),
-            trust: StateMachine::new(),
-            trusted: false,
-            gathered: Gathered::NOTHING,
-            timeout_ticks: contract.timeout_ticks,
-            age: contract.timeout_ticks,
-            owed: 0,
-        }
-    }
+    pub const INITIAL: Self = Self {
+        sequence: Sequence::INITIAL,
+        trust: StateMachine::new(),
+        trusted: false,
+        gathered: Gathered::NOTHING,
+        memory: 0,
+        owed: 0,
+    };
 
     /// Takes a frame of this tick.
-    pub fn receive(&mut self, data: &[u8; FRAME_BYTES]) -> CheckStatus {
-        let status = self.checker.check(data);
+    pub fn receive(&mut self, contract: &Contract, data: &[u8; FRAME_BYTES]) -> CheckStatus {
+        let status = self.sequence.check(contract, data);
         let gathered = &mut self.gathered;
         gathered.frames = gathered.frames.saturating_add(1);
         let period = match status {
@@ -89,7 +87,7 @@ impl Receiver {
     }
 
     /// Ends the tick; returns the new data if there is any and the message is trusted.
-    pub fn end_of_tick(&mut self) -> Option<[u8; FRAME_BYTES]> {
+    pub fn end_of_tick(&mut self, contract: &Contract) -> Option<[u8; FRAME_BYTES]> {
         let crowded = self.is_crowded();
         let Gathered { frames, worst, data } = core::mem::replace(&mut self.gathered, Gathered::NOTHING);
         let period = if crowded {
@@ -100,27 +98,31 @@ impl Receiver {
             worst
         };
         self.owed = match frames {
-            0 => self.owed.saturating_add(1).min(self.timeout_ticks),
+            0 => self.owed.saturating_add(1).min(contract.timeout_ticks),
             1 => self.owed.saturating_sub(1),
             more => self.owed.saturating_sub(more - 1),
         };
         if frames == 0 {
-            self.checker.no_new_data();
+            self.sequence.no_new_data();
         }
         self.trusted = self.trust.step(period);
         let data = data.filter(|_| self.trusted && period != Period::Error);
-        self.age = if data.is_some() { 0 } else { self.age.saturating_add(1) };
+        self.memory = if data.is_some() {
+            u8::MAX
+        } else {
+            self.memory.saturating_sub(1)
+        };
         data
     }
 
     /// Whether the last data of the message must not be used any more.
-    pub fn is_lost(&self) -> bool {
-        !self.trusted || self.age >= self.timeout_ticks
+    pub fn is_lost(&self, contract: &Contract) -> bool {
+        !self.trusted || self.age() >= contract.timeout_ticks
     }
 
     /// Number of ticks since the last new data; it saturates.
     pub fn age(&self) -> u8 {
-        self.age
+        u8::MAX - self.memory
     }
 
     /// Whether more frames came than one sender sends.
@@ -143,9 +145,9 @@ mod tests {
     #[test]
     fn a_frame_full_of_ones_has_a_wrong_crc_under_every_identifier() {
         for message in SensorMessage::ALL {
-            let mut receiver = Receiver::new(&message.contract());
+            let mut receiver = Receiver::INITIAL;
             assert_eq!(
-                receiver.receive(&[0xFF; FRAME_BYTES]),
+                receiver.receive(message.contract(), &[0xFF; FRAME_BYTES]),
                 CheckStatus::WrongCrc,
                 "{message:?}"
             );
@@ -165,12 +167,12 @@ mod tests {
 
     /// A receiver that has had 32 good ticks, and the frames that follow.
     fn settled() -> (Receiver, Vec<[u8; FRAME_BYTES]>) {
-        let (mut receiver, mut frames) = (Receiver::new(&MESSAGE), sealed(100));
+        let (mut receiver, mut frames) = (Receiver::INITIAL, sealed(100));
         let rest = frames.split_off(32);
         for (n, frame) in frames.iter().enumerate() {
-            receiver.receive(frame);
+            receiver.receive(&MESSAGE, frame);
             assert_eq!(
-                receiver.end_of_tick().is_some(),
+                receiver.end_of_tick(&MESSAGE).is_some(),
                 n > 0,
                 "the first one is only compared with"
             );
@@ -183,24 +185,24 @@ mod tests {
         let (mut receiver, frames) = settled();
         for n in 0..3 {
             // One counter ahead of the right one, as an attacker would: the right frame is then called repeated.
-            receiver.receive(&frames[n]);
-            receiver.receive(&frames[n + 1]);
+            receiver.receive(&MESSAGE, &frames[n]);
+            receiver.receive(&MESSAGE, &frames[n + 1]);
             assert_eq!(receiver.candidate(), None);
-            assert_eq!(receiver.end_of_tick(), None);
-            assert_eq!(receiver.is_lost(), n == 2, "tick {n}");
+            assert_eq!(receiver.end_of_tick(&MESSAGE), None);
+            assert_eq!(receiver.is_lost(&MESSAGE), n == 2, "tick {n}");
         }
     }
 
     #[test]
     fn a_late_frame_may_come_with_the_next_but_not_twice() {
         let (mut receiver, frames) = settled();
-        assert_eq!(receiver.end_of_tick(), None);
-        receiver.receive(&frames[0]);
-        receiver.receive(&frames[1]);
-        assert_eq!(receiver.end_of_tick(), Some(frames[1]), "the younger one");
-        receiver.receive(&frames[2]);
-        receiver.receive(&frames[3]);
-        assert_eq!(receiver.end_of_tick(), None, "nothing was late");
+        assert_eq!(receiver.end_of_tick(&MESSAGE), None);
+        receiver.receive(&MESSAGE, &frames[0]);
+        receiver.receive(&MESSAGE, &frames[1]);
+        assert_eq!(receiver.end_of_tick(&MESSAGE), Some(frames[1]), "the younger one");
+        receiver.receive(&MESSAGE, &frames[2]);
+        receiver.receive(&MESSAGE, &frames[3]);
+        assert_eq!(receiver.end_of_tick(&MESSAGE), None, "nothing was late");
     }
 
     #[test]
@@ -209,15 +211,15 @@ mod tests {
             let (mut receiver, frames) = settled();
             let mut frames = frames[lost..].iter();
             for _ in 0..lost {
-                assert_eq!(receiver.end_of_tick(), None);
+                assert_eq!(receiver.end_of_tick(&MESSAGE), None);
             }
             for _ in 0..lost {
-                receiver.receive(frames.next().unwrap());
-                assert!(receiver.end_of_tick().is_some());
+                receiver.receive(&MESSAGE, frames.next().unwrap());
+                assert!(receiver.end_of_tick(&MESSAGE).is_some());
             }
-            receiver.receive(frames.next().unwrap());
-            receiver.receive(frames.next().unwrap());
-            assert_eq!(receiver.end_of_tick(), None, "{lost} lost");
+            receiver.receive(&MESSAGE, frames.next().unwrap());
+            receiver.receive(&MESSAGE, frames.next().unwrap());
+            assert_eq!(receiver.end_of_tick(&MESSAGE), None, "{lost} lost");
         }
     }
 
@@ -226,22 +228,22 @@ mod tests {
     fn the_worst_frame_of_a_tick_decides() {
         for wrong_first in [false, true] {
             let (mut receiver, frames) = settled();
-            receiver.end_of_tick();
+            receiver.end_of_tick(&MESSAGE);
             let mut wrong = frames[1];
             wrong[5] ^= 1;
             for wrong_now in [wrong_first, !wrong_first] {
-                receiver.receive(if wrong_now { &wrong } else { &frames[1] });
+                receiver.receive(&MESSAGE, if wrong_now { &wrong } else { &frames[1] });
             }
             assert_eq!(receiver.candidate(), None);
-            assert_eq!(receiver.end_of_tick(), None);
+            assert_eq!(receiver.end_of_tick(&MESSAGE), None);
             // A repeated frame is no reason against the one that it repeats.
-            receiver.receive(&frames[2]);
+            receiver.receive(&MESSAGE, &frames[2]);
             assert_eq!(receiver.candidate(), Some(&frames[2]));
-            assert_eq!(receiver.end_of_tick(), Some(frames[2]));
-            receiver.end_of_tick();
-            receiver.receive(&frames[4]);
-            receiver.receive(&frames[4]);
-            assert_eq!(receiver.end_of_tick(), Some(frames[4]));
+            assert_eq!(receiver.end_of_tick(&MESSAGE), Some(frames[2]));
+            receiver.end_of_tick(&MESSAGE);
+            receiver.receive(&MESSAGE, &frames[4]);
+            receiver.receive(&MESSAGE, &frames[4]);
+            assert_eq!(receiver.end_of_tick(&MESSAGE), Some(frames[4]));
         }
     }
 
@@ -250,8 +252,8 @@ mod tests {
         let (mut receiver, _) = settled();
         for n in 1..=3 {
             receiver.distrust();
-            assert_eq!(receiver.end_of_tick(), None);
-            assert_eq!((receiver.is_lost(), receiver.age()), (n == 3, n));
+            assert_eq!(receiver.end_of_tick(&MESSAGE), None);
+            assert_eq!((receiver.is_lost(&MESSAGE), receiver.age()), (n == 3, n));
         }
     }
 
@@ -261,18 +263,18 @@ mod tests {
         for silent in 0..=3 {
             let (mut receiver, frames) = settled();
             for n in 1..=silent {
-                receiver.end_of_tick();
+                receiver.end_of_tick(&MESSAGE);
                 assert_eq!(usize::from(receiver.age()), n);
             }
-            receiver.receive(&frames[silent]);
-            assert_eq!(receiver.end_of_tick(), Some(frames[silent]), "{silent} silent");
-            assert_eq!((receiver.age(), receiver.is_lost()), (0, false));
+            receiver.receive(&MESSAGE, &frames[silent]);
+            assert_eq!(receiver.end_of_tick(&MESSAGE), Some(frames[silent]), "{silent} silent");
+            assert_eq!((receiver.age(), receiver.is_lost(&MESSAGE)), (0, false));
         }
         // Without silence as many lost ones are a wrong sequence from the third on.
         for lost in 0..5 {
             let (mut receiver, frames) = settled();
-            receiver.receive(&frames[lost]);
-            assert_eq!(receiver.end_of_tick().is_some(), lost < 3, "{lost} lost");
+            receiver.receive(&MESSAGE, &frames[lost]);
+            assert_eq!(receiver.end_of_tick(&MESSAGE).is_some(), lost < 3, "{lost} lost");
         }
     }
 
@@ -281,8 +283,8 @@ mod tests {
         let (mut receiver, frames) = settled();
         let lost: Vec<bool> = (0..5)
             .map(|_| {
-                receiver.end_of_tick();
-                receiver.is_lost()
+                receiver.end_of_tick(&MESSAGE);
+                receiver.is_lost(&MESSAGE)
             })
             .collect();
         assert_eq!(lost, [false, false, false, true, true]);
@@ -293,15 +295,15 @@ mod tests {
     fn distrust_counts_as_a_wrong_tick() {
         let (mut receiver, frames) = settled();
         for frame in &frames[..3] {
-            receiver.receive(frame);
+            receiver.receive(&MESSAGE, frame);
             receiver.distrust();
-            assert_eq!(receiver.end_of_tick(), None);
+            assert_eq!(receiver.end_of_tick(&MESSAGE), None);
         }
-        assert!(receiver.is_lost());
+        assert!(receiver.is_lost(&MESSAGE));
         for (n, frame) in frames[3..19].iter().enumerate() {
-            receiver.receive(frame);
+            receiver.receive(&MESSAGE, frame);
             assert_eq!(
-                receiver.end_of_tick().is_some(),
+                receiver.end_of_tick(&MESSAGE).is_some(),
                 n == 15,
                 "trusted again after sixteen clean ticks"
             );
@@ -313,15 +315,15 @@ mod tests {
     fn late_frames_may_come_one_after_the_other() {
         let (mut receiver, frames) = settled();
         for _ in 0..3 {
-            receiver.end_of_tick();
+            receiver.end_of_tick(&MESSAGE);
         }
         for late in frames[..6].chunks(2) {
-            receiver.receive(&late[0]);
-            receiver.receive(&late[1]);
-            assert_eq!(receiver.end_of_tick(), Some(late[1]));
+            receiver.receive(&MESSAGE, &late[0]);
+            receiver.receive(&MESSAGE, &late[1]);
+            assert_eq!(receiver.end_of_tick(&MESSAGE), Some(late[1]));
         }
-        receiver.receive(&frames[6]);
-        receiver.receive(&frames[7]);
-        assert_eq!(receiver.end_of_tick(), None);
+        receiver.receive(&MESSAGE, &frames[6]);
+        receiver.receive(&MESSAGE, &frames[7]);
+        assert_eq!(receiver.end_of_tick(&MESSAGE), None);
     }
 }

@@ -11,15 +11,15 @@ use crate::valves::ValveCommand;
 /// Some output pins could not be switched. The message names their valves. See [`Solenoids`] for an example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SolenoidError {
-    /// Whether each valve's pin failed.
-    pub failed: Corners<StrutValves<bool>>,
+    /// The valves whose pins failed, as bits of [`ValveCommand::word`].
+    pub failed: u16,
 }
 
 impl core::fmt::Display for SolenoidError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         f.write_str("solenoids: the output pins of")?;
         let mut before = "";
-        for (corner, strut) in self.failed.iter() {
+        for (corner, strut) in ValveCommand::from_word(self.failed).corners().iter() {
             for (valve, failed) in strut.iter() {
                 if *failed {
                     write!(f, "{before} {} valve {}", corner.name(), valve.number())?;
@@ -63,6 +63,8 @@ impl core::error::Error for SolenoidError {}
 /// assert!(solenoids.drive(ValveCommand::SOFT).is_ok());
 /// ```
 #[derive(Debug)]
+// The pins first and whole words, which a small image copies without a call.
+#[repr(C, align(4))]
 pub struct Solenoids<P: OutputPin> {
     pins: Corners<StrutValves<P>>,
     latched: bool,
@@ -104,9 +106,16 @@ impl<P: OutputPin> Solenoids<P> {
     }
 
     fn write(&mut self, command: ValveCommand) -> Result<(), SolenoidError> {
-        let pins = self.pins.each_mut().zip(command.corners());
-        let failed = pins.map(|(pins, open)| pins.each_mut().zip(open).map(|(pin, open)| fails(pin, open)));
-        if failed == Corners::default() {
+        let (mut failed, mut bit) = (0, 1);
+        for pins in self.pins.values_mut() {
+            for pin in pins.each_mut().into_array() {
+                if fails(pin, command.word() & bit != 0) {
+                    failed |= bit;
+                }
+                bit <<= 1;
+            }
+        }
+        if failed == 0 {
             Ok(())
         } else {
             Err(SolenoidError { failed })

@@ -115,7 +115,7 @@ impl Parameters {
 }
 
 /// State of one spring valve.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct SpringValve {
     /// Value of [`Springs::now`] at the last change.
@@ -150,7 +150,7 @@ struct SpringValve {
 /// assert_eq!((0..99).map(|_| tick()).last(), Some(ValveCommand::SAFE));
 /// assert_eq!(tick(), ValveCommand::from_word(0b100_100_100_100));
 /// ```
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Springs {
     /// Number of ticks so far. It wraps after 248 days; a valve that last moved exactly then rests once more.
@@ -172,7 +172,23 @@ const fn bit(corner: Corner) -> u16 {
     1 << ValveCommand::bit(corner, Valve::Spring)
 }
 
+impl Default for Springs {
+    fn default() -> Self {
+        Self::INITIAL
+    }
+}
+
 impl Springs {
+    pub(crate) const INITIAL: Self = Self {
+        now: 0,
+        open: 0,
+        throttled: 0,
+        waiting: 0,
+        rear_is_next: false,
+        trapped_shift_m: Corners::splat(0.0),
+        valves: Corners::splat(SpringValve::INITIAL),
+    };
+
     /// One tick: returns where valve 3 is to be open; `wanted` says where the strategy wants it open. In both, the bits of the bypass
     /// valves say nothing. While the mode machine keeps all valves closed, call [`Springs::forced_closed`] instead.
     pub fn step(
@@ -328,6 +344,15 @@ impl Springs {
 }
 
 impl SpringValve {
+    const INITIAL: Self = Self {
+        changed_at: 0,
+        wanted_since: 0,
+        observed: false,
+        p1_rate: DerivativeState::INITIAL,
+        p4_rate: DerivativeState::INITIAL,
+        opening_step_n: 0.0,
+    };
+
     /// Takes over what the pressures say, once in [`OBSERVATION_S`]; returns the trapped shift, m.
     fn observe(
         &mut self,

@@ -29,16 +29,22 @@ pub struct SwitchingLimit {
 }
 
 /// Times of the last switchings of a valve.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct History {
+    /// Numbers of the ticks, plus [`SPAN_TICKS`]: what has never moved, at 0, did so long enough before the first tick.
     times: [u32; MOST_A_SECOND - 1],
     /// Place of the oldest time.
     oldest: u8,
 }
 
 impl History {
-    /// Records a switching of the valve at tick `now`, unless it is an opening that comes too soon; returns whether the valve may move.
+    const INITIAL: Self = Self {
+        times: [0; MOST_A_SECOND - 1],
+        oldest: 0,
+    };
+
+    /// Records a switching of the valve at time `now`, unless it is an opening that comes too soon; returns whether the valve may move.
     fn add(&mut self, now: u32, opens: bool) -> bool {
         // There always is a place; without one, a valve would only close.
         let Some(oldest) = self.times.get_mut(usize::from(self.oldest)) else {
@@ -57,19 +63,14 @@ impl History {
     }
 }
 
-impl Default for SwitchingLimit {
-    #[inline]
-    fn default() -> Self {
-        Self {
-            command: ValveCommand::SAFE,
-            // Nothing has moved before the first tick.
-            now: SPAN_TICKS,
-            history: [History::default(); VALVES],
-        }
-    }
-}
-
 impl SwitchingLimit {
+    /// All valves are closed, and none has moved.
+    pub const INITIAL: Self = Self {
+        command: ValveCommand::SAFE,
+        now: 0,
+        history: [History::INITIAL; VALVES],
+    };
+
     /// What the last tick returned.
     pub fn command(&self) -> ValveCommand {
         self.command
@@ -87,9 +88,10 @@ impl SwitchingLimit {
     /// Called in ticks in which some valve is to be elsewhere; most ticks have none.
     #[inline(never)]
     fn change(&mut self, permitted: ValveCommand) {
+        let now = self.now.wrapping_add(SPAN_TICKS);
         for (place, bit) in bits(permitted.word() ^ self.command.word()) {
             let opens = permitted.word() & bit != 0;
-            let moves = (self.history.get_mut(place)).map_or(!opens, |history| history.add(self.now, opens));
+            let moves = (self.history.get_mut(place)).map_or(!opens, |history| history.add(now, opens));
             if moves {
                 self.command = ValveCommand::from_word(self.command.word() ^ bit);
             }
@@ -103,6 +105,15 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
     use std::vec::Vec;
+
+    #[test]
+    fn an_opening_waits_for_199_ticks_after_the_ninth_switching_before() {
+        for (ticks, opens) in [(SPAN_TICKS - 1, false), (SPAN_TICKS, true)] {
+            let mut history = History::INITIAL;
+            assert!((0..9).all(|n| history.add(1_000 + n, n % 2 == 0)));
+            assert_eq!(history.add(1_000 + ticks, true), opens, "{ticks} ticks");
+        }
+    }
 
     /// Most switchings of any valve within a second.
     fn most_a_second(words: &[u16]) -> usize {
@@ -125,7 +136,7 @@ mod tests {
     }
 
     fn limited(wanted: impl IntoIterator<Item = u16>) -> Vec<u16> {
-        let mut limit = SwitchingLimit::default();
+        let mut limit = SwitchingLimit::INITIAL;
         wanted
             .into_iter()
             .map(|word| limit.step(ValveCommand::from_word(word)).word())

@@ -25,7 +25,7 @@ use crate::valves::ValveCommand;
 /// let outputs = tick(&Configuration::defender110(), &mut state, &Inputs::default());
 /// assert_eq!(outputs.mode, Mode::StartUp); // no reading is valid yet
 /// ```
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 // In the order of the declaration: the checks of the readings come first, where one instruction of a Cortex-M4F reaches them.
 #[repr(C)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -39,11 +39,29 @@ pub struct State {
     switching: SwitchingLimit,
 }
 
+impl Default for State {
+    fn default() -> Self {
+        Self::INITIAL
+    }
+}
+
 impl State {
+    /// Every bit of it is zero, so that neither a table of it nor code that makes it is in the flash of a board: memory is cleared. Each
+    /// part has such a state.
+    const INITIAL: Self = Self {
+        plausibility: plausibility::State::INITIAL,
+        estimate: estimate::State::INITIAL,
+        strategy: strategy::State::INITIAL,
+        springs: Springs::INITIAL,
+        dwell: Dwell::INITIAL,
+        failsafe: failsafe::State::INITIAL,
+        switching: SwitchingLimit::INITIAL,
+    };
+
     /// Before the first tick: valves closed, mode start-up.
     #[inline]
     pub fn new() -> Self {
-        Self::default()
+        Self::INITIAL
     }
 
     /// Latches the safe state: from the next tick on all valves stay closed, for this cause. A restart that must not end the latched
@@ -159,14 +177,12 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::strategy::Strategy;
-    use crate::valves::BYPASS_BITS;
-    use oleo_interface::{Corner, Gauge, Side, StrutPressures};
+    use oleo_interface::{Corner, Gauge, StrutPressures};
 
     /// No input leads to a number that is not finite, so the memory is damaged by hand.
     #[test]
     fn arithmetic_that_is_not_finite_latches_in_the_same_tick() {
-        let (configuration, mut state) = (Configuration::defender110(), State::new());
+        let (configuration, mut state) = (Configuration::defender110(), State::default());
         let inputs = Inputs::from_values(Corners::splat(0.0), Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
         for _ in 0..200 {
             tick(&configuration, &mut state, &inputs);
@@ -184,7 +200,9 @@ mod tests {
     }
 
     /// The vehicle leans to one side within half a second, on four struts of 0.5 l of gas at 2 MPa with all valves open.
+    #[cfg(feature = "comparison")]
     fn leaning(tick: u32) -> Inputs {
+        use oleo_interface::Side;
         let lean_m = 0.06 * (tick as f32 / 100.0).min(1.0);
         let displacement_m = Corners::from_fn(|corner| match corner.side() {
             Side::Left => -lean_m,
@@ -198,9 +216,10 @@ mod tests {
     }
 
     /// Bypass valves rest for 100 ms after a change. The roll-over guard closes them without that rest.
+    #[cfg(feature = "comparison")]
     #[test]
     fn an_emergency_closes_bypass_valves_that_have_just_opened() {
-        let configuration = Configuration::defender110().with_strategy(Strategy::RideHandling);
+        let configuration = Configuration::defender110().with_strategy(crate::strategy::Strategy::RideHandling);
         let mut state = State::new();
         for _ in 0..200 {
             tick(&configuration, &mut state, &leaning(0));
@@ -213,8 +232,8 @@ mod tests {
         for n in 1..guard_at {
             tick(&configuration, &mut state, &leaning(n));
         }
-        let all_open = ValveCommand::from_word(BYPASS_BITS);
-        state.dwell = Dwell::default();
+        let all_open = ValveCommand::from_word(crate::valves::BYPASS_BITS);
+        state.dwell = Dwell::INITIAL;
         while state.dwell.step(all_open, false) != all_open {}
         let outputs = tick(&configuration, &mut state, &leaning(guard_at));
         assert!(outputs.rollover_guard);

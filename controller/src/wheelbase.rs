@@ -54,7 +54,7 @@ impl Parameters {
 }
 
 /// One binary place of the number of agreements at every delay: bit `k` of each word is about a delay of `k` ticks.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Place {
     /// The place itself.
@@ -64,6 +64,11 @@ struct Place {
 }
 
 impl Place {
+    const INITIAL: Self = Self {
+        sum: 0,
+        waiting: [0; 2],
+    };
+
     /// Adds two carries, or agreements; returns the carry into the place above.
     fn add(&mut self, [a, b]: [u128; 2]) -> u128 {
         let carry = (self.sum & a) | (b & (self.sum | a));
@@ -82,18 +87,8 @@ struct Judgement {
     agreements: u16,
 }
 
-impl Default for Judgement {
-    #[inline]
-    fn default() -> Self {
-        Self {
-            best: DELAYS,
-            agreements: 0,
-        }
-    }
-}
-
 /// Signs, counters and the delay found last.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     body: Corners<f32>,
@@ -109,6 +104,16 @@ pub(crate) struct State {
 }
 
 impl State {
+    pub const INITIAL: Self = Self {
+        body: Corners::splat(0.0),
+        front: [0; 2],
+        places: [Place::INITIAL; PLACES],
+        ticks: 0,
+        judgement: Judgement::INITIAL,
+        delay: None,
+        unclear: 0,
+    };
+
     /// One tick, from the strut speeds, m/s; returns the delay, ticks, below [`HISTORY`], or nothing while it is not known.
     pub fn step(&mut self, c: &Parameters, strut_speed_m_s: Corners<f32>) -> Option<u8> {
         let bodies = self.body.each_mut().zip(strut_speed_m_s);
@@ -144,14 +149,16 @@ impl State {
         } else if let Some(tick) = tick.checked_sub(DRAINING_TICKS)
             && tick < JUDGING_TICKS
         {
+            if tick == 0 {
+                self.judgement = Judgement::BEGUN;
+            }
             for place in self.places.iter().rev().skip(2 * usize::from(tick)).take(2) {
                 self.judgement.look_at(place.sum);
             }
         } else if tick == DRAINING_TICKS + JUDGING_TICKS {
-            self.places = [Place::default(); PLACES];
+            self.places = [Place::INITIAL; PLACES];
         } else {
             self.choose();
-            self.judgement = Judgement::default();
             self.ticks = HISTORY as u16;
         }
     }
@@ -171,6 +178,14 @@ impl State {
 }
 
 impl Judgement {
+    /// Before a window was judged.
+    const INITIAL: Self = Self { best: 0, agreements: 0 };
+    /// Before the highest place of a window was looked at.
+    const BEGUN: Self = Self {
+        best: DELAYS,
+        agreements: 0,
+    };
+
     /// Looks at the next lower place of the counters.
     fn look_at(&mut self, place: u128) {
         let with = self.best & place;
@@ -229,7 +244,7 @@ mod tests {
 
     /// The delay found on a vehicle whose rear axle repeats the front one's speeds `delay` ticks later, with a part of noise.
     fn drive(delay: usize, noise: f32, ticks: usize) -> Option<u8> {
-        let (c, mut state) = (Parameters::new(), State::default());
+        let (c, mut state) = (Parameters::new(), State::INITIAL);
         let mut found = None;
         for tick in 0..ticks {
             let speeds = [(0, delay), (1, delay), (0, 0), (1, 0)];
@@ -258,7 +273,7 @@ mod tests {
 
     #[test]
     fn the_delay_follows_the_speed_and_is_forgotten() {
-        let (c, mut state) = (Parameters::new(), State::default());
+        let (c, mut state) = (Parameters::new(), State::INITIAL);
         let mut found = [None; 3];
         for tick in 0..4_000 {
             let (phase, delay) = if tick < 1_000 { (0, 30) } else { (1, 50) };
@@ -279,10 +294,22 @@ mod tests {
         assert_eq!(found, [Some(30), Some(50), None]);
     }
 
+    #[test]
+    fn a_delay_is_forgotten_after_four_windows_that_agree_on_none() {
+        let mut state = State {
+            delay: Some(30),
+            ..State::INITIAL
+        };
+        for window in 1..=FORGET_WINDOWS {
+            state.choose();
+            assert_eq!(state.delay.is_some(), window < 4, "window {window}");
+        }
+    }
+
     /// Every fourth delay agrees on the left in each tick and on the right in every third one, or less.
     #[test]
     fn counters_count() {
-        let mut places = [Place::default(); PLACES];
+        let mut places = [Place::INITIAL; PLACES];
         let mut expected = [0_u16; HISTORY];
         for tick in 0..WINDOW_TICKS {
             let mut both = [0_u128; 2];
@@ -304,7 +331,7 @@ mod tests {
             let counted: u16 = (places.iter().enumerate()).map(|(n, place)| bit(place.sum) << n).sum();
             assert_eq!(counted, expected, "delay {delay}");
         }
-        let mut all = [Place::default(); PLACES];
+        let mut all = [Place::INITIAL; PLACES];
         (0..WINDOW_TICKS).for_each(|tick| count(&mut all, tick, [u128::MAX; 2]));
         drain(&mut all);
         assert!(all.iter().rev().skip(1).all(|place| place.sum == 0));

@@ -4,7 +4,7 @@
 use oleo_controller::estimate::{GRAVITY_M_S2, State};
 use oleo_controller::plausibility::Trusted;
 use oleo_controller::{
-    Axles, Configuration, Corner, Corners, Estimate, Gauge, Side, StrutPressures, VehicleDescription,
+    Axles, Builder, Configuration, Corner, Corners, Estimate, Gauge, Side, StrutPressures, VehicleDescription,
 };
 
 const MASS_KG: f64 = 1600.0;
@@ -74,6 +74,38 @@ fn accelerations_are_found_again() {
         near("roll", e.roll_acceleration_rad_s2, roll, 2e-3);
         near("pitch", e.pitch_acceleration_rad_s2, pitch, 2e-3);
     }
+}
+
+/// A load that is not in the middle turns nothing, and anti-roll bars turn the body back by their stiffness over its inertia.
+#[test]
+fn an_uneven_load_turns_nothing_and_each_bar_turns_back() {
+    let vehicle = VehicleDescription {
+        strut_spacing_m: Axles::new(1.0, 1.2),
+        anti_roll_stiffness_n_m_rad: Axles::new(5.0e3, 8.0e3),
+        ..VehicleDescription::default()
+    };
+    let builder = Builder {
+        vehicle,
+        ..Builder::default()
+    };
+    let (c, mut state) = (builder.build().expect("a valid vehicle"), State::default());
+    let force_n = Corners::from_array([5_200.0, 4_000.0, 3_800.0, 3_000.0]);
+    let weight_n: f64 = force_n.values().sum();
+    let at = |displacement_m: [f32; 4]| Trusted {
+        displacement_m: Corners::from_array(displacement_m),
+        pressure: force_n.map(|f| StrutPressures::splat(Gauge((f / f64::from(vehicle.piston_area_m2)) as f32))),
+        ..Trusted::default()
+    };
+    for _ in 0..10 {
+        let e = state.step(&c.estimate, &at([0.0; 4]));
+        near("roll at rest", e.roll_acceleration_rad_s2, 0.0, 1e-4);
+        near("pitch at rest", e.pitch_acceleration_rad_s2, 0.0, 1e-4);
+    }
+    let e = state.step(&c.estimate, &at([-0.01, 0.01, -0.006, 0.006]));
+    let bars_n_m = 5.0e3 * 0.02 / 1.0 + 8.0e3 * 0.012 / 1.2;
+    let inertia = weight_n / G * f64::from(vehicle.roll_gyration_m * vehicle.roll_gyration_m);
+    near("roll", e.roll_acceleration_rad_s2, -bars_n_m / inertia, 1e-3);
+    near("pitch", e.pitch_acceleration_rad_s2, 0.0, 1e-4);
 }
 
 #[test]

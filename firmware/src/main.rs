@@ -45,7 +45,9 @@ fn main() -> ! {
     let (Some(board), Some(core)) = (Peripherals::take(), cortex_m::Peripherals::take()) else {
         SCB::sys_reset()
     };
-    let Ok(solenoids) = Solenoids::new(solenoid::take(board.GPIOE, &board.RCC)) else {
+    // Borrowed, because moving it out of the result would take the library's copying of memory into the image.
+    let mut solenoids = Solenoids::new(solenoid::take(board.GPIOE, &board.RCC));
+    let Ok(solenoids) = &mut solenoids else {
         SCB::sys_reset()
     };
     let mut watchdog = watchdog::Watchdog::start(board.IWDG);
@@ -92,7 +94,7 @@ fn controller(bus: surroundings::Bus, latch: Option<FaultCode>) -> Option<&'stat
 fn run(
     port: &mut Controller,
     mut pace: surroundings::Pace,
-    mut solenoids: Solenoids<solenoid::Solenoid>,
+    solenoids: &mut Solenoids<solenoid::Solenoid>,
     mut watchdog: watchdog::Watchdog,
     mut memory: reset::Memory,
     start: (ClockSource, ImageState),

@@ -6,7 +6,7 @@
 //! in the order in which the controller needs them, and the two states last.
 
 use oleo_interface::tick::TICK_MS;
-use oleo_interface::{Axle, Axles, Corner, Corners};
+use oleo_interface::{Axles, Corners};
 
 use super::frame::FRAME_BYTES;
 use crate::sensor_message::SensorMessage;
@@ -98,15 +98,10 @@ pub const MESSAGES: [Contract; 9] = {
 
 impl SensorMessage {
     /// What sender and receiver of this message agree on.
-    pub const fn contract(self) -> Contract {
-        let [front_left, front_right, rear_left, rear_right] = *PRESSURE.as_array();
+    pub fn contract(self) -> &'static Contract {
         match self {
-            Self::Pressure(Corner::FrontLeft) => front_left,
-            Self::Pressure(Corner::FrontRight) => front_right,
-            Self::Pressure(Corner::RearLeft) => rear_left,
-            Self::Pressure(Corner::RearRight) => rear_right,
-            Self::Displacement(Axle::Front) => DISPLACEMENT.front,
-            Self::Displacement(Axle::Rear) => DISPLACEMENT.rear,
+            Self::Pressure(corner) => &PRESSURE[corner],
+            Self::Displacement(axle) => &DISPLACEMENT[axle],
         }
     }
 }
@@ -139,7 +134,7 @@ mod tests {
             MESSAGES
                 .iter()
                 .zip(SensorMessage::ALL)
-                .all(|(contract, message)| *contract == message.contract())
+                .all(|(contract, message)| contract == message.contract())
         );
     }
 

@@ -27,9 +27,13 @@ const SYNC_FRAMES: u8 = 2;
 /// Number of periods without new data after which the sequence counts as broken (`MaxNoNewOrRepeatedData`).
 const MAX_NO_NEW: u8 = 3;
 
-fn crc_of(data: &[u8; FRAME_BYTES], data_ids: &[u8; 16]) -> u8 {
+fn crc_of(data: &[u8; FRAME_BYTES], contract: &Contract) -> u8 {
     let [_, header, ..] = *data;
-    let data_id = data_ids.get(usize::from(header & COUNTER_MASK)).copied().unwrap_or(0);
+    let data_id = contract
+        .data_ids
+        .get(usize::from(header & COUNTER_MASK))
+        .copied()
+        .unwrap_or(0);
     let mut digest = CRC8H2F.digest();
     digest.update(data.get(1..).unwrap_or(&[]));
     digest.update(&[data_id]);
@@ -51,8 +55,8 @@ fn crc_of(data: &[u8; FRAME_BYTES], data_ids: &[u8; 16]) -> u8 {
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Protector {
-    data_ids: [u8; 16],
-    counter: u8,
+    contract: Contract,
+    counter: Counter,
 }
 
 impl Protector {
@@ -60,18 +64,31 @@ impl Protector {
     /// sends.
     pub const fn new(contract: &Contract) -> Self {
         Self {
-            data_ids: contract.data_ids,
-            counter: 0,
+            contract: *contract,
+            counter: Counter::INITIAL,
         }
     }
 
     /// Writes counter and CRC into a payload whose first 12 bits are free.
     pub fn protect(&mut self, data: &mut [u8; FRAME_BYTES]) {
-        self.counter = self.counter.wrapping_add(1) & COUNTER_MASK;
+        self.counter.protect(&self.contract, data);
+    }
+}
+
+/// What a [`Protector`] remembers. The contract is its caller's.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Counter(u8);
+
+impl Counter {
+    pub const INITIAL: Self = Self(0);
+
+    /// See [`Protector::protect`].
+    pub fn protect(&mut self, contract: &Contract, data: &mut [u8; FRAME_BYTES]) {
+        self.0 = self.0.wrapping_add(1) & COUNTER_MASK;
         let [crc, header, ..] = data;
         *crc = 0;
-        *header = (*header & !COUNTER_MASK) | self.counter;
-        let computed = crc_of(data, &self.data_ids);
+        *header = (*header & !COUNTER_MASK) | self.0;
+        let computed = crc_of(data, contract);
         let [crc, ..] = data;
         *crc = computed;
     }
@@ -118,43 +135,64 @@ impl CheckStatus {
 /// Receiving side of one message. See [`Protector`] for an example.
 #[derive(Clone, Copy, Debug)]
 pub struct Checker {
-    data_ids: [u8; 16],
-    max_delta_init: u8,
-    max_delta: u8,
-    last: Option<u8>,
-    sync: u8,
-    no_new: u8,
+    contract: Contract,
+    sequence: Sequence,
 }
 
 impl Checker {
     /// A receiver that has received nothing.
     pub const fn new(contract: &Contract) -> Self {
         Self {
-            data_ids: contract.data_ids,
-            max_delta_init: contract.max_delta,
-            max_delta: contract.max_delta,
-            last: None,
-            sync: 0,
-            no_new: 0,
+            contract: *contract,
+            sequence: Sequence::INITIAL,
         }
     }
 
     /// Notes that a period has passed without a frame, so that the counter may be one further when the next one arrives.
     pub fn no_new_data(&mut self) {
-        self.no_new = self.no_new.saturating_add(1);
-        self.max_delta = self.max_delta.saturating_add(1).min(COUNTER_MASK);
+        self.sequence.no_new_data();
     }
 
     /// Checks a received frame.
     pub fn check(&mut self, data: &[u8; FRAME_BYTES]) -> CheckStatus {
+        self.sequence.check(&self.contract, data)
+    }
+}
+
+/// What a [`Checker`] remembers. The contract is its caller's.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sequence {
+    last: Option<u8>,
+    /// By how much more than the contract says the counter may be further, because periods have passed without a frame.
+    passed: u8,
+    sync: u8,
+    no_new: u8,
+}
+
+impl Sequence {
+    pub const INITIAL: Self = Self {
+        last: None,
+        passed: 0,
+        sync: 0,
+        no_new: 0,
+    };
+
+    /// See [`Checker::no_new_data`].
+    pub fn no_new_data(&mut self) {
+        self.no_new = self.no_new.saturating_add(1);
+        self.passed = self.passed.saturating_add(1);
+    }
+
+    /// See [`Checker::check`].
+    pub fn check(&mut self, contract: &Contract, data: &[u8; FRAME_BYTES]) -> CheckStatus {
         let [crc, header, ..] = *data;
-        if crc != crc_of(data, &self.data_ids) {
+        if crc != crc_of(data, contract) {
             return CheckStatus::WrongCrc;
         }
         let counter = header & COUNTER_MASK;
         let Some(last) = self.last else {
             self.last = Some(counter);
-            self.max_delta = self.max_delta_init;
+            self.passed = 0;
             return CheckStatus::Initial;
         };
         let delta = counter.wrapping_sub(last) & COUNTER_MASK;
@@ -162,8 +200,8 @@ impl Checker {
             self.no_new = self.no_new.saturating_add(1);
             return CheckStatus::Repeated;
         }
-        let in_sequence = delta <= self.max_delta;
-        self.max_delta = self.max_delta_init;
+        let in_sequence = delta <= contract.max_delta.saturating_add(self.passed);
+        self.passed = 0;
         self.last = Some(counter);
         let broken = core::mem::take(&mut self.no_new) > MAX_NO_NEW;
         if !in_sequence {

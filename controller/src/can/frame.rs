@@ -11,6 +11,8 @@ pub const FRAME_BYTES: usize = 8;
 /// assert_eq!(frame.data.len(), 8);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+// It fills three words, so that it is copied in words.
+#[repr(align(4))]
 pub struct Frame {
     /// Standard identifier, 0 to 0x7FF.
     pub id: u16,

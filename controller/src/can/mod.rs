@@ -23,6 +23,7 @@ mod state_machine;
 pub use board::{BoardMessage, BusState, ClockSource, ImageState};
 pub use contract::{BOARD, COMMAND, Contract, DISPLACEMENT, MESSAGES, PRESSURE, STATUS, sensor_message};
 pub use e2e::{CheckStatus, Checker, Protector};
+pub(crate) use e2e::{Counter, Sequence};
 pub use frame::{FRAME_BYTES, Frame};
 pub use signals::{
     ACCELERATION_STEP_M_S2, CommandMessage, DISPLACEMENT_STEP_M, DisplacementMessage, PRESSURE_OFFSET_PA,

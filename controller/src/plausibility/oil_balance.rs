@@ -61,7 +61,7 @@ impl Parameters {
 }
 
 /// State of the balance of one strut.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OilBalance {
     charge_pa: f32,
@@ -77,6 +77,17 @@ pub struct OilBalance {
 }
 
 impl OilBalance {
+    pub const INITIAL: Self = Self {
+        charge_pa: 0.0,
+        charge_at_start_pa: 0.0,
+        residual_m: 0.0,
+        carried_m: 0.0,
+        motion: OilMotion::INITIAL,
+        wrong: 0,
+        flagged: false,
+        started: false,
+    };
+
     /// One turn; returns the charge pressure as learnt so far.
     pub fn step(
         &mut self,
@@ -178,7 +189,7 @@ mod tests {
 
     /// After a second of learning at rest.
     fn settled(charge_pa: f32) -> OilBalance {
-        let mut balance = OilBalance::default();
+        let mut balance = OilBalance::INITIAL;
         for _ in 0..50 {
             turn(&mut balance, 0.0, &strut(charge_pa, 0.0, 0.0), true);
         }
@@ -191,8 +202,21 @@ mod tests {
     }
 
     #[test]
+    fn the_first_gas_carries_what_the_second_has_not_taken() {
+        for (x, trapped) in [(0.02, 0.0), (0.02, 0.01), (-0.03, 0.005), (0.0, -0.01)] {
+            let mut balance = settled(2.4e6);
+            turn(&mut balance, x, &strut(2.4e6, trapped, x), false);
+            let carried = balance.carried_m();
+            assert!(
+                (carried - (x - trapped)).abs() < 1e-4,
+                "{x} m, {trapped} m: {carried} m"
+            );
+        }
+    }
+
+    #[test]
     fn holds_at_any_displacement_with_any_oil_behind_the_valve() {
-        let mut balance = OilBalance::default();
+        let mut balance = OilBalance::INITIAL;
         for n in 0..2000_u16 {
             let (trapped, x) = (f32::from(n % 7) * 0.005 - 0.015, f32::from(n % 11) * 0.004 - 0.02);
             let (wrong, charge) = turn(&mut balance, x, &strut(2.4e6, trapped, x), n < 50);
@@ -287,7 +311,7 @@ mod tests {
     #[test]
     fn a_charge_that_no_suspension_has_is_wrong_from_the_start() {
         for (charge_pa, wrong) in [(0.25e6, true), (0.35e6, false), (14.5e6, false), (15.5e6, true)] {
-            let mut balance = OilBalance::default();
+            let mut balance = OilBalance::INITIAL;
             let found = turns_until(true, || turn(&mut balance, 0.0, &strut(charge_pa, 0.0, 0.0), true).0);
             assert_eq!(found, wrong.then_some(10), "{charge_pa} Pa");
         }

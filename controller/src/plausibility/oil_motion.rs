@@ -36,20 +36,16 @@ pub struct OilMotion {
     flagged: bool,
 }
 
-impl Default for OilMotion {
-    #[inline]
-    fn default() -> Self {
-        Self {
-            turns: 0,
-            residual: Span::EMPTY,
-            from_gas: Span::EMPTY,
-            wrong_windows: 0,
-            flagged: false,
-        }
-    }
-}
-
 impl OilMotion {
+    /// The first turn begins a window: no reading is believed in it.
+    pub const INITIAL: Self = Self {
+        turns: 0,
+        residual: Span::INITIAL,
+        from_gas: Span::INITIAL,
+        wrong_windows: 0,
+        flagged: false,
+    };
+
     /// One turn with a displacement and what it says beyond the gas, m, if both are measured.
     pub fn step(&mut self, measured: Option<(f32, f32)>, verdict: &mut Verdicts) {
         match measured {
@@ -99,7 +95,7 @@ mod tests {
     /// Turn in which a reading that is `says` of the true displacement is called wrong, at 1.3 Hz and 20 mm either way. The gas says
     /// 1.4 times the truth, as it does where it has no time to exchange heat.
     fn found(says: impl Fn(f32) -> f32) -> Option<u16> {
-        let mut motion = OilMotion::default();
+        let mut motion = OilMotion::INITIAL;
         (0..1000).find(|turn| {
             let true_m = 0.02 * libm::sinf(2.0 * core::f32::consts::PI * 1.3 * f32::from(*turn) * TURN_S);
             let reading = says(true_m);
@@ -121,7 +117,7 @@ mod tests {
 
     #[test]
     fn a_verdict_needs_motion_and_its_end_too() {
-        let mut motion = OilMotion::default();
+        let mut motion = OilMotion::INITIAL;
         let mut window = |residual_m: f32, moved_m: f32| {
             let mut verdict = Verdicts::GOOD;
             for turn in 0..WINDOW_TURNS {
@@ -146,7 +142,7 @@ mod tests {
     #[test]
     fn a_verdict_ends_where_the_residual_is_a_small_share() {
         for (share, ends) in [(0.55, true), (0.65, false)] {
-            let mut motion = OilMotion::default();
+            let mut motion = OilMotion::INITIAL;
             let mut window = |residual_m: f32, moved_m: f32| {
                 for turn in 0..WINDOW_TURNS {
                     let up = f32::from(turn % 2);

@@ -18,8 +18,7 @@ const _: () = assert!(
     "the short way looks at the magnitude of a displacement only"
 );
 
-/// State of the check. It starts as faulty: a sensor is believed after it has delivered twelve good samples. The last good value
-/// is kept by the caller.
+/// State of the check. The last good value is kept by the caller.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ReadingCheck {
@@ -30,18 +29,20 @@ pub struct ReadingCheck {
     age: u8,
 }
 
-impl Default for ReadingCheck {
-    #[inline]
-    fn default() -> Self {
-        Self {
-            bad: LIMIT,
-            cause: FaultCode::SensorRange,
-            age: u8::MAX,
-        }
-    }
-}
-
 impl ReadingCheck {
+    const INITIAL: Self = Self {
+        bad: 0,
+        cause: FaultCode::None,
+        age: 0,
+    };
+
+    /// Before the first sample. It is faulty: a sensor is believed after it has delivered twelve good samples.
+    fn begin(&mut self) {
+        self.bad = LIMIT;
+        self.cause = FaultCode::SensorRange;
+        self.age = u8::MAX;
+    }
+
     /// One tick; returns what is wrong if the reading is to be replaced, and [`FaultCode::None`] if it may be used. `last` is the
     /// last good value.
     fn step(&mut self, last: &mut f32, reading: Reading, message_lost: bool, limits: &Limits) -> FaultCode {
@@ -119,7 +120,7 @@ fn have_ordinary_changes(now: StrutPressures<Gauge<f32>>, last: StrutPressures<G
 }
 
 /// The checks of the five readings of a strut.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StrutReadings {
     displacement: ReadingCheck,
@@ -129,6 +130,22 @@ pub struct StrutReadings {
 }
 
 impl StrutReadings {
+    /// What [`StrutReadings::begin`] is called on.
+    pub const INITIAL: Self = Self {
+        displacement: ReadingCheck::INITIAL,
+        pressure: StrutPressures::splat(ReadingCheck::INITIAL),
+        verdicts: Verdicts::GOOD,
+    };
+
+    /// Is called in the first tick, before everything else.
+    #[inline(never)]
+    pub fn begin(&mut self) {
+        self.displacement.begin();
+        for check in self.pressure.each_mut().into_array() {
+            check.begin();
+        }
+    }
+
     /// What the last tick has found.
     pub fn verdicts(&self) -> Verdicts {
         self.verdicts
@@ -170,8 +187,14 @@ mod tests {
         step: 0.1,
     };
 
+    fn new() -> ReadingCheck {
+        let mut check = ReadingCheck::INITIAL;
+        check.begin();
+        check
+    }
+
     fn healthy() -> (ReadingCheck, f32) {
-        let (mut check, mut last) = (ReadingCheck::default(), 0.0);
+        let (mut check, mut last) = (new(), 0.0);
         for _ in 0..LIMIT {
             check.step(&mut last, Reading::new(0.5), false, &LIMITS);
         }
@@ -180,7 +203,7 @@ mod tests {
 
     #[test]
     fn believed_after_twelve() {
-        let (mut check, mut last) = (ReadingCheck::default(), 0.0);
+        let (mut check, mut last) = (new(), 0.0);
         for n in 1..=LIMIT {
             let fault = check.step(&mut last, Reading::new(0.5), false, &LIMITS);
             assert_eq!(fault == FaultCode::None, n == LIMIT, "sample {n}");
@@ -222,7 +245,7 @@ mod tests {
     }
 
     /// A strut, with what its caller keeps.
-    #[derive(Clone, Copy, Debug, Default)]
+    #[derive(Clone, Copy, Debug)]
     struct Strut {
         checks: StrutReadings,
         calm: bool,
@@ -231,6 +254,17 @@ mod tests {
     }
 
     impl Strut {
+        fn new() -> Self {
+            let mut checks = StrutReadings::INITIAL;
+            checks.begin();
+            Self {
+                checks,
+                calm: false,
+                x: 0.0,
+                p: StrutPressures::default(),
+            }
+        }
+
         /// One tick, as the caller does it; returns whether nothing was wrong lately.
         fn step(&mut self, displacement: Reading, pressure: &StrutPressures<Reading>) -> bool {
             let (x, p) = ((displacement, &mut self.x), (pressure, &mut self.p));
@@ -247,7 +281,7 @@ mod tests {
 
         /// One whose five readings have been good for long, at a displacement and under one pressure.
         fn calm(displacement_m: f32, pressure_pa: f32) -> Self {
-            let mut strut = Self::default();
+            let mut strut = Self::new();
             let pressure = StrutPressures::splat(Reading::new(pressure_pa));
             let last = (0..=LIMIT)
                 .map(|_| strut.step(Reading::new(displacement_m), &pressure))
@@ -260,7 +294,7 @@ mod tests {
     /// The short way and the whole check agree on every reading of a strut.
     #[test]
     fn the_short_way_decides_as_the_whole_check() {
-        let (mut strut, mut whole, mut short) = (Strut::default(), Strut::default(), 0);
+        let (mut strut, mut whole, mut short) = (Strut::new(), Strut::new(), 0);
         let mut random = 1_u32;
         for _ in 0..20_000 {
             random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

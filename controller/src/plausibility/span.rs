@@ -9,6 +9,9 @@ pub struct Span {
 }
 
 impl Span {
+    /// Before the first window. Whoever begins a window sets [`Span::EMPTY`].
+    pub const INITIAL: Self = Self { least: 0.0, most: 0.0 };
+
     /// Before the first value. Its width is negative.
     pub const EMPTY: Self = Self {
         least: f32::MAX,

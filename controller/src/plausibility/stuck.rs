@@ -46,22 +46,18 @@ pub struct Stuck {
     any: bool,
 }
 
-impl Default for Stuck {
-    #[inline]
-    fn default() -> Self {
-        Self {
-            displacement: Span::EMPTY,
-            pressure: StrutPressures::splat(Span::EMPTY),
-            spring_open: true,
-            moved: false,
-            displacement_stuck: false,
-            pressure_stuck: StrutPressures::splat(false),
-            any: false,
-        }
-    }
-}
-
 impl Stuck {
+    /// The first turn begins a window.
+    pub const INITIAL: Self = Self {
+        displacement: Span::INITIAL,
+        pressure: StrutPressures::splat(Span::INITIAL),
+        spring_open: false,
+        moved: false,
+        displacement_stuck: false,
+        pressure_stuck: StrutPressures::splat(false),
+        any: false,
+    };
+
     /// One turn. `spring_settled_open` says whether valve 3 has been open for so long that p4 follows p1.
     pub fn step(
         &mut self,
@@ -146,9 +142,16 @@ impl Stuck {
 mod tests {
     use super::*;
 
+    /// A check whose first window has begun.
+    fn begun() -> Stuck {
+        let mut stuck = Stuck::INITIAL;
+        stuck.begin_window(0);
+        stuck
+    }
+
     #[test]
     fn a_parked_vehicle_that_is_switched_on_is_not_stuck() {
-        let mut stuck = Stuck::default();
+        let mut stuck = begun();
         for turn in 0..3 * WINDOW_TURNS {
             if turn % WINDOW_TURNS == 0 {
                 stuck.begin_window(0);
@@ -237,7 +240,7 @@ mod tests {
                 moving,
                 ..MOVING
             };
-            let mut stuck = Stuck::default();
+            let mut stuck = begun();
             let expected = if is_stuck {
                 only(Place::DISPLACEMENT)
             } else {
@@ -274,7 +277,7 @@ mod tests {
             ] {
                 let mut window = Window { x_m, ..MOVING };
                 window.pressure_pa[point] = span_pa;
-                let mut stuck = Stuck::default();
+                let mut stuck = begun();
                 let expected = if is_stuck {
                     only(Place::of(point))
                 } else {
@@ -298,7 +301,7 @@ mod tests {
     fn p4_behind_a_valve_that_was_closed_for_a_moment_is_not_stuck() {
         let mut window = Window { open: false, ..MOVING };
         window.pressure_pa.p4 = 0.0;
-        let mut stuck = Stuck::default();
+        let mut stuck = begun();
         assert_eq!(after(&mut stuck, window), Verdicts::GOOD);
         window.open = true;
         assert_eq!(after(&mut stuck, window), only(Place::P4));
@@ -307,7 +310,7 @@ mod tests {
     /// The value that replaces a wrong reading neither moves with the strut nor must it.
     #[test]
     fn a_reading_that_is_wrong_otherwise_is_not_looked_at() {
-        let mut stuck = Stuck::default();
+        let mut stuck = begun();
         for turn in 0..WINDOW_TURNS {
             let share = f32::from(turn) / f32::from(WINDOW_TURNS - 1);
             let mut verdict = Verdicts::GOOD;

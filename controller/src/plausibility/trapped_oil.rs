@@ -36,21 +36,17 @@ pub struct TrappedOil {
     flagged: bool,
 }
 
-impl Default for TrappedOil {
-    #[inline]
-    fn default() -> Self {
-        Self {
-            closed: 0,
-            turns: 0,
-            p3: Span::EMPTY,
-            p4: Span::EMPTY,
-            wrong_windows: 0,
-            flagged: false,
-        }
-    }
-}
-
 impl TrappedOil {
+    /// The first turn begins a window: the valve has not been closed for long enough in it.
+    pub const INITIAL: Self = Self {
+        closed: 0,
+        turns: 0,
+        p3: Span::INITIAL,
+        p4: Span::INITIAL,
+        wrong_windows: 0,
+        flagged: false,
+    };
+
     /// One turn; `commanded_closed` says whether valve 3 was told to be closed in the last tick. An opening between two turns is
     /// not seen: it is shorter than any valve takes to open.
     pub fn step(&mut self, pressure: &StrutPressures<Gauge<f32>>, commanded_closed: bool, verdict: &mut Verdicts) {
@@ -118,15 +114,15 @@ mod tests {
     #[test]
     fn p4_that_follows_through_a_closed_valve() {
         let two_windows = Some(u16::from(CLOSED_TURNS + 2 * WINDOW_TURNS - 2));
-        assert_eq!(found(&mut TrappedOil::default(), 1.0, true), two_windows);
-        assert_eq!(found(&mut TrappedOil::default(), 0.5, true), two_windows);
-        assert_eq!(found(&mut TrappedOil::default(), 0.05, true), None, "trapped");
-        assert_eq!(found(&mut TrappedOil::default(), 1.0, false), None, "open");
+        assert_eq!(found(&mut { TrappedOil::INITIAL }, 1.0, true), two_windows);
+        assert_eq!(found(&mut { TrappedOil::INITIAL }, 0.5, true), two_windows);
+        assert_eq!(found(&mut { TrappedOil::INITIAL }, 0.05, true), None, "trapped");
+        assert_eq!(found(&mut { TrappedOil::INITIAL }, 1.0, false), None, "open");
     }
 
     #[test]
     fn stays_until_it_is_seen_to_be_closed() {
-        let mut check = TrappedOil::default();
+        let mut check = TrappedOil::INITIAL;
         assert!(found(&mut check, 1.0, true).is_some());
         assert_eq!(found(&mut check, 1.0, false), Some(0), "an open valve shows nothing");
         for _ in 0..2 {
@@ -163,7 +159,7 @@ mod tests {
 
     /// A check whose valve has been closed for long enough, at the beginning of a window.
     fn closed() -> TrappedOil {
-        let mut check = TrappedOil::default();
+        let mut check = TrappedOil::INITIAL;
         for _ in 1..CLOSED_TURNS {
             check.step(&StrutPressures::splat(Gauge(2.0e6)), true, &mut Verdicts::default());
         }

@@ -10,7 +10,7 @@ use crate::sensor_message::MessageSet;
 
 /// Readings that may be used, measured or replaced: always finite and within their range.
 /// See [`State`](super::State) for an example.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Trusted {
     /// Strut displacement from the static position, m, compression positive, -0.25 to 0.25.
@@ -30,7 +30,23 @@ pub struct Trusted {
     pub invalid_readings: u8,
 }
 
+impl Default for Trusted {
+    fn default() -> Self {
+        Self::INITIAL
+    }
+}
+
 impl Trusted {
+    pub(super) const INITIAL: Self = Self {
+        displacement_m: Corners::splat(0.0),
+        pressure: Corners::splat(StrutPressures::splat(Gauge(0.0))),
+        p1_offset_pa: Corners::splat(0.0),
+        load_to_right_m: 0.0,
+        charge: Corners::splat(Absolute(0.0)),
+        health: Health::GOOD,
+        invalid_readings: 0,
+    };
+
     /// Sums up the verdicts for the mode machine.
     pub(super) fn judge(&mut self, verdicts: &Corners<Verdicts>, inputs: &Inputs) {
         self.health.affected = verdicts.map(|verdict| verdict != Verdicts::GOOD);

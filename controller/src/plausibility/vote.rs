@@ -47,7 +47,7 @@ impl Default for Parameters {
 }
 
 /// State of the vote on one strut.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Vote {
     lagged: StrutPressures<Gauge<f32>>,
@@ -59,6 +59,14 @@ pub struct Vote {
 }
 
 impl Vote {
+    pub const INITIAL: Self = Self {
+        lagged: StrutPressures::splat(Gauge(0.0)),
+        p1_beyond_pa: 0.0,
+        outvoted: StrutPressures::splat(0),
+        flagged: StrutPressures::splat(false),
+        started: false,
+    };
+
     /// One turn. `p4_follows` says whether valve 3 has been open for so long that p4 follows p1.
     pub fn step(
         &mut self,
@@ -213,14 +221,14 @@ mod tests {
     #[test]
     fn a_strut_in_motion_is_no_disagreement_whenever_the_vote_begins() {
         for phase in 0..25 {
-            let mut vote = Vote::default();
+            let mut vote = Vote::INITIAL;
             assert_eq!(shaken(&mut vote, phase..phase + 1000, 0.0), None, "phase {phase}");
         }
     }
 
     /// What is taken off p1 after 30 s on a strut that is shaken through closed dampers, Pa, with an offset of each of p1 to p3.
     fn taken_off_pa(offset_pa: [f32; 3]) -> f32 {
-        let (parameters, mut vote, mut taken_off_pa) = (Parameters::default(), Vote::default(), 0.0);
+        let (parameters, mut vote, mut taken_off_pa) = (Parameters::default(), Vote::INITIAL, 0.0);
         let [p1, p2, p3] = offset_pa.map(|offset_pa| 4.0e6 + offset_pa);
         for turn in 0..1500_u16 {
             let swing = 2.0e6 * libm::cosf(2.0 * core::f32::consts::PI * 8.0 * f32::from(turn) * TURN_S);
@@ -274,7 +282,7 @@ mod tests {
     #[test]
     fn begins_again_from_agreement_after_silence() {
         let parameters = Parameters::default();
-        let mut vote = Vote::default();
+        let mut vote = Vote::INITIAL;
         assert_eq!(shaken(&mut vote, 0..500, 0.0), None);
         let mut silent = Verdicts::GOOD;
         for point in PressurePoint::ALL {
@@ -287,14 +295,14 @@ mod tests {
     #[test]
     fn an_offset_is_seen_within_the_documented_time() {
         // tau ln(d / (d - 1 MPa)) with tau = 1 s, and 0.2 s: 1.09 s for 1.7 MPa.
-        let seen = shaken(&mut Vote::default(), 0..1000, 1.7e6);
+        let seen = shaken(&mut { Vote::INITIAL }, 0..1000, 1.7e6);
         assert!(seen.is_some_and(|turn| (50..75).contains(&turn)), "{seen:?}");
     }
 
     #[test]
     fn oil_trapped_behind_valve_3_is_no_disagreement_when_the_valve_has_opened() {
         let parameters = Parameters::default();
-        let mut vote = Vote::default();
+        let mut vote = Vote::INITIAL;
         for turn in 0..375 {
             // Trapped 3 MPa apart for 2.5 s; equal once the valve is settled open.
             let open = turn >= 125;
@@ -341,7 +349,7 @@ mod tests {
 
     /// A vote that has agreed for a while.
     fn agreeing() -> Vote {
-        let mut vote = Vote::default();
+        let mut vote = Vote::INITIAL;
         for _ in 0..100 {
             assert_eq!(turn(&mut vote, &resting(PressurePoint::P1, 0.0), true), Verdicts::GOOD);
         }

@@ -54,6 +54,7 @@ pub struct Demand {
 /// impl Decide for SoftWhileUpright {
 ///     type Tuning = ();
 ///     type State = ();
+///     const INITIAL: () = ();
 ///     fn check(_: &()) -> Result<(), ConfigurationError> {
 ///         Ok(())
 ///     }
@@ -76,7 +77,10 @@ pub trait Decide {
     /// What a person may choose about it, in physical units.
     type Tuning: Copy + core::fmt::Debug + Default + PartialEq;
     /// What it remembers from tick to tick.
-    type State: Copy + core::fmt::Debug + Default;
+    type State: Copy + core::fmt::Debug;
+    /// What it remembers before the first tick. On a board every bit of it should be zero, because memory that is only cleared needs no
+    /// flash.
+    const INITIAL: Self::State;
 
     /// Whether every value of the tuning is within its range.
     ///

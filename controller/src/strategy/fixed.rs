@@ -14,6 +14,7 @@ pub struct AlwaysSoft;
 impl Decide for AlwaysSoft {
     type Tuning = ();
     type State = ();
+    const INITIAL: () = ();
 
     fn check(_: &()) -> Result<(), ConfigurationError> {
         Ok(())
@@ -38,6 +39,7 @@ pub struct AlwaysStiff;
 impl Decide for AlwaysStiff {
     type Tuning = ();
     type State = ();
+    const INITIAL: () = ();
 
     fn check(_: &()) -> Result<(), ConfigurationError> {
         Ok(())

@@ -100,13 +100,23 @@ macro_rules! strategies {
         /// let demand = state.step(&parameters, &Estimate::default(), &Trusted::default());
         /// assert_eq!(demand.valves, ValveCommand::SOFT);
         /// ```
-        #[derive(Clone, Copy, Debug, Default)]
+        #[derive(Clone, Copy, Debug)]
         #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
         pub struct State {
             $($field: <$strategy as Decide>::State,)*
         }
 
+        impl Default for State {
+            fn default() -> Self {
+                Self::INITIAL
+            }
+        }
+
         impl State {
+            pub(crate) const INITIAL: Self = Self {
+                $($field: <$strategy as Decide>::INITIAL,)*
+            };
+
             /// One tick of the strategy in use; returns what it wants.
             pub fn step(&mut self, parameters: &Parameters, estimate: &Estimate, trusted: &Trusted) -> Demand {
                 match parameters.strategy {

@@ -35,7 +35,7 @@ pub struct RideHandling {
 }
 
 /// What the three parts remember. See [`strategy::State`](super::State) for an example.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     mode: running_rms::State,
@@ -46,6 +46,11 @@ pub struct State {
 impl Decide for RideHandling {
     type Tuning = Tuning;
     type State = State;
+    const INITIAL: State = State {
+        mode: running_rms::State::INITIAL,
+        guard: rollover_guard::State::INITIAL,
+        dampers: semi_active::State::INITIAL,
+    };
 
     fn check(tuning: &Tuning) -> Result<(), ConfigurationError> {
         tuning.running_rms.check()?;

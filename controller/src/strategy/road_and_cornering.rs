@@ -65,7 +65,7 @@ pub struct RoadAndCornering {
 }
 
 /// What the strategy remembers. See [`strategy::State`](super::State) for an example.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct State {
     cornering: cornering::State,
@@ -81,6 +81,15 @@ pub struct State {
 impl Decide for RoadAndCornering {
     type Tuning = Tuning;
     type State = State;
+    const INITIAL: State = State {
+        cornering: cornering::State::INITIAL,
+        load_transfer: load_transfer::State::INITIAL,
+        corners: false,
+        rough: false,
+        very_rough: false,
+        dwell: 0,
+        guard: rollover_guard::State::INITIAL,
+    };
 
     fn check(tuning: &Tuning) -> Result<(), ConfigurationError> {
         tuning.cornering.check()?;
@@ -165,7 +174,7 @@ mod tests {
             lateral_mean_square: lateral_rms * lateral_rms,
             ..Estimate::default()
         };
-        let demand = strategy.step(&mut State::default(), &estimate, &Trusted::default());
+        let demand = strategy.step(&mut { RoadAndCornering::INITIAL }, &estimate, &Trusted::default());
         demand.valves != ValveCommand::SAFE
     }
 
@@ -180,7 +189,7 @@ mod tests {
     #[test]
     fn a_rough_road_stays_rough_whatever_the_lateral_motion() {
         let strategy = RoadAndCornering::new(&VehicleDescription::default(), &Tuning::default());
-        let mut state = State::default();
+        let mut state = RoadAndCornering::INITIAL;
         let mut rough = Estimate {
             vertical_mean_square: 0.3,
             ..Estimate::default()

@@ -8,7 +8,7 @@ use oleo_controller::{Configuration, Corners, FaultCode, Inputs, Mode, Node, Out
 use super::bus::{self, Crossing, OnBus};
 use super::plan::{Event, Plan, What};
 use super::readings;
-use super::rules::{Broken, Observation, Restart, Rules};
+use super::rules::{Broken, Observation, Restart, Rules, TIMEOUT};
 use super::vehicle::Vehicle;
 
 /// Ticks that were spent in each mode, and under each fault.
@@ -58,8 +58,14 @@ struct World {
     outputs: Outputs,
     sensors_silent: u32,
     commands_silent: u32,
-    reading_missing: u32,
+    /// Ticks since something happened to a sensor's frame, or the controller was restarted.
+    undisturbed: u32,
+    /// Ticks for which each reading has been missing.
+    missing: [u32; READINGS],
 }
+
+/// Four displacements and sixteen pressures.
+const READINGS: usize = 20;
 
 /// Runs a plan. `change` may change what the rules see in each tick: a test that plants a violation does so.
 ///
@@ -76,7 +82,8 @@ pub fn drive(plan: &Plan, mut change: impl FnMut(&mut Observation)) -> Result<Re
         outputs: Outputs::default(),
         sensors_silent: 0,
         commands_silent: 0,
-        reading_missing: 0,
+        undisturbed: 0,
+        missing: [0; READINGS],
     };
     let mut faults: Vec<Fault> = (plan.events.iter())
         .map(|&event| Fault {
@@ -121,16 +128,20 @@ impl World {
 
         let inputs = self.sensors(tick, faults);
         let (own_identifier, touched) = self.deliver_sensors(tick, faults, &inputs);
-        let missing = inputs.displacement.values().any(|reading| !reading.is_valid())
-            || inputs
-                .pressure
-                .values()
-                .any(|strut| strut.iter().any(|(_, reading)| !reading.is_valid()));
-        self.reading_missing = if missing && !touched && restart.is_none() {
-            self.reading_missing + 1
-        } else {
+        self.undisturbed = if touched || restart.is_some() {
             0
+        } else {
+            self.undisturbed.saturating_add(1)
         };
+        let pressures = inputs.pressure.values().flat_map(|strut| strut.into_array());
+        let readings = inputs.displacement.values().copied().chain(pressures);
+        for (ticks, reading) in self.missing.iter_mut().zip(readings) {
+            *ticks = if self.undisturbed <= TIMEOUT || reading.is_valid() {
+                0
+            } else {
+                *ticks + 1
+            };
+        }
 
         let (outputs, sent) = self.node.tick();
         self.outputs = outputs;
@@ -147,7 +158,7 @@ impl World {
             solenoid_failed,
             sensors_silent: self.sensors_silent,
             commands_silent: self.commands_silent,
-            reading_missing: self.reading_missing,
+            reading_missing: self.missing.into_iter().max().unwrap_or(0),
         }
     }
 

@@ -10,8 +10,8 @@ const SECOND: u32 = 200;
 const MINUTE: u32 = 60 * SECOND;
 const MOST_SWITCHINGS_A_SECOND: usize = 10;
 const MOST_MODE_CHANGES_A_MINUTE: usize = 16;
-/// Ticks without a frame after which a message is lost.
-const TIMEOUT: u32 = 4;
+/// Ticks without a frame that is accepted after which a message is lost.
+pub const TIMEOUT: u32 = 4;
 /// Ticks of missing readings after which a reading counts as missing.
 const CONFIRM: u32 = 3;
 /// First tick of a closed mode in which the output stage has closed whatever became of the commands: the last one of an open mode is
@@ -58,7 +58,8 @@ pub struct Observation {
     pub sensors_silent: u32,
     /// Number of ticks for which no command has reached the output stage.
     pub commands_silent: u32,
-    /// Number of ticks for which a sensor has said that it has no value, on a bus without faults.
+    /// Largest number of ticks in a row for which a sensor has said that it has no value of one of its readings, on a bus that had been
+    /// without faults for the time-out before: so long right frames may be refused because they do not follow from a wrong one.
     pub reading_missing: u32,
 }
 

@@ -5,6 +5,8 @@ check "host code is formatted" cargo fmt --all --check -- --color=never
 check "firmware is formatted" cargo fmt --manifest-path firmware/Cargo.toml -p oleo-firmware -p oleo-bench --check -- --color=never
 check "fuzz targets are formatted" cargo fmt --manifest-path fuzz/Cargo.toml -p oleo-fuzz --check -- --color=never
 check "clippy finds nothing" cargo clippy "${FEATURES[@]}" --workspace --all-targets --locked --keep-going --quiet -- -D warnings
+check "clippy finds nothing in the controller as a board has it" \
+    cargo clippy --package oleo-controller --no-default-features --all-targets --locked --quiet -- -D warnings
 RUSTDOCFLAGS="-D warnings" check "documentation builds without a warning" \
     cargo doc "${FEATURES[@]}" --workspace --no-deps --locked --keep-going --quiet
 

@@ -166,7 +166,7 @@ impl Parameters {
 }
 
 /// Running mean squares of one band, m2/s4.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Band {
     witness: f32,
@@ -174,7 +174,7 @@ struct Band {
 }
 
 /// What is remembered.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     bands: [Band; 2],
@@ -188,6 +188,14 @@ pub(crate) struct State {
 }
 
 impl State {
+    pub const INITIAL: Self = Self {
+        bands: [Band { witness: 0.0, own: 0.0 }; 2],
+        own_memory: 0.0,
+        corrected: false,
+        known: 0,
+        hold: 0,
+    };
+
     /// One tick, with whether the gas says that the vehicle leans; returns whether it corners.
     pub fn step(&mut self, c: &Parameters, estimate: &Estimate, leans: bool) -> bool {
         let lateral = &estimate.lateral;
@@ -292,7 +300,7 @@ mod tests {
 
     /// Drives on a road for 20 s and then asks whether a lateral acceleration in the quick and the slow band, m/s2, is a bend.
     fn after_a_road(witness: f32, error: f32, corrected: bool, quick: f32, slow: f32) -> bool {
-        let (c, mut state) = (Parameters::new(&Tuning::default()), State::default());
+        let (c, mut state) = (Parameters::new(&Tuning::default()), State::INITIAL);
         for tick in 0..4_000 {
             let now = state.step(
                 &c,
@@ -337,7 +345,7 @@ mod tests {
     #[test]
     fn a_weak_decision_is_over_sooner() {
         for (asked, hold) in [(0.6, WEAK_HOLD_TICKS), (0.85, HOLD_TICKS)] {
-            let (c, mut state) = (Parameters::new(&Tuning::default()), State::default());
+            let (c, mut state) = (Parameters::new(&Tuning::default()), State::INITIAL);
             for _ in 0..1_000 {
                 state.step(&c, &estimate(0.0, 0.0, true), false);
             }
@@ -353,7 +361,7 @@ mod tests {
 
     #[test]
     fn cornering_outlasts_the_crossing_of_a_lane_change_and_ends() {
-        let (c, mut state) = (Parameters::new(&Tuning::default()), State::default());
+        let (c, mut state) = (Parameters::new(&Tuning::default()), State::INITIAL);
         for _ in 0..1_000 {
             state.step(&c, &estimate(0.0, 0.0, true), false);
         }
@@ -366,7 +374,7 @@ mod tests {
 
     #[test]
     fn cornering_is_not_over_while_the_gas_leans() {
-        let (c, mut state) = (Parameters::new(&Tuning::default()), State::default());
+        let (c, mut state) = (Parameters::new(&Tuning::default()), State::INITIAL);
         for _ in 0..1_000 {
             state.step(&c, &estimate(0.0, 0.0, true), false);
         }
@@ -386,7 +394,7 @@ mod tests {
 
     #[test]
     fn nothing_is_decided_while_the_road_is_learnt() {
-        let (c, mut state) = (Parameters::new(&Tuning::default()), State::default());
+        let (c, mut state) = (Parameters::new(&Tuning::default()), State::INITIAL);
         for _ in 0..LEARNING_TICKS {
             assert!(!state.step(&c, &estimate(5.0, 0.0, false), false));
         }

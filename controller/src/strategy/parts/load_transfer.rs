@@ -50,7 +50,7 @@ impl Parameters {
 }
 
 /// What is remembered, m.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     lagged_m: f32,
@@ -61,6 +61,14 @@ pub(crate) struct State {
 }
 
 impl State {
+    pub const INITIAL: Self = Self {
+        lagged_m: 0.0,
+        usual_m: 0.0,
+        leans: false,
+        tick: 0,
+        started: false,
+    };
+
     /// One tick, with the difference `e`, m, and whether the vehicle corners; returns whether it leans.
     pub fn step(&mut self, c: &Parameters, difference_m: f32, corners: bool) -> bool {
         self.tick = (self.tick + 1) % TICKS;
@@ -75,12 +83,11 @@ impl State {
     #[inline(never)]
     fn look(&mut self, c: &Parameters, difference_m: f32, corners: bool) {
         if !self.started {
-            *self = Self {
-                lagged_m: difference_m,
-                usual_m: difference_m,
-                started: true,
-                ..Self::default()
-            };
+            self.started = true;
+            self.lagged_m = difference_m;
+            self.usual_m = difference_m;
+            // The look after the first one is in the next tick.
+            self.tick = 0;
         }
         let lagged_m = c.lag.step(&mut self.lagged_m, difference_m);
         let usual = if corners { &c.usual_in_bends } else { &c.usual };
@@ -96,7 +103,7 @@ mod tests {
 
     /// After a minute straight ahead with a usual difference, m: how long a further one counts as leaning, s, at most 400.
     fn leans_for_s(usual_m: f32, further_m: f32, corners: bool) -> u16 {
-        let (c, mut state) = (Parameters::new(), State::default());
+        let (c, mut state) = (Parameters::new(), State::INITIAL);
         for _ in 0..ticks(60_000) {
             assert!(!state.step(&c, usual_m, false));
         }
@@ -122,7 +129,7 @@ mod tests {
 
     #[test]
     fn wheels_that_go_up_and_down_are_no_lean() {
-        let (c, mut state) = (Parameters::new(), State::default());
+        let (c, mut state) = (Parameters::new(), State::INITIAL);
         for tick in 0..ticks(20_000) {
             let sway_m = 0.02 * libm::sinf(2.0 * core::f32::consts::PI * 1.5 * f32::from(tick) * 0.005);
             assert!(!state.step(&c, sway_m, true), "tick {tick}");

@@ -52,13 +52,15 @@ impl Tuning {
 }
 
 /// State of the guard.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     hold: u16,
 }
 
 impl State {
+    pub const INITIAL: Self = Self { hold: 0 };
+
     /// One tick; returns whether the guard is active.
     pub fn step(&mut self, tuning: &Tuning, estimate: &Estimate) -> bool {
         let ahead = estimate.roll_rad + HORIZON_S * estimate.roll_rate_rad_s;
@@ -101,13 +103,13 @@ mod tests {
             (1.0, 0.02, 0.9, 5.0, true),
             (1.0, 0.02, 0.0, 5.0, false),
         ] {
-            let mut guard = State::default();
+            let mut guard = State::INITIAL;
             assert_eq!(
                 guard.step(&tuning, &at(sign * roll, sign * rate, sign * lateral)),
                 active
             );
         }
-        let mut guard = State::default();
+        let mut guard = State::INITIAL;
         guard.step(&tuning, &at(0.1, 0.0, 5.0));
         assert!(guard.step(&tuning, &at(0.06, 0.0, 0.0)), "still rolled");
         for _ in 1..RELEASE_TICKS {

@@ -65,7 +65,7 @@ impl Parameters {
 }
 
 /// State of the mode decision.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     handling: bool,
@@ -73,6 +73,11 @@ pub(crate) struct State {
 }
 
 impl State {
+    pub const INITIAL: Self = Self {
+        handling: false,
+        dwell: 0,
+    };
+
     /// One tick; returns whether the vehicle is in handling mode.
     pub fn step(&mut self, parameters: &Parameters, estimate: &Estimate) -> bool {
         let (lateral, vertical) = (estimate.lateral_mean_square, estimate.vertical_mean_square);
@@ -113,7 +118,7 @@ mod tests {
             (3.1, 3.0, true),
         ] {
             assert_eq!(
-                State::default().step(&parameters, &estimate(lateral, vertical)),
+                { State::INITIAL }.step(&parameters, &estimate(lateral, vertical)),
                 handling,
                 "{lateral} {vertical}"
             );
@@ -123,7 +128,7 @@ mod tests {
     #[test]
     fn hysteresis_and_dwell() {
         let parameters = Parameters::new(&Tuning::default());
-        let mut mode = State::default();
+        let mut mode = State::INITIAL;
         assert!(mode.step(&parameters, &estimate(2.0, 1.0)));
         // Nothing lateral any more: stays for the dwell.
         for _ in 1..HANDLING_DWELL_TICKS {

@@ -147,14 +147,14 @@ impl Parameters {
 }
 
 /// State of the four corners.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     corners: Corners<CornerState>,
 }
 
 /// State of one corner.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct CornerState {
     velocity_m_s: f32,
@@ -164,6 +164,10 @@ struct CornerState {
 }
 
 impl State {
+    pub const INITIAL: Self = Self {
+        corners: Corners::splat(CornerState::INITIAL),
+    };
+
     /// One tick; returns whether low damping is wanted at each corner.
     pub fn step(
         &mut self,
@@ -194,6 +198,13 @@ fn acceleration_at((ahead_m, left_m): (f32, f32), estimate: &Estimate) -> f32 {
 }
 
 impl CornerState {
+    const INITIAL: Self = Self {
+        velocity_m_s: 0.0,
+        speed_m_s: 0.0,
+        acceleration_m_s2: 0.0,
+        high: false,
+    };
+
     /// One tick, from the strut's speed, the body's acceleration and velocity over it, the vertical running mean square and the
     /// displacement.
     #[inline(never)]
@@ -241,7 +252,7 @@ mod tests {
 
     fn settled(policy: DamperPolicy, extension_m_s: f32, velocity: f32, acceleration: f32, x_m: f32) -> bool {
         let parameters = parameters(policy);
-        let mut state = CornerState::default();
+        let mut state = CornerState::INITIAL;
         for _ in 0..100 {
             state.step(&parameters, -extension_m_s, acceleration, velocity, 0.0, x_m);
         }
@@ -273,7 +284,7 @@ mod tests {
             1.0 + 0.2 + 0.281,
             1.0 - 0.2 + 0.281,
         ];
-        let mut state = State::default();
+        let mut state = State::INITIAL;
         for _ in 0..2_000 {
             state.step(&parameters, &estimate, &Corners::default());
         }

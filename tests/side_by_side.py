@@ -5,13 +5,15 @@
 STRUT and VEHICLE are the examples side_by_side and vehicle_side_by_side of plant-sim. One strut is moved in one way, by our solver, by diffsol's BDF
 (in Rust) and by SciPy's Radau, BDF and LSODA. Each gets the coarsest setting with which p1 to p4 stay within a stated deviation of a solution that
 is far more accurate, so that what is compared is the time for the same result. The right-hand side is written here a second time, from
-docs/physics.md. Then a vehicle makes a step of steer on a flat road: ours, and the multi-body model of CommonRoad. The rounds go round all programs, so that a
-disturbance of the machine meets all of them. Printed are tables in Markdown; the exit status is 1 if a result is not the same.
+docs/physics.md. Then a vehicle makes a step of steer on a flat road: ours, and the multi-body model of CommonRoad. Measured is processor time, without the start of
+programs. The rounds go round all programs, so that a disturbance of the machine meets all of them. Printed are tables in Markdown; the exit status is 1 if a result is not the same.
 """
 
 import argparse
 import bisect
+import functools
 import math
+import os
 import pathlib
 import statistics
 import subprocess
@@ -40,8 +42,10 @@ TARGETS = [1e-3, 1e-4]
 STEPS = [1, 2, 4, 8, 16, 32]
 TOLERANCES = [10.0 ** (-k / 2) for k in range(4, 21)]
 TIMES = INTERVAL_S * numpy.arange(1, SAMPLES + 1)
-# Repeats within a process, so that its start does not count.
-REPEATS = {"oleo": 20, "bdf": 5, "right-hand-side": 1}
+# Repeats within a process, so that its start counts little.
+REPEATS = {"oleo": 100, "bdf": 30}
+# Calls of the right-hand side that the program makes in a repeat.
+CALLS = 1_000_000
 
 
 class Strut:
@@ -145,11 +149,29 @@ def displacement(t):
 
 
 def call(program, *words):
-    run = subprocess.run([program, *map(str, words)], capture_output=True, text=True, check=True)
-    lines = [line.split() for line in run.stdout.splitlines()]
-    seconds = [float(words[1]) for words in lines if words[0] == "seconds"]
-    calls = next((int(words[1]) for words in lines if words[0] == "calls"), None)
-    return (statistics.median(seconds) if seconds else math.nan), calls
+    """Processor time and output of a program that runs once."""
+    with tempfile.TemporaryFile("w+") as out:
+        process = subprocess.Popen([program, *map(str, words)], stdout=out)
+        _, status, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        out.seek(0)
+        said = dict(line.split() for line in out)
+    if process.returncode:
+        raise subprocess.CalledProcessError(process.returncode, program)
+    return used.ru_utime + used.ru_stime, said
+
+
+@functools.cache
+def start_s(program, *words):
+    """Processor time for starting a program, with no repeat of its work."""
+    return min(call(program, *words[:-2], 0, words[-1])[0] for _ in range(5))
+
+
+def repeated(program, *words):
+    """Processor time of one repeat of a program's work, without its start, and its output. The last word but one is the number of repeats."""
+    start = start_s(program, *words)
+    spent, said = call(program, *words)
+    return (spent - start) / int(words[-2]), said
 
 
 class Solver:
@@ -174,8 +196,8 @@ class Solver:
 def of_example(program, what, case, folder):
     def run(setting):
         out = folder / "pressures"
-        seconds, calls = call(program, what, case, repr(setting), REPEATS[what], out)
-        return seconds, calls, numpy.fromfile(out, dtype="<f8").reshape(-1, 4)
+        seconds, said = repeated(program, what, case, repr(setting), REPEATS[what], str(out))
+        return seconds, int(said.get("calls", 0)), numpy.fromfile(out, dtype="<f8").reshape(-1, 4)
 
     return run
 
@@ -183,11 +205,11 @@ def of_example(program, what, case, folder):
 def of_scipy(method, model, case):
     def run(tolerance):
         strut = Strut(model, case)
-        begun = time.perf_counter()
+        begun = time.process_time()
         done = solve_ivp(
             strut.slope, (0.0, TIMES[-1]), strut.start(), method, t_eval=TIMES, rtol=tolerance, atol=tolerance, first_step=1e-6
         )
-        seconds = time.perf_counter() - begun
+        seconds = time.process_time() - begun
         if not done.success:
             raise RuntimeError(done.message)
         return seconds, strut.calls, strut.pressures(done.y)
@@ -222,13 +244,15 @@ def strut(program, rounds, folder):
         if deviation > 1e-6:
             print("FAILED: the right-hand sides are not the same\n")
             reached = False
-        rust_s = statistics.median(call(program, "right-hand-side", case, "-", 1, "-")[0] / 1e6 for _ in range(rounds))
+        rust_s, motion_s = (
+            statistics.median(repeated(program, what, case, "-", 1, "-")[0] / CALLS for _ in range(rounds))
+            for what in ["right-hand-side", "motion"]
+        )
         python = Strut(model, case)
-        begun = time.perf_counter()
+        begun = time.process_time()
         for k in range(20000):
             python.slope(3.0 * k / 20000, python.start())
-        python_s = (time.perf_counter() - begun) / 20000
-        motion_s = statistics.median(call(program, "motion", case, "-", 1, "-")[0] / 1e6 for _ in range(rounds))
+        python_s = (time.process_time() - begun) / 20000
         print(
             f"One call of the right-hand side: {1e9 * rust_s:.0f} ns in Rust, {1e6 * python_s:.1f} us in Python; of the former the sines of "
             f"the motion {1e9 * motion_s:.0f} ns, which ours needs once a step.\n"
@@ -287,7 +311,7 @@ def common_road(tolerance, longest_s=math.inf):
     # The steering kinks twice: the solver begins anew there.
     kinks = [0.0, STEER_AT_S, STEER_AT_S + STEER_RAD / STEER_RATE_RAD_S, DURATION_S]
     yaw_rate = []
-    begun = time.perf_counter()
+    begun = time.process_time()
     for k, (begin, end) in enumerate(zip(kinks, kinks[1:])):
         inputs = [STEER_RATE_RAD_S if k == 1 else 0.0, 0.0]
 
@@ -302,8 +326,14 @@ def common_road(tolerance, longest_s=math.inf):
             raise RuntimeError(done.message)
         start = done.y[:, -1]
         yaw_rate.extend(done.y[5])
-    seconds = time.perf_counter() - begun
+    seconds = time.process_time() - begun
     return seconds, calls, numpy.array(yaw_rate)
+
+
+def call_vehicle(program, springs, manoeuvre, repeats=10):
+    """Processor time of one drive."""
+    words = [springs, *manoeuvre]
+    return (call(program, *words, repeats + 1)[0] - call(program, *words, 1)[0]) / repeats
 
 
 def vehicle(program, rounds):
@@ -323,7 +353,7 @@ def vehicle(program, rounds):
     calls = calls_in_ticks = 0
     for _ in range(rounds):
         for springs in ["coil springs", "struts"]:
-            seconds[springs].append(call(program, springs, *manoeuvre)[0])
+            seconds[springs].append(call_vehicle(program, springs, manoeuvre))
         spent, calls, _ = common_road(setting)
         seconds["CommonRoad"].append(spent)
         spent, calls_in_ticks, _ = common_road(setting, TICK_S)

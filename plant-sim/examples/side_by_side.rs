@@ -1,21 +1,20 @@
 //! One strut, one motion, by our solver and by a library's: what `tests/side_by_side.py` times beside SciPy's solvers.
 //!
 //! `side_by_side model` prints the model's file. `side_by_side oleo CASE STEPS REPEATS OUT` and `side_by_side bdf CASE TOLERANCE REPEATS OUT`
-//! print the seconds of each repeat and the calls of the right-hand side in one of them, and write p1 to p4 of all samples to OUT (doubles, little
-//! endian). `side_by_side exact CASE - 1 OUT` does so with a tolerance of 1e-11, and `side_by_side right-hand-side CASE - REPEATS -` times
-//! a million calls; `motion` instead of it times the motion alone. CASE is a number from 0.
+//! solve the case so often, print the calls of the right-hand side in one of the repeats, and write p1 to p4 of all samples to OUT (doubles, little
+//! endian). Whoever calls it measures the processor time. `side_by_side exact CASE - 1 OUT` does so with a tolerance of 1e-11, and `side_by_side right-hand-side CASE - REPEATS -` makes
+//! a million calls a repeat; `motion` instead of it computes the motion alone. CASE is a number from 0.
 
 #[path = "../tests/plain_strut/mod.rs"]
 mod plain_strut;
 
 use std::hint::black_box;
-use std::time::Instant;
 
 use plain_strut::{CASES, Middle, PlainStrut, Pressures, displacement, model, of_strut};
 
 /// Tolerance of what the others are held against.
 const EXACT: f64 = 1e-11;
-/// Calls that are timed together.
+/// Calls in a repeat.
 const CALLS: u32 = 1_000_000;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -32,18 +31,18 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     match what {
         "oleo" => {
             let steps = setting.parse()?;
-            let pressures = timed(repeats, || of_strut(&model, case, steps));
+            let pressures = repeated(repeats, || of_strut(&model, case, steps));
             write(out, &pressures)?;
         }
         "bdf" => {
             let tolerance = setting.parse()?;
-            let pressures = timed(repeats, || plain.by_bdf(tolerance));
+            let pressures = repeated(repeats, || plain.by_bdf(tolerance));
             println!("calls {}", plain.calls() / repeats.max(1) as u64);
             write(out, &pressures)?;
         }
         "exact" => write(out, &PlainStrut::of(&model, case, Middle::Bisection).by_bdf(EXACT))?,
         "motion" => {
-            timed(repeats, || {
+            repeated(repeats, || {
                 for call in 0..CALLS {
                     black_box(displacement(3.0 * f64::from(call) / f64::from(CALLS)));
                 }
@@ -53,7 +52,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         "right-hand-side" => {
             let (state, mut slope) = (plain.start(), [0.0; 5]);
-            timed(repeats, || {
+            repeated(repeats, || {
                 for call in 0..CALLS {
                     let t = 3.0 * f64::from(call) / f64::from(CALLS);
                     plain.derivative(t, black_box(&state), &mut slope);
@@ -68,13 +67,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Does the work so often, and prints the seconds of each time.
-fn timed(repeats: usize, mut work: impl FnMut() -> Pressures) -> Pressures {
+/// Does the work so often.
+fn repeated(repeats: usize, mut work: impl FnMut() -> Pressures) -> Pressures {
     let mut pressures = Pressures::new();
     for _ in 0..repeats {
-        let begun = Instant::now();
         pressures = black_box(work());
-        println!("seconds {:e}", begun.elapsed().as_secs_f64());
     }
     pressures
 }

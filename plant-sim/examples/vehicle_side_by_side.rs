@@ -4,7 +4,6 @@
 //! repeats, and the heading at the end.
 
 use std::sync::Arc;
-use std::time::Instant;
 
 use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::course::{Course, Drive, DriverStyle, Manoeuvre};
@@ -14,13 +13,11 @@ use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::VehicleParameters;
 use oleo_plant_sim::vehicle::suspension::{CoilElement, StrutElement, SuspensionElement};
 
-const REPEATS: usize = 5;
-
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    let [springs, speed, angle, at, duration] = words[..] else {
-        return Err("usage: vehicle_side_by_side SPRINGS SPEED STEER AT DURATION".into());
+    let [springs, speed, angle, at, duration, repeats] = words[..] else {
+        return Err("usage: vehicle_side_by_side SPRINGS SPEED STEER AT DURATION REPEATS".into());
     };
     let manoeuvre = Manoeuvre::StepSteer {
         speed_m_s: speed.parse()?,
@@ -29,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         duration_s: duration.parse()?,
     };
     let vehicle = VehicleParameters::defender110();
-    for _ in 0..REPEATS {
+    for _ in 0..repeats.parse::<u32>()? {
         match springs {
             "coil springs" => drive(
                 manoeuvre,
@@ -65,11 +62,9 @@ where
         road: Arc::new(Flat),
     };
     let mut drive = Drive::begin(&course, vehicle, &HandlingParameters::defender110(), springs)?;
-    let begun = Instant::now();
     while drive.ending().is_none() {
         drive.tick(signals, |_| {})?;
     }
-    println!("seconds {:e}", begun.elapsed().as_secs_f64());
     println!("yaw {:e}", drive.model().motion().yaw_rad);
     Ok(())
 }

@@ -81,6 +81,9 @@ pub struct MemoryGrowth {
 /// Peak memory that grows by less than this factor over a curve counts as constant.
 const CONSTANT_MEMORY: f64 = 1.25;
 
+/// Operations whose number for each unit of work varies by less than this factor are in proportion to it.
+const PROPORTION: f64 = 1.1;
+
 impl MemoryGrowth {
     /// Whether the memory does not depend on the work.
     pub fn is_constant(&self) -> bool {
@@ -107,6 +110,22 @@ impl MeasuredCurve {
     /// The same over the larger half, by which the curve is judged.
     pub fn growth_of_large(&self) -> Option<Growth> {
         Growth::of_large(&self.work(), &self.processor_s())
+    }
+
+    /// Growth of the time of one operation over the larger half, where their number is not in proportion to the work: a search takes more or
+    /// fewer turns with other data.
+    pub fn growth_of_operation(&self) -> Option<Growth> {
+        let in_proportion: Vec<f64> = (self.points.iter())
+            .map(|point| point.operations as f64 / point.size as f64)
+            .collect();
+        let most = in_proportion.iter().copied().fold(0.0, f64::max);
+        let least = in_proportion.iter().copied().fold(f64::INFINITY, f64::min);
+        let each: Vec<f64> = (self.points.iter())
+            .map(|point| point.processor_s.median / point.operations as f64)
+            .collect();
+        (most > PROPORTION * least)
+            .then(|| Growth::of_large(&self.work(), &each))
+            .flatten()
     }
 
     /// Growth of the instructions over the points where they were counted.
@@ -162,6 +181,16 @@ impl MeasuredCurve {
                 large.exponent, large.low, large.high
             );
         }
+        if let Some(each) = self.growth_of_operation() {
+            text += &format!(
+                "; that of one {} {} (exponent {:.2}, {:.2} to {:.2}), and how many there are depends on the data",
+                self.curve.operation(),
+                each.kind().in_words(),
+                each.exponent,
+                each.low,
+                each.high
+            );
+        }
         if let Some(ratio) = self.small_over_large() {
             text +=
                 &format!("; of the smallest point one of the {unit} costs {ratio:.2} times as much as of the largest");
@@ -170,8 +199,8 @@ impl MeasuredCurve {
             None => "; this system does not tell the peak memory.".to_owned(),
             Some(memory) if memory.is_constant() => "; the peak memory is constant.".to_owned(),
             Some(memory) => format!(
-                "; the peak memory grows by {:.1} kB for each of the {unit}.",
-                1e-3 * memory.bytes_per_unit
+                "; the peak memory grows by {:.0} bytes for each of the {unit}.",
+                memory.bytes_per_unit
             ),
         };
         text
@@ -286,13 +315,30 @@ mod tests {
     }
 
     #[test]
+    fn a_search_with_other_turns_is_judged_by_its_operation() {
+        let mut search = curve(|size| 1e-6 * size, |_| 12e6);
+        assert_eq!(search.growth_of_operation(), None);
+        for (point, turns) in search.points.iter_mut().zip([900_u32, 400, 1100, 600]) {
+            point.processor_s.median *= f64::from(turns);
+            point.operations = u64::from(turns);
+        }
+        let each = search.growth_of_operation().expect("a fit");
+        assert!((each.exponent - 1.0).abs() < 1e-9, "{each:?}");
+        assert!(
+            search.in_words().contains("that of one frame is linear"),
+            "{}",
+            search.in_words()
+        );
+    }
+
+    #[test]
     fn a_square_law_and_memory_a_unit_are_called_so() {
         let square = curve(|size| 1e-9 * size * size, |size| 8e6 + 500.0 * size);
         assert_eq!(square.kind(), Kind::FasterThanLinear);
         let memory = square.memory().expect("a memory");
         assert!(!memory.is_constant() && (memory.bytes_per_unit - 500.0).abs() < 1e-6);
         assert!(
-            square.in_words().contains("0.5 kB for each of the frames"),
+            square.in_words().contains("500 bytes for each of the frames"),
             "{}",
             square.in_words()
         );

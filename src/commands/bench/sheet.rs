@@ -189,6 +189,7 @@ fn summary(curves: &[MeasuredCurve], extent: &Extent) -> Value {
             "growth": curve.kind().to_string(),
             "exponent": growth(curve.growth_of_large()),
             "exponent_of_all_points": growth(curve.growth()),
+            "exponent_of_an_operation": growth(curve.growth_of_operation()),
             "exponent_of_instructions": growth(curve.growth_of_instructions()),
             "memory": memory,
             "in_words": curve.in_words(),

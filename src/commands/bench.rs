@@ -30,6 +30,7 @@ use crate::results::{ResultsArgs, command_line, origin, say};
 use curve::Curve;
 use measurement::{Extent, measure};
 use point::Point;
+use process::Part;
 
 /// Measure what the work of the other commands costs as it grows: time, memory, and the exponent of the growth.
 #[derive(clap::Args)]
@@ -56,9 +57,9 @@ pub struct Args {
     /// Do the work of one point in this process, and print what it cost
     #[arg(long, hide = true, value_name = "CURVE:SIZE", requires = "scratch")]
     point: Option<Point>,
-    /// Only get ready for the work of the point
-    #[arg(long, hide = true, requires = "point")]
-    only_prepare: bool,
+    /// Do only this part of the point
+    #[arg(long, hide = true, requires = "point", value_name = "PART")]
+    only: Option<Part>,
     /// Folder for the files of points
     #[arg(long, hide = true, value_name = "DIR")]
     scratch: Option<PathBuf>,
@@ -72,7 +73,7 @@ const MOST_REPEATS: u32 = 100;
 /// Runs the command.
 pub fn run(args: &Args) -> Result<ExitCode, Failure> {
     if let (Some(point), Some(scratch)) = (args.point, &args.scratch) {
-        say(&process::here(point, scratch, args.only_prepare)?)?;
+        say(&process::here(point, scratch, args.only)?)?;
         return Ok(ExitCode::SUCCESS);
     }
     if !(1..=MOST_REPEATS).contains(&args.repeats) {

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::Command;
 
 use super::point::Point;
-use super::process;
+use super::process::{self, Part};
 use crate::failure::Failure;
 
 /// Points that take longer are not counted, s: callgrind is about fifty times slower.
@@ -22,18 +22,16 @@ pub fn require() -> Result<(), Failure> {
 
 /// Instructions of the work of a point: those of a process that does it less those of one that only prepares it.
 pub fn of(point: Point, scratch: &Path) -> Result<u64, Failure> {
-    let whole = in_process(point, scratch, false)?;
-    Ok(whole.saturating_sub(in_process(point, scratch, true)?))
+    let whole = in_process(point, scratch, Part::Work)?;
+    Ok(whole.saturating_sub(in_process(point, scratch, Part::Preparation)?))
 }
 
-fn in_process(point: Point, scratch: &Path, only_prepare: bool) -> Result<u64, Failure> {
+fn in_process(point: Point, scratch: &Path, part: Part) -> Result<u64, Failure> {
     let plain = process::command(point, scratch)?;
     let mut command = Command::new("valgrind");
     command.args(["--tool=callgrind", "--callgrind-out-file=/dev/null"]);
     command.arg(plain.get_program()).args(plain.get_args());
-    if only_prepare {
-        command.arg("--only-prepare");
-    }
+    command.args(["--only", part.into()]);
     let output = (command.output()).map_err(|error| point.failed(&format!("valgrind cannot be started: {error}")))?;
     let said = String::from_utf8_lossy(&output.stderr);
     collected(&said)

@@ -26,10 +26,23 @@ pub struct Spent {
     pub outcome: String,
 }
 
-/// Does the work in this process. The text tells [`apart`] what it cost; it is empty where the work is only prepared.
-pub fn here(point: Point, scratch: &Path, only_prepare: bool) -> Result<String, Failure> {
+/// A part of what a process does, whose instructions are counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, strum::EnumString, strum::IntoStaticStr)]
+#[strum(serialize_all = "kebab-case")]
+pub enum Part {
+    /// Gets ready for the work.
+    Preparation,
+    /// Gets ready and does the work; what was computed is not looked at.
+    Work,
+}
+
+/// Does the work in this process. The text tells [`apart`] what it cost; it is empty where only a part is asked for.
+pub fn here(point: Point, scratch: &Path, only: Option<Part>) -> Result<String, Failure> {
     let mut work = work::prepare(point, scratch)?;
-    if only_prepare {
+    if let Some(part) = only {
+        if part == Part::Work {
+            work.run()?;
+        }
         return Ok(String::new());
     }
     let (processor_s, begun) = (resources::processor_s()?, Instant::now());

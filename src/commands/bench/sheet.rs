@@ -218,8 +218,8 @@ fn page(curves: &[MeasuredCurve], extent: &Extent, command: &str) -> Page {
         "processor",
         &resources::processor().unwrap_or_else(|| "not told".to_owned()),
     );
-    page.fact("cores", &resources::cores().to_string());
-    page.fact("repeats", &extent.repeats.to_string());
+    page.fact("Cores", &resources::cores().to_string());
+    page.fact("Repeats", &extent.repeats.to_string());
     let odd: Vec<&str> = (curves.iter())
         .filter(|curve| curve.kind() == Kind::FasterThanLinear)
         .map(|curve| curve.curve.name())

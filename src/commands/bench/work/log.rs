@@ -36,6 +36,10 @@ impl Conversion {
             write(&log, frames)?;
         }
         let output = scratch.join(format!("converted.{to}"));
+        // A process that only did the work left its file.
+        if output.exists() {
+            std::fs::remove_file(&output)?;
+        }
         Ok(Self {
             arguments: convert::Args::of(log, output),
             frames,

@@ -33,6 +33,7 @@ COMMANDS = {
     "study optimise": ["study", "optimise", "--duration-s", "2", "--iterations", "10", "--roll", "1", "--map"],
     "study control": ["study", "control", "--quick", "--seeds", "1", "--duration-s", "5"],
     "study robust": ["study", "robust", "--vehicles", "2"],
+    "bench": ["bench", "--quick", "--repeats", "1"],
     "self-test": ["diagnose", "--self-test", "--campaigns", "2"],
 }
 

@@ -32,6 +32,7 @@ COMMANDS = [
     ("study-optimise", ["study", "optimise", "--iterations", "2", "--duration-s", "2", "--roll", "1"]),
     ("study-control", ["study", "control", "--quick", "--seeds", "1", "--duration-s", "5"]),
     ("study-robust", ["study", "robust", "--vehicles", "2"]),
+    ("bench", ["bench", "--quick", "--repeats", "1"]),
     ("self-test", ["diagnose", "--self-test", "--campaigns", "2"]),
 ]
 

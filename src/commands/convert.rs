@@ -41,8 +41,31 @@ pub struct Args {
     force: bool,
 }
 
+impl Args {
+    /// Converts a log with messages of our own database.
+    pub fn of(input: PathBuf, output: PathBuf) -> Self {
+        Self {
+            input,
+            output,
+            database: DatabaseArgs::default(),
+            force: false,
+        }
+    }
+
+    /// The file that is written.
+    pub fn output(&self) -> &PathBuf {
+        &self.output
+    }
+}
+
 /// Runs the command.
-pub fn run(args: Args) -> Result<ExitCode, Failure> {
+pub fn run(args: &Args) -> Result<ExitCode, Failure> {
+    say(&convert(args)?)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes the file, and says what is in it.
+pub fn convert(args: &Args) -> Result<String, Failure> {
     let inputs: Vec<PathBuf> = std::iter::once(args.input.clone())
         .chain(args.database.inputs())
         .collect();
@@ -57,8 +80,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
             .zip(columns.iter().map(Vec::as_slice))
             .collect();
         let written = stage()?.csv(&columns)?;
-        say(&format!("{}\n{}\n", log.in_words, written.display()))?;
-        return Ok(ExitCode::SUCCESS);
+        return Ok(format!("{}\n{}\n", log.in_words, written.display()));
     }
     let format = match Format::of_name(&args.output) {
         Some(format @ (Format::Candump | Format::Asc)) if !has_end(&args.output, "gz") => format,
@@ -98,14 +120,13 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
             .map(|read| account = read)
             .and_then(|()| some_frame(frames, &args.input)))
     })??;
-    say(&format!(
+    Ok(format!(
         "{frames} frames of {} entries; {} error frames, {} unreadable entries.\n{}\n",
         account.entries,
         account.error_frames,
         account.unreadable,
         written.display()
-    ))?;
-    Ok(ExitCode::SUCCESS)
+    ))
 }
 
 fn has_end(path: &Path, end: &str) -> bool {

@@ -86,7 +86,7 @@ macro_rules! schemas {
     };
 }
 
-const SCHEMAS: [(&str, &str, &str); 17] = schemas!(
+const SCHEMAS: [(&str, &str, &str); 18] = schemas!(
     "hil" of "summary.json of oleo hil",
     "hil-controller" of "summary.json of oleo hil --node controller",
     "drive" of "summary.json of oleo drive",
@@ -102,6 +102,7 @@ const SCHEMAS: [(&str, &str, &str); 17] = schemas!(
     "study-robust" of "summary.json of oleo study robust",
     "study-fleet" of "summary.json of oleo study fleet",
     "compare" of "summary.json of oleo compare",
+    "bench" of "summary.json of oleo bench",
     "diagnose" of "report.json of oleo diagnose",
     "self-test" of "summary.json of oleo diagnose --self-test",
 );

@@ -24,7 +24,7 @@ use without_map::ByMap;
 use crate::failure::Failure;
 
 /// The database of a log, where it is not our own.
-#[derive(clap::Args, Clone)]
+#[derive(clap::Args, Clone, Default)]
 pub struct DatabaseArgs {
     /// CAN database (DBC) of the logs, where it is not our own
     #[arg(long, value_name = "FILE.dbc", requires = "signals")]

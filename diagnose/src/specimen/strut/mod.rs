@@ -40,6 +40,9 @@ pub const FEWEST_CHANNELS: usize = 4;
 /// that noise, taken from one other draw, is known to about a fifth of its variance.
 const FLOOR_OF_POOR_MOTION: f64 = 1.1;
 
+/// Why a candidate is not tested that somebody left out.
+const LEFT_OUT: &str = "left out of the search";
+
 /// A strut with its recordings.
 pub struct TwoStageStrut {
     model: StrutModel,
@@ -278,7 +281,16 @@ impl TwoStageStrut {
     /// Takes a term out of the search, to see what is said of it without its name (self-test).
     pub fn leave_out(&mut self, id: EffectId) {
         for candidate in self.candidates.iter_mut().filter(|c| c.id == id) {
-            candidate.untestable = Some("left out of the search".to_owned());
+            candidate.untestable = Some(LEFT_OUT.to_owned());
+        }
+    }
+
+    /// Leaves all candidates out of the search but those at these places of [`Specimen::candidates`].
+    pub fn search_only(&mut self, places: &[usize]) {
+        for (place, candidate) in self.candidates.iter_mut().enumerate() {
+            if !places.contains(&place) {
+                candidate.untestable.get_or_insert_with(|| LEFT_OUT.to_owned());
+            }
         }
     }
 

@@ -4,24 +4,12 @@
 //! for one number and for four ([`lanes`](crate::lanes)). What is not worth a vector (the valves' movements, the rod) is worked out strut
 //! by strut. Where a processor has no vectors of four numbers, or the four struts differ in kind, they take their steps alone.
 
-use oleo_interface::StrutValves;
 use pulp::Simd;
 
 use super::hydraulics::{Flowing, Hydraulics, Step};
 use super::integrator::{Strut, StrutOutput};
-use super::motion::Segment;
+use super::motion::StrutMove;
 use crate::lanes::{Four, LANES, Vectors, each_lane, vectors};
-
-/// How a strut is to move over an interval, and the switching signals of its valves meanwhile.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StrutMove {
-    /// Where it ends, and the speeds at its two ends.
-    pub segment: Segment,
-    /// Duration of the interval, s.
-    pub duration_s: f64,
-    /// Switching signals, true for open.
-    pub signals: StrutValves<bool>,
-}
 
 /// What four struts need to move together.
 ///
@@ -135,7 +123,9 @@ impl<S: Simd> pulp::NullaryFnOnce for TakeStep<'_, '_, S> {
 mod tests {
     use super::*;
     use crate::strut::model::StrutModel;
+    use crate::strut::motion::Segment;
     use crate::strut::terms::Effects;
+    use oleo_interface::StrutValves;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 

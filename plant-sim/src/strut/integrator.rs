@@ -9,12 +9,11 @@ use oleo_interface::{StrutValves, Valve};
 
 use crate::model_file::{Checked, InvalidValue};
 
-use super::abreast::StrutMove;
 use super::characteristic::Characteristic;
 use super::gas::GasState;
 use super::hydraulics::{Flowing, GAMMA, Hydraulics, Step};
 use super::model::StrutModel;
-use super::motion::{Cubic, Segment};
+use super::motion::{Cubic, Segment, StrutMove};
 use super::network::LastSolution;
 use super::rod_course::RodCourse;
 use super::rod_forces::RodForces;

@@ -59,7 +59,7 @@ mod smoothing;
 mod terms;
 mod valve;
 
-pub use abreast::{Abreast, StrutMove};
+pub use abreast::Abreast;
 pub use characteristic::Characteristic;
 pub use damper::DamperTable;
 pub use flow_path::FlowPath;
@@ -68,7 +68,7 @@ pub use gas::{Gas, GasState, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K};
 pub use instruments::record_column;
 pub use integrator::{Strut, StrutOutput, StrutSnapshot};
 pub use model::{Accumulator, Cylinder, GasCharge, Orifice, Specimen, StrutModel, Valve, ValveTiming};
-pub use motion::{Motion, Segment};
+pub use motion::{Motion, Segment, StrutMove};
 pub use nitrogen::Nitrogen;
 pub use pressure::ATMOSPHERE_PA;
 pub use replay::{Inputs, Prediction, replay, replay_with_course};

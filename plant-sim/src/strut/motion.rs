@@ -1,5 +1,7 @@
 //! How the actuator moves: a cubic from sample to sample, with one speed before each sample and one after it.
 
+use oleo_interface::StrutValves;
+
 /// One sampling interval of a motion: where it ends, and the speeds at its two ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
@@ -40,6 +42,17 @@ impl Segment {
             (0.0, duration_s)
         }
     }
+}
+
+/// How a strut is to move over an interval, and the switching signals of its valves meanwhile.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StrutMove {
+    /// Where it ends, and the speeds at its two ends.
+    pub segment: Segment,
+    /// Duration of the interval, s.
+    pub duration_s: f64,
+    /// Switching signals, true for open.
+    pub signals: StrutValves<bool>,
 }
 
 /// A displacement history that a strut can be driven with.

@@ -149,7 +149,14 @@ mod tests {
             name(|b| b.tuning.strategy.road_and_cornering.cornering.floor_m_s2 = 0.0),
             Err("tuning.strategy.road_and_cornering.cornering.floor_m_s2")
         );
-        assert!(name(|b| b.tuning.strategy.road_and_cornering.rollover_guard.lateral_m_s2 = 0.0).is_err());
+        assert_eq!(
+            name(|b| b.tuning.strategy.road_and_cornering.rollover_guard.lateral_m_s2 = 0.0),
+            Err("tuning.strategy.road_and_cornering.rollover_guard.lateral_m_s2")
+        );
+        assert_eq!(
+            name(|b| b.tuning.estimate.lateral.smoothed_share = 1.1),
+            Err("tuning.estimate.lateral.smoothed_share")
+        );
         #[cfg(feature = "comparison")]
         assert_eq!(
             name(|b| {

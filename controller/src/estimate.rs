@@ -50,8 +50,8 @@ const _: () = assert!(
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tuning {
-    /// Corner frequency of the low-pass of the lateral acceleration, Hz, 0.1 to 5.
-    pub lateral_corner_hz: f32,
+    /// The lateral acceleration.
+    pub lateral: lateral::Tuning,
     /// Time constant of the running mean squares, s, 0.1 to 20.
     pub running_rms_s: f32,
 }
@@ -59,8 +59,8 @@ pub struct Tuning {
 impl Default for Tuning {
     fn default() -> Self {
         Self {
-            lateral_corner_hz: 1.8, // measured: docs/controller.md
-            running_rms_s: 1.0,     // recalled: Els, about 1 s
+            lateral: lateral::Tuning::default(),
+            running_rms_s: 1.0, // recalled: Els, about 1 s
         }
     }
 }
@@ -68,7 +68,7 @@ impl Default for Tuning {
 impl Tuning {
     /// Whether every value is within its range.
     pub(crate) fn check(&self) -> Result<(), ConfigurationError> {
-        within("tuning.estimate.lateral_corner_hz", self.lateral_corner_hz, 0.1, 5.0)?;
+        self.lateral.check()?;
         within("tuning.estimate.running_rms_s", self.running_rms_s, 0.1, 20.0)
     }
 }
@@ -109,10 +109,7 @@ impl Parameters {
             per_pitch_gyration_2: 1.0 / square(vehicle.pitch_gyration_m),
             strut_speed: Derivative::from_corner_hz(SPEED_CORNER_HZ),
             static_load: LowPass::from_time_constant_s(20.0),
-            lateral: lateral::Parameters::new(
-                tuning.lateral_corner_hz,
-                square(vehicle.roll_gyration_m) / vehicle.roll_arm_m,
-            ),
+            lateral: lateral::Parameters::new(&tuning.lateral, square(vehicle.roll_gyration_m) / vehicle.roll_arm_m),
             wheelbase: wheelbase::Parameters::new(),
             running: LowPass::from_time_constant_s(tuning.running_rms_s),
         }

@@ -19,20 +19,34 @@
 //! (`wheelbase`). With `w_f` and `w_r` the axles' roll on the road, the twist is `w_f - w_r`, and `w_r` is `w_f` of `D` ticks ago:
 //!
 //! ```text
-//!   w_f(n) = (w_f - w_r)(n) + r w_f(n - D),   r = 0.92
+//!   w_f(n) = (w_f - w_r)(n) + r w_f(n - D),   r = min(n / (n + D), 0.92)
 //! ```
 //!
-//! The same recursion holds for everything that follows linearly from the roll of the axles, so it is done behind the low-pass,
-//! with the witness for the twist. `r` below 1 lets the unknown beginning be forgotten; a road whose period is the wheelbase stays
-//! hidden. It halves the error on classes B to D.
+//! with `n` the ticks since `D` has been known.
 //!
-//! LP is a Bessel low-pass of fourth order: least delay for its steepness, and no overshoot. A second, slower output has a
-//! further section behind it: on surfaces on which wheels leave the ground only the slow one can tell a bend from the road.
+//! The same recursion holds for everything that follows linearly from the roll of the axles, so it is done behind the low-pass,
+//! with the witness for the twist. What `w_f` was when it began is not known. `r` below 1 lets that be forgotten, and a small one at first
+//! soon: after `k` delays a part of `1 / (k + 1)` of it is left, where 0.92 from the first would leave `0.92^k`, which is a half after
+//! eight. A road whose period is the wheelbase stays hidden. The correction halves the error on classes B to D.
+//!
+//! LP is a Bessel low-pass of fourth order: least delay for its steepness, and no overshoot. What tells a bend from the road soonest
+//! is not `a_y` itself. With `e` the correction of the axles' roll and `a` the sum without it, the *quick* output is
+//!
+//! ```text
+//!   q = (1 - s) (a + e) + s M_0.15(a) + c M_0.8(e),   s = 0.77, c = 3.7
+//! ```
+//!
+//! with `M_t` the mean over `t` seconds (a lag). The smoothing takes out what the road makes above 1 Hz. The last term is road
+//! below 1 Hz. There it pulls the vehicle sideways by its slope, which the first term does not know of, and by the tyres that the
+//! rolling axles drag along; that is a lateral acceleration, but no bend. Both shares are Fisher's linear discriminant of bends from
+//! roads (`docs/controller.md`). Where no delay is known, as on a flat road, `q = a`. A further, *slow* output has one more section
+//! behind `a + e`: on surfaces on which wheels leave the ground only the slow one can tell a bend from the road.
 //!
 //! Source: Newton and Euler at small angles; poles of the Bessel filter: Zverev, Handbook of Filter Synthesis (1967), table of
 //! normalised frequencies and quality factors for -3 dB at 1.
 
 use crate::filter::{LowPass, SecondOrder, SecondOrderState};
+use crate::range::{ConfigurationError, within};
 use crate::timing::ticks;
 use crate::wheelbase::HISTORY;
 
@@ -51,25 +65,73 @@ const SETTLING_TICKS: u16 = ticks(1_000);
 const FADING_TICKS: u16 = ticks(750);
 /// Time after the fading in which the slow output follows.
 const FOLLOWING_TICKS: u16 = ticks(500);
-/// How much of the road `D` ticks ago is kept.
-const KEPT: f32 = 0.92;
+/// How much of the road `D` ticks ago is kept at most.
+const MOST_KEPT: f32 = 0.92;
+/// Time constant of the mean of the sum in the quick output, s.
+const SMOOTHED_S: f32 = 0.15;
+/// Time constant of the mean of the correction in the quick output, s.
+const DRAGGED_S: f32 = 0.8;
+
+/// What a person may choose about the estimate of lateral acceleration.
+///
+/// ```
+/// let mut builder = oleo_controller::Builder::default();
+/// builder.tuning.estimate.lateral.corner_hz = 0.0;
+/// assert_eq!(builder.build().unwrap_err().name, "tuning.estimate.lateral.corner_hz");
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// Corner frequency of the low-pass, Hz, 0.1 to 5.
+    pub corner_hz: f32,
+    /// Share of the smoothed sum in the quick output, 0 to 1.
+    pub smoothed_share: f32,
+    /// How much of the mean of the correction is added to the quick output, 0 to 10.
+    pub dragged_share: f32,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self {
+            corner_hz: 1.8, // measured, as the shares: docs/controller.md
+            smoothed_share: 0.77,
+            dragged_share: 3.7,
+        }
+    }
+}
+
+impl Tuning {
+    /// Whether every value is within its range.
+    pub(crate) fn check(&self) -> Result<(), ConfigurationError> {
+        within("tuning.estimate.lateral.corner_hz", self.corner_hz, 0.1, 5.0)?;
+        within("tuning.estimate.lateral.smoothed_share", self.smoothed_share, 0.0, 1.0)?;
+        within("tuning.estimate.lateral.dragged_share", self.dragged_share, 0.0, 10.0)
+    }
+}
 
 /// Filters and the ratio `i_x^2 / h`, m.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Parameters {
     sections: [SecondOrder; 2],
     slow: SecondOrder,
+    smoothed: LowPass,
+    smoothed_share: f32,
+    dragged: LowPass,
+    dragged_share: f32,
     inertia_per_arm_m: f32,
     bias: LowPass,
 }
 
 impl Parameters {
-    /// From the corner frequency of the low-pass, Hz, and `i_x^2 / h`, m.
-    pub fn new(corner_hz: f32, inertia_per_arm_m: f32) -> Self {
-        let section = |(ratio, damping): (f32, f32)| SecondOrder::new(ratio * corner_hz, damping);
+    /// From a tuning that has been checked, and `i_x^2 / h`, m.
+    pub fn new(tuning: &Tuning, inertia_per_arm_m: f32) -> Self {
+        let section = |(ratio, damping): (f32, f32)| SecondOrder::new(ratio * tuning.corner_hz, damping);
         Self {
             sections: BESSEL_4.map(section),
             slow: section(SLOW),
+            smoothed: LowPass::from_time_constant_s(SMOOTHED_S),
+            smoothed_share: tuning.smoothed_share,
+            dragged: LowPass::from_time_constant_s(DRAGGED_S),
+            dragged_share: tuning.dragged_share,
             inertia_per_arm_m,
             bias: LowPass::from_time_constant_s(BIAS_S),
         }
@@ -79,7 +141,7 @@ impl Parameters {
 /// A quantity behind the quick low-pass and behind the slow one, m/s2. See [`Lateral`] for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bands {
-    /// Behind the Bessel filter alone.
+    /// Behind the Bessel filter; of the acceleration, the sum that tells a bend from the road soonest.
     pub quick: f32,
     /// Behind one section more.
     pub slow: f32,
@@ -128,6 +190,8 @@ pub(crate) struct State {
     twist: Bessel,
     body_slow: SecondOrderState,
     twist_slow: SecondOrderState,
+    smoothed: f32,
+    dragged: f32,
     /// Twice the front axle's share of the error in the last ticks, m/s2, in a ring.
     #[cfg_attr(feature = "serde", serde(with = "serde_big_array::BigArray"))]
     front: [f32; HISTORY],
@@ -144,6 +208,8 @@ impl State {
         twist: Bessel::INITIAL,
         body_slow: SecondOrderState::INITIAL,
         twist_slow: SecondOrderState::INITIAL,
+        smoothed: 0.0,
+        dragged: 0.0,
         front: [0.0; HISTORY],
         now: 0,
         known: 0,
@@ -190,13 +256,17 @@ impl State {
             self.body = Bessel::at_rest(c, quasi_static_m_s2, roll);
             self.twist = Bessel::at_rest(c, 0.0, twist);
             self.body_slow = c.slow.at_rest(quasi_static_m_s2, 0.0);
+            self.smoothed = quasi_static_m_s2;
         }
         let plain = self.body.step(c, quasi_static_m_s2, roll);
         let witness = self.twist.step(c, 0.0, twist);
-        let error = self.axles(witness, delay);
-        let quick = plain + error;
-        let slow = c.slow.low_pass(&mut self.body_slow, quick);
-        let bias = c.bias.step(&mut self.bias, quick.clamp(-MAX_BIAS_M_S2, MAX_BIAS_M_S2));
+        let (faded, error) = self.axles(witness, delay);
+        let sum = plain + error;
+        let smoothed = c.smoothed.step(&mut self.smoothed, plain);
+        let dragged = c.dragged.step(&mut self.dragged, error);
+        let quick = sum + faded * c.smoothed_share * (smoothed - sum) + c.dragged_share * dragged;
+        let slow = c.slow.low_pass(&mut self.body_slow, sum);
+        let bias = c.bias.step(&mut self.bias, sum.clamp(-MAX_BIAS_M_S2, MAX_BIAS_M_S2));
         Lateral {
             corrected: self.known >= SETTLING_TICKS + FADING_TICKS + FOLLOWING_TICKS,
             acceleration_m_s2: Bands {
@@ -210,12 +280,17 @@ impl State {
         }
     }
 
-    /// What has to be added for the axles' roll on the road, m/s2: half of the front axle's share and half of the rear one's,
-    /// which together are the front one's less the witness.
-    fn axles(&mut self, witness_m_s2: f32, delay: Option<u8>) -> f32 {
+    /// How far the correction has been faded in, from 0 to 1, and what has to be added for the axles' roll on the road, m/s2: half of
+    /// the front axle's share and half of the rear one's, which together are the front one's less the witness.
+    fn axles(&mut self, witness_m_s2: f32, delay: Option<u8>) -> (f32, f32) {
         let ago = |ticks: usize| self.now.wrapping_sub(ticks) % HISTORY;
-        let before = delay.and_then(|delay| self.front.get(ago(delay.into())));
-        let front = 2.0 * witness_m_s2 + before.map_or(0.0, |before| KEPT * before);
+        let known = f32::from(self.known);
+        let kept = delay.and_then(|delay| {
+            let before = self.front.get(ago(delay.into()))?;
+            let part = known / (known + f32::from(delay));
+            Some(if part < MOST_KEPT { part } else { MOST_KEPT } * before)
+        });
+        let front = 2.0 * witness_m_s2 + kept.unwrap_or(0.0);
         if let Some(place) = self.front.get_mut(ago(0)) {
             *place = front;
         }
@@ -226,7 +301,8 @@ impl State {
             0
         };
         let faded = self.known.saturating_sub(SETTLING_TICKS).min(FADING_TICKS);
-        f32::from(faded) * (1.0 / FADING_TICKS as f32) * (front - witness_m_s2)
+        let faded = f32::from(faded) * (1.0 / FADING_TICKS as f32);
+        (faded, faded * (front - witness_m_s2))
     }
 }
 
@@ -251,7 +327,12 @@ mod tests {
     /// RMS of the quick estimate and of the witness over the last 5 s on a road whose front axle rolls by 0.5 degrees at a
     /// frequency and whose rear axle follows 33 ticks later, under a body that stays upright.
     fn on_a_wavy_road(frequency_hz: f32, delay: Option<u8>) -> (f32, f32) {
-        let (c, mut state) = (Parameters::new(1.8, 1.5), State::INITIAL);
+        let sum = Tuning {
+            smoothed_share: 0.0,
+            dragged_share: 0.0,
+            ..Tuning::default()
+        };
+        let (c, mut state) = (Parameters::new(&sum, 1.5), State::INITIAL);
         let axle = |tick: usize| 0.0087 * libm::sinf(2.0 * PI * frequency_hz * tick as f32 * TICK_S);
         let (mut error_2, mut witness_2) = (0.0, 0.0);
         for tick in 0..4_000 {
@@ -283,7 +364,7 @@ mod tests {
 
     #[test]
     fn a_bend_is_seen_and_makes_no_witness() {
-        let (c, mut state) = (Parameters::new(1.8, 1.5), State::INITIAL);
+        let (c, mut state) = (Parameters::new(&Tuning::default(), 1.5), State::INITIAL);
         let mut last = Lateral::default();
         // A vehicle that leans by 2 degrees at once: both axles see the same.
         for tick in 0..400 {
@@ -295,9 +376,56 @@ mod tests {
         assert!((last.acceleration_m_s2.slow - 4.0).abs() < 0.4, "{last:?}");
     }
 
+    /// A load that moves at once, on a road without roll and with a known delay: the mean lags, and the shares make one.
+    #[test]
+    fn the_quick_output_is_the_sum_and_its_mean() {
+        let after = |smoothed_share: f32, ticks: usize, delay: Option<u8>| {
+            let tuning = Tuning {
+                smoothed_share,
+                ..Tuning::default()
+            };
+            let (c, mut state) = (Parameters::new(&tuning, 1.5), State::INITIAL);
+            (0..1_000).for_each(|_| _ = state.step(&c, 0.0, 0.0, 0.0, delay));
+            let last = (0..ticks).map(|_| state.step(&c, 1.0, 0.0, 0.0, delay)).last();
+            last.map_or(0.0, |lateral| lateral.acceleration_m_s2.quick)
+        };
+        for ticks in [40, 80, 160] {
+            let [sum, mean, half] = [0.0, 1.0, 0.5].map(|share| after(share, ticks, Some(33)));
+            assert!(
+                (half - 0.5 * (sum + mean)).abs() < 1e-5 && mean < sum,
+                "{sum} {mean} {half}"
+            );
+            assert_eq!(after(1.0, ticks, None), sum, "nothing to smooth without a correction");
+        }
+        assert!((after(1.0, 200, Some(33)) - after(0.0, 200, Some(33))).abs() < 0.03);
+    }
+
+    /// On a road that rolls by one side slope for ever, the twist is zero and what the front axle rolls by is not known. It is
+    /// taken for zero, and a wrong guess is forgotten: after `k` delays 1 / (k + 1) of it is left.
+    #[test]
+    fn an_unknown_beginning_is_soon_forgotten() {
+        let (delay, mut state) = (20_u8, State::INITIAL);
+        for _ in 0..HISTORY {
+            state.axles(0.5, None);
+        }
+        let fronts: [f32; 13] = core::array::from_fn(|_| {
+            (0..delay).for_each(|_| _ = state.axles(0.0, Some(delay)));
+            state.front[(state.now + HISTORY - 1) % HISTORY]
+        });
+        for (delays, front) in fronts.iter().enumerate() {
+            // The factor grows within a delay; the last tick of a delay has that of the tick before the next.
+            let left: f32 = (0..=delays)
+                .map(|k| (k as f32 * 20.0 + 19.0) / (k as f32 * 20.0 + 39.0))
+                .map(|r| r.min(0.92))
+                .product();
+            assert!((front - left).abs() < 1e-5, "{delays}: {front} instead of {left}");
+        }
+        assert!(fronts[5] < 0.25 && 0.92_f32.powi(6) > 0.6);
+    }
+
     #[test]
     fn a_side_slope_is_forgotten() {
-        let (c, mut state) = (Parameters::new(1.8, 1.5), State::INITIAL);
+        let (c, mut state) = (Parameters::new(&Tuning::default(), 1.5), State::INITIAL);
         state.step(&c, 0.0, 0.0, 0.0, None);
         let mut last = Lateral::default();
         for _ in 0..12_000 {

@@ -6,7 +6,7 @@
 //!
 //! The number is that of seeds. Drives with all valves open are recorded as the controller's estimates, for seeds from 1 to tune on and
 //! from 1001 to report on: straight ahead for 20 s on five roads at three speeds, and two lane changes and a step of steer on each road. The
-//! optimiser (Nelder and Mead's simplex, crate `argmin`) varies four thresholds from the built-in ones. The cost is the mean delay after a
+//! optimiser (Nelder and Mead's simplex, crate `argmin`) varies five thresholds from the built-in ones. The cost is the mean delay after a
 //! manoeuvre has begun (at most 3 s), in s, and 0.1 times the square of the false decisions a kilometre, averaged over road and speed.
 
 use std::collections::BTreeMap;
@@ -24,7 +24,8 @@ use rayon::prelude::*;
 const MISSED_S: f64 = 3.0;
 /// Cost of one false decision a kilometre, s; two cost four times as much.
 const FALSE_DECISION_S: f64 = 0.1;
-const NAMES: [&str; 4] = [
+const NAMES: [&str; 5] = [
+    "floor_m_s2",
     "witness_multiple",
     "plain_witness_multiple",
     "own_multiple",
@@ -71,10 +72,11 @@ fn record(bench: &Bench, seeds: impl Iterator<Item = u64> + Clone) -> Vec<Record
 fn judge(bench: &Bench, drives: &[Recorded], x: &[f64]) -> Option<BTreeMap<String, f64>> {
     let mut builder = bench.controller();
     let cornering = &mut builder.tuning.strategy.road_and_cornering.cornering;
-    cornering.witness_multiple = x[0] as f32;
-    cornering.plain_witness_multiple = x[1] as f32;
-    cornering.own_multiple = x[2] as f32;
-    cornering.slow_own_multiple = x[3] as f32;
+    cornering.floor_m_s2 = x[0] as f32;
+    cornering.witness_multiple = x[1] as f32;
+    cornering.plain_witness_multiple = x[2] as f32;
+    cornering.own_multiple = x[3] as f32;
+    cornering.slow_own_multiple = x[4] as f32;
     let parameters = builder.build().ok()?.strategy;
     let figures = drives.par_iter().map(|drive| {
         let (mut state, mut before, mut entries) = (strategy::State::default(), false, 0_u32);
@@ -112,7 +114,7 @@ fn cost(groups: &BTreeMap<String, f64>) -> f64 {
         .iter()
         .map(|(group, figure)| {
             if group.starts_with("straight") {
-                FALSE_DECISION_S * figure
+                FALSE_DECISION_S * figure * figure
             } else {
                 *figure
             }
@@ -137,6 +139,7 @@ fn main() {
     let bench = Bench::defender110();
     let built_in = bench.controller().tuning.strategy.road_and_cornering.cornering;
     let start = [
+        built_in.floor_m_s2,
         built_in.witness_multiple,
         built_in.plain_witness_multiple,
         built_in.own_multiple,

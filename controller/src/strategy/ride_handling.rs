@@ -54,7 +54,10 @@ impl Decide for RideHandling {
 
     fn check(tuning: &Tuning) -> Result<(), ConfigurationError> {
         tuning.running_rms.check()?;
-        tuning.rollover_guard.check()?;
+        tuning.rollover_guard.check([
+            "tuning.strategy.ride_handling.rollover_guard.roll_rad",
+            "tuning.strategy.ride_handling.rollover_guard.lateral_m_s2",
+        ])?;
         tuning.dampers.check()
     }
 

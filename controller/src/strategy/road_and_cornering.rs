@@ -99,7 +99,10 @@ impl Decide for RoadAndCornering {
         tuning
             .very_rough_m_s2
             .check("tuning.strategy.road_and_cornering.very_rough_m_s2", 0.01, 20.0)?;
-        tuning.rollover_guard.check()
+        tuning.rollover_guard.check([
+            "tuning.strategy.road_and_cornering.rollover_guard.roll_rad",
+            "tuning.strategy.road_and_cornering.rollover_guard.lateral_m_s2",
+        ])
     }
 
     fn new(_: &VehicleDescription, tuning: &Tuning) -> Self {

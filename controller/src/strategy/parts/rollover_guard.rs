@@ -38,16 +38,11 @@ impl Default for Tuning {
 }
 
 impl Tuning {
-    /// Whether every value is within its range.
-    pub(crate) fn check(&self) -> Result<(), ConfigurationError> {
-        self.roll_rad
-            .check("tuning.strategy.ride_handling.rollover_guard.roll_rad", 0.005, 1.0)?;
-        within(
-            "tuning.strategy.ride_handling.rollover_guard.lateral_m_s2",
-            self.lateral_m_s2,
-            0.5,
-            10.0,
-        )
+    /// Whether every value is within its range; the names are those of the roll angle and of the lateral acceleration in the
+    /// strategy that has the guard.
+    pub(crate) fn check(&self, [roll, lateral]: [&'static str; 2]) -> Result<(), ConfigurationError> {
+        self.roll_rad.check(roll, 0.005, 1.0)?;
+        within(lateral, self.lateral_m_s2, 0.5, 10.0)
     }
 }
 

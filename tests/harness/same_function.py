@@ -4,8 +4,8 @@
 
 Two images place the same code and constants at other addresses. So an instruction is compared without its own address, a jump within
 a function by its distance from the function's start, a call by the name of what it calls, and an address of constants by the bytes
-that lie there up to the next address in use. Everything else must be equal, instruction by instruction. Prints a hash for each
-image; the exit status is 1 if they differ.
+that lie there up to the next address in use. What fills the gap behind a function is not compared. Everything else must be equal,
+instruction by instruction. Prints a hash for each image; the exit status is 1 if they differ.
 """
 
 import collections
@@ -27,14 +27,19 @@ class Image:
         text = subprocess.run(
             ["arm-none-eabi-objdump", "-d", "-C", "--no-show-raw-insn", path], check=True, capture_output=True, text=True
         ).stdout
-        lines = None
+        sizes = subprocess.run(["arm-none-eabi-nm", "-S", path], check=True, capture_output=True, text=True).stdout
+        end = {int(a, 16) & ~1: (int(a, 16) & ~1) + int(n, 16) for a, n in re.findall(r"^(\w+) (\w+) [tT] ", sizes, re.M)}
+        lines, last = None, None
         for line in text.splitlines():
             if head := re.match(r"([0-9a-f]+) <(.*)>:$", line):
+                last = end.get(int(head[1], 16))
                 lines = self.functions.setdefault(head[2], [])
                 if lines:  # a second function of this name: of another module, and not compared
                     lines = []
             elif lines is not None and (code := re.match(r"\s+([0-9a-f]+):\s+(.*)$", line)):
-                lines.append((int(code[1], 16), code[2]))
+                # What follows a function to the next even word is filling.
+                if last is None or int(code[1], 16) < last:
+                    lines.append((int(code[1], 16), code[2]))
 
     def at(self, address):
         """What lies at an address of the image, or None."""

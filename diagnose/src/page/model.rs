@@ -8,10 +8,21 @@ use crate::vocabulary::SpecimenKind;
 
 pub fn section(page: &mut Page, kind: SpecimenKind, diagnosis: &Diagnosis) {
     page.section("The improved model");
-    page.text(
+    let file = match kind {
+        SpecimenKind::CoSimulation => "map.toml",
+        _ => "model.toml",
+    };
+    if kind == SpecimenKind::CoSimulation {
+        page.text(
+            "The improved model is the model as it was given, run with the file map.toml beside this page: it has the format of the given map, with \
+             the recalibrated values and with what was added from outside. Give it to oleo diagnose --fmu as --map.",
+        );
+    } else {
+        page.text(
         "The improved model is the file model.toml beside this page. It has the format of the given model. To simulate the inputs \
          of another recording with it, run oleo predict --model model.toml RECORDING.csv --out SIM.csv.",
-    );
+        );
+    }
     if kind == SpecimenKind::TwoStageStrut {
         page.text("oleo rig and oleo hil accept the file with the option --strut model.toml.");
     }
@@ -27,7 +38,7 @@ pub fn section(page: &mut Page, kind: SpecimenKind, diagnosis: &Diagnosis) {
         }
         page.table(table);
     }
-    page.code("model.toml, to copy", &diagnosis.model_toml);
+    page.code(&format!("{file}, to copy"), &diagnosis.model_toml);
     calibration(page, diagnosis);
 }
 

@@ -18,7 +18,7 @@ pub enum Target {
     Parameter,
 }
 
-/// A law: its value over a quantity, linear between the points of its table and beyond them.
+/// A law: its value over a quantity, linear between the points of its table. Beyond its ends a table of more than two points holds; two points are a straight line everywhere.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Law {
@@ -51,6 +51,10 @@ impl Law {
     #[must_use]
     pub fn value_at(&self, argument: f64) -> f64 {
         let last = self.argument.len().saturating_sub(2);
+        let argument = match self.argument.as_slice() {
+            [first, _, .., end] if last > 0 => argument.max(*first).min(*end),
+            _ => argument,
+        };
         let k = self
             .argument
             .partition_point(|a| *a <= argument)
@@ -68,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_table_is_linear_between_its_points_and_beyond() {
+    fn a_table_is_linear_between_its_points_and_holds_beyond() {
         let law = Law {
             at: Target::Output,
             of: "force_N".to_owned(),
@@ -78,9 +82,15 @@ mod tests {
         };
         assert_eq!(
             [-1.0, 0.5, 1.0, 2.0, 4.0].map(|a| law.value_at(a)),
-            [-2.0, 1.0, 2.0, 1.0, -1.0]
+            [0.0, 1.0, 2.0, 1.0, 0.0]
         );
         assert!(law.check().is_ok());
+        let line = Law {
+            argument: vec![-1.0, 1.0],
+            value: vec![-3.0, 3.0],
+            ..law.clone()
+        };
+        assert_eq!([-2.0, 0.0, 5.0].map(|a| line.value_at(a)), [-6.0, 0.0, 15.0]);
         let broken = Law {
             value: vec![0.0],
             ..law

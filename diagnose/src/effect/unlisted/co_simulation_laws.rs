@@ -150,8 +150,18 @@ fn at_rest(knots: &[f64]) -> f64 {
     }
 }
 
-/// Points of the table.
+/// Points of the table, rounded as far as they stay apart.
 fn knots(shape: Shape, known: &Known) -> Vec<f64> {
+    let exact = exact_knots(shape, known);
+    let rounded: Vec<f64> = (exact.iter())
+        .map(|knot| format!("{knot:.2e}").parse().unwrap_or(*knot))
+        .collect();
+    let apart = |knots: &[f64], least: f64| knots.windows(2).all(|w| w[1] - w[0] > least);
+    let least = exact.windows(2).map(|w| w[1] - w[0]).fold(f64::MAX, f64::min);
+    if apart(&rounded, 0.5 * least) { rounded } else { exact }
+}
+
+fn exact_knots(shape: Shape, known: &Known) -> Vec<f64> {
     let (low, high) = known.range;
     let count = match shape {
         Shape::Constant | Shape::Proportional => return vec![-1.0, 1.0],

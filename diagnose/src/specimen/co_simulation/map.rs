@@ -79,6 +79,9 @@ pub struct Input {
     /// What is added, in the unit of the variable.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub offset: Option<f64>,
+    /// Half-width of the window, s, over which the column is smoothed by local parabolas before anything else: of what is measured with noise, above all where a rate is taken of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub smooth_s: Option<f64>,
     /// Of when the value is that holds during a step.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub at: Option<Instant>,
@@ -190,6 +193,13 @@ impl Map {
         self.outputs.values().map(|output| output.column.as_str())
     }
 
+    /// Half-width of the widest window over which a column is smoothed, s; zero where it is not.
+    #[must_use]
+    pub fn smoothed_s(&self, column: &str) -> f64 {
+        let of_column = self.inputs.values().filter(|input| input.source() == column);
+        of_column.filter_map(|input| input.smooth_s).fold(0.0, f64::max)
+    }
+
     /// The columns that inputs are taken from, each once, in their order.
     #[must_use]
     pub fn sources(&self) -> Vec<&str> {
@@ -220,6 +230,12 @@ impl Checked for Map {
             if input.column.is_some() == input.rate_of.is_some() {
                 let what = "needs either column or rate_of: the column that it is, or whose rate it is";
                 return Err(InvalidValue::new(name.clone(), what).inside("inputs"));
+            }
+            if input.smooth_s.is_some_and(|width| !(width.is_finite() && width > 0.0)) {
+                let what = format!("is {}: must be above 0 s", input.smooth_s.unwrap_or_default());
+                return Err(InvalidValue::new("smooth_s", what)
+                    .inside(name.clone())
+                    .inside("inputs"));
             }
             (finite(input.factor, "factor").and_then(|()| finite(input.offset, "offset")))
                 .map_err(|invalid| invalid.inside(name.clone()).inside("inputs"))?;

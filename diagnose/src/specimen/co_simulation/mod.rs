@@ -36,8 +36,9 @@ use map::{Instant, Map};
 use simulator::{Course, Driven, Role, Simulator};
 use stepping::Times;
 
-/// Half-width of the window over which the rate of an input is taken for laws that depend on it, in sampling intervals.
-const RATE_WINDOW: f64 = 5.0;
+/// Half-width of the window over which the rate of an input is taken for laws that depend on it, in sampling intervals: five samples, where the map
+/// asks for no smoothing.
+const RATE_WINDOW: f64 = 2.5;
 /// Name of the file of an improved map.
 const MAP_FILE: &str = "map.toml";
 
@@ -227,11 +228,14 @@ impl CoSimulation {
             .collect();
         self.rates = (self.recordings.iter())
             .map(|recording| {
-                let window = RATE_WINDOW * recording.interval_s();
+                let shortest = RATE_WINDOW * recording.interval_s();
                 (self.inputs.iter().zip(&recording.columns[first..]))
                     .map(|(input, column)| match input.switches {
                         true => vec![],
-                        false => smooth_motion(&recording.time_s, column, window).speed_m_s,
+                        false => {
+                            let window = self.model.map.smoothed_s(&input.name).max(shortest);
+                            smooth_motion(&recording.time_s, column, window).speed_m_s
+                        }
                     })
                     .collect()
             })
@@ -304,12 +308,16 @@ impl CoSimulation {
                 let source = self.inputs.iter().position(|column| column.name == input.source());
                 let source = source.unwrap_or_default();
                 let variable = model.variable(name);
+                let smoothed = input.smooth_s.map(|width| {
+                    smooth_motion(&self.recordings[recording].time_s, &columns[source], width).displacement_m
+                });
+                let column = smoothed.as_ref().unwrap_or(&columns[source]);
                 let (during, at) = if input.rate_of.is_some() {
-                    times.rate(&columns[source])
+                    times.rate(column)
                 } else {
                     let switches = self.inputs[source].switches || !variables[variable].is_real;
                     let usual = if switches { Instant::Begin } else { Instant::Middle };
-                    times.driven(&columns[source], switches, input.at.unwrap_or(usual))
+                    times.driven(column, switches, input.at.unwrap_or(usual))
                 };
                 let (factor, offset) = (input.factor.unwrap_or(1.0), input.offset.unwrap_or(0.0));
                 let in_its_unit = |values: Vec<f64>| values.iter().map(|value| factor * value + offset).collect();

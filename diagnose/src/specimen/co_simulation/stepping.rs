@@ -104,15 +104,18 @@ impl Times {
         (during, at)
     }
 
-    /// The rate of a column in each step, per second, and at each time that of the step that begins there.
+    /// The mean rate of a column in each step, per second, and the rate at each time: that of the parabola through its neighbours.
     #[must_use]
     pub fn rate(&self, values: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let at = self.of_samples(self.recording_s.iter().copied(), values, false);
         let during: Vec<f64> = (self.recording_s.windows(2).zip(at.windows(2)))
             .map(|(t, x)| (x[1] - x[0]) / (t[1] - t[0]))
             .collect();
-        let mut rates = during.clone();
-        rates.extend(during.last());
+        let steps: Vec<f64> = self.recording_s.windows(2).map(|t| t[1] - t[0]).collect();
+        let inside =
+            (during.windows(2).zip(steps.windows(2))).map(|(r, h)| (r[0] * h[1] + r[1] * h[0]) / (h[0] + h[1]));
+        let ends = |rate: Option<&f64>| rate.copied().into_iter();
+        let rates = ends(during.first()).chain(inside).chain(ends(during.last())).collect();
         (during, rates)
     }
 }
@@ -149,6 +152,8 @@ mod tests {
         assert!(near(&during, &[0.0, 1.0, 1.0]));
         let (during, at) = times.rate(&[0.0, 1.0, 3.0, 4.0]);
         assert!(near(&during, &[10.0; 3]) && near(&at, &[10.0; 4]));
+        let parabola: Vec<f64> = times.samples_s.iter().map(|t| t * t).collect();
+        assert!(near(&times.rate(&parabola).1[1..3], &[0.2, 0.6]));
         assert!(near(&times.at_samples(&[7.0, 8.0, 9.0, 10.0]), &[7.0, 8.0, 9.0, 10.0]));
     }
 

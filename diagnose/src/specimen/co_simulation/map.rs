@@ -79,6 +79,9 @@ pub struct Input {
     /// What is added, in the unit of the variable.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub offset: Option<f64>,
+    /// By how much the offset may be off, in the unit of the variable.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub offset_tolerance: Option<f64>,
     /// Half-width of the window, s, over which the column is smoothed by local parabolas before anything else: of what is measured with noise, above all where a rate is taken of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub smooth_s: Option<f64>,
@@ -121,6 +124,9 @@ pub struct Output {
     /// What is added, in the unit of the column.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub offset: Option<f64>,
+    /// By how much the offset may be off.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub offset_tolerance: Option<f64>,
 }
 
 /// What is set before every simulation.
@@ -226,19 +232,25 @@ impl Checked for Map {
             }
             _ => Ok(()),
         };
+        let tolerance = |tolerance: Option<f64>, key: &'static str| match tolerance {
+            Some(tolerance) if !(tolerance.is_finite() && tolerance > 0.0) => {
+                Err(InvalidValue::new(key, format!("is {tolerance}: must be above 0")))
+            }
+            _ => Ok(()),
+        };
         for (name, input) in &self.inputs {
             if input.column.is_some() == input.rate_of.is_some() {
                 let what = "needs either column or rate_of: the column that it is, or whose rate it is";
                 return Err(InvalidValue::new(name.clone(), what).inside("inputs"));
             }
-            if input.smooth_s.is_some_and(|width| !(width.is_finite() && width > 0.0)) {
-                let what = format!("is {}: must be above 0 s", input.smooth_s.unwrap_or_default());
-                return Err(InvalidValue::new("smooth_s", what)
-                    .inside(name.clone())
-                    .inside("inputs"));
+            let inside = |invalid: InvalidValue| invalid.inside(name.clone()).inside("inputs");
+            tolerance(input.smooth_s, "smooth_s").map_err(inside)?;
+            tolerance(input.offset_tolerance, "offset_tolerance").map_err(inside)?;
+            if input.rate_of.is_some() && input.offset_tolerance.is_some() {
+                let what = "cannot stand beside rate_of: an offset of the column does not change its rate";
+                return Err(inside(InvalidValue::new("offset_tolerance", what)));
             }
-            (finite(input.factor, "factor").and_then(|()| finite(input.offset, "offset")))
-                .map_err(|invalid| invalid.inside(name.clone()).inside("inputs"))?;
+            (finite(input.factor, "factor").and_then(|()| finite(input.offset, "offset"))).map_err(inside)?;
         }
         let mut compared: Vec<&str> = Vec::new();
         for (name, output) in &self.outputs {
@@ -248,6 +260,7 @@ impl Checked for Map {
                 return Err(inside(InvalidValue::new("noise", what)));
             }
             (finite(output.factor, "factor").and_then(|()| finite(output.offset, "offset"))).map_err(inside)?;
+            tolerance(output.offset_tolerance, "offset_tolerance").map_err(inside)?;
             if compared.contains(&output.column.as_str()) {
                 let what = format!(
                     "is {:?}, which another output is compared with: name each column once",
@@ -266,15 +279,8 @@ impl Checked for Map {
         for (name, setting) in &self.parameters {
             let inside = |invalid: InvalidValue| invalid.inside(name.clone()).inside("parameters");
             finite(setting.value, "value").map_err(inside)?;
-            for (key, tolerance) in [
-                ("tolerance", setting.tolerance),
-                ("tolerance_absolute", setting.tolerance_absolute),
-            ] {
-                if tolerance.is_some_and(|tolerance| !(tolerance.is_finite() && tolerance > 0.0)) {
-                    let what = format!("is {}: must be above 0", tolerance.unwrap_or_default());
-                    return Err(inside(InvalidValue::new(key, what)));
-                }
-            }
+            tolerance(setting.tolerance, "tolerance").map_err(inside)?;
+            tolerance(setting.tolerance_absolute, "tolerance_absolute").map_err(inside)?;
             if setting.tolerance.is_some() && setting.tolerance_absolute.is_some() {
                 let what = "cannot stand beside tolerance: state one of the two";
                 return Err(inside(InvalidValue::new("tolerance_absolute", what)));
@@ -318,7 +324,7 @@ mod tests {
     #[test]
     fn what_is_wrong_is_one_line_with_its_place() {
         for (from, to, expected) in [
-            ("noise = 1e-4", "noise = 0.0", "map.toml:4: [outputs x] noise is 0"),
+            ("noise = 1e-4", "noise = 0.0", "map.toml:4: [outputs.x] noise is 0"),
             ("column = \"u_N\"", "colum = \"u_N\"", "map.toml:2"),
             (
                 "{ column = \"u_N\" }",

@@ -84,43 +84,57 @@ impl CoSimulationModel {
         own.or(self.simulator.variables()[self.variable(name)].start)
     }
 
-    /// What may be off within tolerance, in the order of the map.
+    /// What may be off within tolerance: settings, offsets of inputs, offsets of outputs, each in the order of the map.
+    fn calibrated(&self) -> Vec<(Calibrated<'_>, f64)> {
+        let settings = self.map.parameters.iter().filter_map(|(name, setting)| {
+            let relative = setting.tolerance.map(|part| (Calibrated::Part(name), part));
+            relative.or(setting.tolerance_absolute.map(|size| (Calibrated::Setting(name), size)))
+        });
+        let inputs = (self.map.inputs.iter())
+            .filter_map(|(name, input)| Some((Calibrated::InputOffset(name), input.offset_tolerance?)));
+        let outputs = (self.map.outputs.values())
+            .filter_map(|output| Some((Calibrated::OutputOffset(&output.column), output.offset_tolerance?)));
+        settings.chain(inputs).chain(outputs).collect()
+    }
+
     fn calibration(&self) -> Vec<Parameter> {
-        (self.calibrated())
-            .map(|(name, tolerance)| match tolerance {
-                Tolerance::Relative(part) => Parameter::calibration(format!("{name} (relative)"), part),
-                Tolerance::Absolute(size) => Parameter::calibration(name, size),
+        (self.calibrated().into_iter())
+            .map(|(calibrated, tolerance)| match calibrated {
+                Calibrated::Part(name) => Parameter::calibration(format!("{name} (relative)"), tolerance),
+                Calibrated::Setting(name) => Parameter::calibration(name, tolerance),
+                Calibrated::InputOffset(name) => Parameter::calibration(format!("{name} offset"), tolerance),
+                Calibrated::OutputOffset(column) => {
+                    Parameter::calibration(format!("{column} offset"), tolerance).on_instrument()
+                }
             })
             .collect()
     }
 
-    fn calibrated(&self) -> impl Iterator<Item = (&str, Tolerance)> {
-        self.map.parameters.iter().filter_map(|(name, setting)| {
-            let relative = setting.tolerance.map(Tolerance::Relative);
-            let absolute = setting.tolerance_absolute.map(Tolerance::Absolute);
-            Some((name.as_str(), relative.or(absolute)?))
-        })
+    /// The deviation of a calibrated value in a hypothesis; zero for what is not calibrated.
+    fn deviation(&self, of: Calibrated, hypothesis: &Hypothesis) -> f64 {
+        let position = self.calibrated().iter().position(|(calibrated, _)| *calibrated == of);
+        let deviation = position.and_then(|position| hypothesis.calibration.get(position));
+        deviation.copied().unwrap_or(0.0)
     }
 
-    /// Deviation of a parameter in a hypothesis, put into its value.
+    /// The value of a setting in a hypothesis.
     fn calibrated_value(&self, name: &str, value: f64, hypothesis: &Hypothesis) -> f64 {
-        let deviation = |position: usize| hypothesis.calibration.get(position).copied().unwrap_or(0.0);
-        match self
-            .calibrated()
-            .enumerate()
-            .find(|(_, (calibrated, _))| *calibrated == name)
-        {
-            Some((position, (_, Tolerance::Relative(_)))) => value * (1.0 + deviation(position)),
-            Some((position, (_, Tolerance::Absolute(_)))) => value + deviation(position),
-            None => value,
-        }
+        let part = self.deviation(Calibrated::Part(name), hypothesis);
+        value * (1.0 + part) + self.deviation(Calibrated::Setting(name), hypothesis)
     }
 }
 
-/// How far a value may be off.
-enum Tolerance {
-    Relative(f64),
-    Absolute(f64),
+/// What may be off within tolerance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Calibrated<'m> {
+    /// A setting, by a part of its value.
+    Part(&'m str),
+    /// A setting, in its unit.
+    Setting(&'m str),
+    /// The offset of an input, by its variable.
+    InputOffset(&'m str),
+    /// The offset of a compared column.
+    OutputOffset(&'m str),
 }
 
 impl BelievedModel for CoSimulationModel {
@@ -319,7 +333,8 @@ impl CoSimulation {
                     let usual = if switches { Instant::Begin } else { Instant::Middle };
                     times.driven(column, switches, input.at.unwrap_or(usual))
                 };
-                let (factor, offset) = (input.factor.unwrap_or(1.0), input.offset.unwrap_or(0.0));
+                let off = model.deviation(Calibrated::InputOffset(name), hypothesis);
+                let (factor, offset) = (input.factor.unwrap_or(1.0), input.offset.unwrap_or(0.0) + off);
                 let in_its_unit = |values: Vec<f64>| values.iter().map(|value| factor * value + offset).collect();
                 Driven {
                     variable,
@@ -429,8 +444,11 @@ fn candidates(specimen: &CoSimulation) -> Vec<Candidate> {
             .filter(|reading| reading.spread > 0.0)
             .collect(),
         quantities: known.collect(),
-        tunable: (model.calibrated())
-            .map(|(name, _)| name.to_owned())
+        tunable: (model.calibrated().into_iter())
+            .filter_map(|(calibrated, _)| match calibrated {
+                Calibrated::Part(name) | Calibrated::Setting(name) => Some(name.to_owned()),
+                Calibrated::InputOffset(_) | Calibrated::OutputOffset(_) => None,
+            })
             .filter(|name| model.simulator.variables()[model.variable(name)].role == Role::TunableParameter)
             .collect(),
         duration_s: largest(&|r| specimen.times[r].samples_s.last().copied().unwrap_or(0.0)),
@@ -478,9 +496,9 @@ impl Specimen for CoSimulation {
         let outputs = (self.model.simulator).simulate(&self.recordings[recording].name, &course)?;
         Ok((self.model.map.outputs.values().zip(outputs))
             .map(|(output, values)| {
-                let (factor, offset) = (output.factor.unwrap_or(1.0), output.offset.unwrap_or(0.0));
+                let factor = output.factor.unwrap_or(1.0);
                 let mut values = self.times[recording].at_samples(&values);
-                values.iter_mut().for_each(|value| *value = factor * *value + offset);
+                values.iter_mut().for_each(|value| *value *= factor);
                 values
             })
             .collect())
@@ -489,8 +507,8 @@ impl Specimen for CoSimulation {
     fn observe(&self, hypothesis: &Hypothesis, recording: usize, truth: &Series) -> Series {
         let corrections = self.corrections(hypothesis);
         let time_s = &self.recordings[recording].time_s;
-        (self.channels.iter().zip(truth))
-            .map(|(channel, truth_of_channel)| {
+        (self.channels.iter().zip(self.model.map.outputs.values()).zip(truth))
+            .map(|((channel, output), truth_of_channel)| {
                 let mut shown = truth_of_channel.clone();
                 for law in corrections.laws_at(Target::Output, channel.column.as_str()) {
                     if let Some(added) = self.law(law, recording, truth) {
@@ -498,6 +516,9 @@ impl Specimen for CoSimulation {
                     }
                 }
                 corrections.show(channel.column.as_str(), time_s, &mut shown);
+                let off = (self.model).deviation(Calibrated::OutputOffset(&output.column), hypothesis);
+                let offset = output.offset.unwrap_or(0.0) + off;
+                shown.iter_mut().for_each(|value| *value += offset);
                 shown
             })
             .collect()
@@ -511,6 +532,21 @@ impl Specimen for CoSimulation {
                 let stated = self.model.stated(name);
                 setting.value = stated.map(|value| self.model.calibrated_value(name, value, hypothesis));
             }
+        }
+        let moved = |offset: &mut Option<f64>, by: f64| {
+            if by != 0.0 {
+                *offset = Some(offset.unwrap_or(0.0) + by);
+            }
+        };
+        for (name, input) in &mut map.inputs {
+            let by = self.model.deviation(Calibrated::InputOffset(name), hypothesis);
+            moved(&mut input.offset, by);
+        }
+        for output in map.outputs.values_mut() {
+            let by = self
+                .model
+                .deviation(Calibrated::OutputOffset(&output.column), hypothesis);
+            moved(&mut output.offset, by);
         }
         map.effects = self.corrections(hypothesis);
         toml::to_string_pretty(&map).map_err(|error| error.to_string())

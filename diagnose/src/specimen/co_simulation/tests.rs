@@ -70,8 +70,8 @@ impl Simulator for Spring {
     }
 }
 
-const MAP: &str = "[inputs]\nx = { column = \"x_mm\", factor = 1e-3 }\nv = { rate_of = \"x_mm\", factor = 1e-3 }\n\
-    [outputs]\nforce = { column = \"force_N\", noise = 0.1, factor = 2.0, offset = 1.0 }\n\
+const MAP: &str = "[inputs]\nx = { column = \"x_mm\", factor = 1e-3, offset_tolerance = 1e-3 }\nv = { rate_of = \"x_mm\", factor = 1e-3 }\n\
+    [outputs]\nforce = { column = \"force_N\", noise = 0.1, factor = 2.0, offset = 1.0, offset_tolerance = 0.5 }\n\
     [parameters]\nk = { tolerance = 0.1 }\n";
 
 fn recording() -> Recording {
@@ -98,7 +98,8 @@ fn specimen(map: &str) -> Result<Box<dyn Specimen>, DiagnoseError> {
 #[test]
 fn a_column_is_the_output_in_its_unit() {
     let specimen = specimen(MAP).expect("a specimen");
-    let force = &specimen.simulate(&Hypothesis::default(), 0).expect("simulated")[0];
+    let truth = specimen.simulate(&Hypothesis::default(), 0).expect("simulated");
+    let force = &specimen.observe(&Hypothesis::default(), 0, &truth)[0];
     // At 1 s: 0.02 m and 0.02 m/s.
     assert!(
         (force[100] - (2.0 * (100.0 * 0.02 + 3.0 * 0.02) + 1.0)).abs() < 1e-9,
@@ -122,7 +123,7 @@ fn the_map_of_a_hypothesis_simulates_as_the_hypothesis() {
         .expect("a gain");
     let softens = index("k over time_s");
     let hypothesis = Hypothesis {
-        calibration: vec![0.05],
+        calibration: vec![0.05, 2e-4, 0.3],
         effects: vec![
             (index("force_N over rate of x_mm, proportional"), vec![0.5]),
             (gain, vec![0.02]),

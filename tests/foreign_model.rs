@@ -3,19 +3,15 @@
 
 mod support;
 
-use std::path::Path;
-
-use support::{complaint, run};
-
-fn path(path: &Path) -> &str {
-    path.to_str().expect("a path in UTF-8")
-}
+use support::complaint;
 
 /// A program without FMUs says how to come by one with them.
 #[cfg(not(feature = "fmu"))]
 #[test]
 fn a_program_without_fmus_says_how_to_build_one_with_them() {
-    let said = complaint(&run(&["diagnose", "--fmu", "a.fmu", "--map", "map.toml", "a.csv"]));
+    let said = complaint(&support::run(&[
+        "diagnose", "--fmu", "a.fmu", "--map", "map.toml", "a.csv",
+    ]));
     assert!(said.contains("--features fmu"), "{said}");
 }
 
@@ -23,7 +19,7 @@ fn a_program_without_fmus_says_how_to_build_one_with_them() {
 mod with_feature {
     use std::fmt::Write as _;
     use std::io::Write as _;
-    use std::path::PathBuf;
+    use std::path::{Path, PathBuf};
     use std::process::Command;
 
     use rand::SeedableRng as _;
@@ -35,6 +31,10 @@ mod with_feature {
 
     use super::support::oleo;
     use super::*;
+
+    fn path(path: &Path) -> &str {
+        path.to_str().expect("a path in UTF-8")
+    }
 
     /// Noise of the load cell, N.
     const NOISE_N: f64 = 2.0;

@@ -16,7 +16,7 @@ use oleo_plant_sim::strut::{Effects, SensorEffect, TermId, record_column};
 use serde::{Deserialize, Serialize};
 
 pub use law::{Law, Target};
-pub use quantity::Quantity;
+pub use quantity::{Quantity, moved_since_turned};
 
 /// The table `[effects]` of a map: what is added from outside.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

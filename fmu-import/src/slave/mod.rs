@@ -39,7 +39,11 @@ pub trait Slave {
 /// Loads a shared library.
 pub fn load(path: &Path) -> Result<Library, String> {
     // SAFETY: what the library does as it is loaded, it does in a process that has nothing to lose.
-    unsafe { Library::new(path) }.map_err(|error| format!("its library cannot be loaded: {error}"))
+    unsafe { Library::new(path) }.map_err(|error| {
+        // What the loader of the system says of it is the source of the error.
+        let why = std::error::Error::source(&error).map_or_else(|| error.to_string(), ToString::to_string);
+        format!("cannot be used, because its library cannot be loaded: {why}")
+    })
 }
 
 /// Makes an instance. The library must stay loaded while it lives.

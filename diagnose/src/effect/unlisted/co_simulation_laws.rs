@@ -55,7 +55,7 @@ impl ActsOn<CoSimulation> for Laws {
                 if known.quantity != own && known.quantity != Quantity::Time {
                     all.push(law(site(), Shape::Proportional, known, reading.spread));
                 }
-                if !known.switches {
+                if !known.switches && !turns(known) {
                     all.push(law(site(), Shape::Table, known, reading.spread));
                 }
             }
@@ -74,8 +74,8 @@ impl ActsOn<CoSimulation> for Laws {
         for name in &excitation.tunable {
             let site = || Site::Parameter(Column::named(name.clone()));
             // What the model gives is not known before it is simulated.
-            let before =
-                (excitation.quantities.iter()).filter(|known| !matches!(known.quantity, Quantity::Simulated(_)));
+            let before = (excitation.quantities.iter())
+                .filter(|known| !matches!(known.quantity, Quantity::Simulated(_)) && !turns(known));
             all.extend(before.map(|known| law(site(), Shape::Factor, known, 1.0)));
         }
         all
@@ -91,6 +91,11 @@ impl ActsOn<CoSimulation> for Laws {
             shows: "depends on the quantity of its table, whatever else is changed",
         }
     }
+}
+
+/// Whether a quantity is limited by itself, so that a line over it says all.
+fn turns(known: &Known) -> bool {
+    matches!(known.quantity, Quantity::SinceTurned(..))
 }
 
 /// What a constant depends on.

@@ -137,7 +137,9 @@ fn check_law(law: &Law, map: &Map, variables: &[Variable]) -> Result<(), Invalid
     }
     match &law.over {
         Quantity::Time => Ok(()),
-        Quantity::Input(name) | Quantity::Rate(name) => known("over", name, &sources, "columns of inputs"),
+        Quantity::Input(name) | Quantity::Rate(name) | Quantity::SinceTurned(name, _) => {
+            known("over", name, &sources, "columns of inputs")
+        }
         Quantity::Simulated(_) if law.at != Target::Output => Err(InvalidValue::new(
             "over",
             "is simulated, which is not known before the simulation: use an input",

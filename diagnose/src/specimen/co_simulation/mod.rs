@@ -25,7 +25,7 @@ use super::channel::{Channel, Series, StateSeries};
 use super::contract::{BelievedModel, Specimen};
 use super::hypothesis::Hypothesis;
 use super::model_file::ModelFile;
-use crate::correction::{Corrections, Law, Quantity, Target};
+use crate::correction::{Corrections, Law, Quantity, Target, moved_since_turned};
 use crate::effect::{ALL, Candidate, of, sensor};
 use crate::error::DiagnoseError;
 use crate::excitation::{self, Known, Reading, spread};
@@ -39,6 +39,8 @@ use stepping::Times;
 /// Half-width of the window over which the rate of an input is taken for laws that depend on it, in sampling intervals: five samples, where the map
 /// asks for no smoothing.
 const RATE_WINDOW: f64 = 2.5;
+/// How far an input moves after it has turned until it resists fully, as parts of its spread.
+const TURNS: [f64; 3] = [0.003, 0.02, 0.1];
 /// Name of the file of an improved map.
 const MAP_FILE: &str = "map.toml";
 
@@ -274,6 +276,10 @@ impl CoSimulation {
         Some(match quantity {
             Quantity::Time => self.times[recording].samples_s.clone(),
             Quantity::Input(name) => self.recordings[recording].columns[self.channels.len() + input(name)?].clone(),
+            Quantity::SinceTurned(name, most) => {
+                let column = &self.recordings[recording].columns[self.channels.len() + input(name)?];
+                moved_since_turned(column, *most)
+            }
             Quantity::Rate(name) => self.rates[recording][input(name)?].clone(),
             Quantity::Simulated(name) => {
                 let channel = self
@@ -389,24 +395,41 @@ impl CoSimulation {
         self.recordings[recording].columns[position].first().copied()
     }
 
-    /// What a law may depend on.
-    fn quantities(&self) -> Vec<(Quantity, bool)> {
-        let inputs = self
-            .inputs
+    /// The largest spread of a column within a recording.
+    fn spread(&self, position: usize) -> f64 {
+        let spreads = self
+            .recordings
             .iter()
-            .map(|input| (Quantity::Input(input.name.clone()), input.switches));
+            .map(|recording| spread(&recording.columns[position]));
+        spreads.fold(0.0, f64::max)
+    }
+
+    /// What residuals are shown over, and whether it has only two values.
+    fn shown_quantities(&self) -> Vec<(Quantity, bool)> {
+        let inputs = (self.inputs.iter()).map(|input| (Quantity::Input(input.name.clone()), input.switches));
         let moving = self.inputs.iter().filter(|input| !input.switches);
         let rates = moving.map(|input| (Quantity::Rate(input.name.clone()), false));
-        let simulated = self
-            .channels
-            .iter()
-            .map(|c| (Quantity::Simulated(c.column.to_string()), false));
-        inputs
-            .chain(rates)
-            .chain(simulated)
-            .chain([(Quantity::Time, false)])
-            .collect()
+        let simulated = (self.channels.iter()).map(|c| (Quantity::Simulated(c.column.to_string()), false));
+        inputs.chain(rates).chain(simulated).collect()
     }
+
+    /// What a law may depend on, and whether it has only two values.
+    fn quantities(&self) -> Vec<(Quantity, bool)> {
+        let turns = (self.inputs.iter().enumerate())
+            .filter(|(_, input)| !input.switches)
+            .flat_map(|(k, input)| {
+                let spread = self.spread(self.channels.len() + k);
+                TURNS.map(|part| Quantity::SinceTurned(input.name.clone(), two_digits(part * spread)))
+            })
+            .filter(|quantity| matches!(quantity, Quantity::SinceTurned(_, most) if *most > 0.0));
+        let further = turns.chain([Quantity::Time]).map(|quantity| (quantity, false));
+        self.shown_quantities().into_iter().chain(further).collect()
+    }
+}
+
+/// A number with two digits, which a map shows.
+fn two_digits(number: f64) -> f64 {
+    format!("{number:.1e}").parse().unwrap_or(number)
 }
 
 /// Everything that can be added from outside: laws without a name, then faults of instruments.
@@ -415,7 +438,7 @@ fn candidates(specimen: &CoSimulation) -> Vec<Candidate> {
     let largest = |of: &dyn Fn(usize) -> f64| recordings().map(of).fold(0.0, f64::max);
     let reading = |column: Column, position: usize| Reading {
         column,
-        spread: largest(&|r| spread(&specimen.recordings[r].columns[position])),
+        spread: specimen.spread(position),
     };
     let (first, model) = (specimen.channels.len(), &specimen.model);
     let known = specimen.quantities().into_iter().filter_map(|(quantity, switches)| {
@@ -558,7 +581,7 @@ impl Specimen for CoSimulation {
 
     fn states(&self, recording: usize) -> Vec<StateSeries> {
         let simulated = self.as_stated.get(recording).map_or(&[][..], Vec::as_slice);
-        (self.quantities().into_iter())
+        (self.shown_quantities().into_iter())
             .filter_map(|(quantity, _)| {
                 let state = state(&quantity)?;
                 Some(StateSeries::new(state, self.quantity(&quantity, recording, simulated)?))
@@ -615,7 +638,7 @@ fn state(quantity: &Quantity) -> Option<State> {
         Some(State::named(&format!("{before}{}{unit}", column.quantity())))
     };
     match quantity {
-        Quantity::Time => None,
+        Quantity::Time | Quantity::SinceTurned(..) => None,
         Quantity::Input(name) => named("", name, ""),
         Quantity::Rate(name) => named("rate of ", name, "/s"),
         Quantity::Simulated(name) => named("simulated ", name, ""),

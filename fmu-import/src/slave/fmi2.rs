@@ -6,7 +6,9 @@ use std::path::Path;
 use libloading::Library;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 
-use super::{Slave, checked, foreign, function, integer, log, switch};
+use super::call::{checked, foreign, function, integer, switch};
+use super::contract::Slave;
+use super::log;
 use crate::description::NumberKind;
 use crate::message::VariableId;
 

@@ -5,7 +5,9 @@ use std::path::{MAIN_SEPARATOR, Path};
 
 use libloading::Library;
 
-use super::{Slave, checked, function, integer, log, switch};
+use super::call::{checked, function, integer, switch};
+use super::contract::Slave;
+use super::log;
 use crate::description::NumberKind;
 use crate::message::VariableId;
 

@@ -1,5 +1,6 @@
 //! The children of an FMU: as many as are asked at the same time, each used again, and the run that failed.
 
+use std::os::unix::process::CommandExt;
 use std::path::PathBuf;
 use std::process::Command;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -9,7 +10,7 @@ use std::time::Duration;
 use crate::archive::Fmu;
 use crate::complaint::Complaint;
 use crate::message::{Answer, Opening, Run};
-use crate::worker::{End, Worker};
+use crate::worker::{ASK_ITS_TOOL, End, Worker};
 
 /// What a child may use.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -111,6 +112,7 @@ impl Children {
             Answer::Opened => Err(fatal(End {
                 how: "answered out of turn".to_owned(),
                 reached_s: None,
+                what_to_do: ASK_ITS_TOOL,
             })),
         }
     }
@@ -159,6 +161,8 @@ impl Children {
         let mut command = Command::new(&self.program.path);
         // Files that an FMU writes where it stands do not end up among those of the user.
         command.args(&self.program.arguments).current_dir(folder);
+        // Ctrl-C is for the parent, with which its children end.
+        command.process_group(0);
         Worker::start(command, &opening, limit)
     }
 
@@ -168,13 +172,9 @@ impl Children {
             || "before the simulation began".to_owned(),
             |t| format!("at {t:.6} s of the simulation"),
         );
-        let what_to_do = match end.how.contains("did not finish") {
-            true => "raise run.limit_s in the map if the FMU needs longer",
-            false => "simulate it with these inputs in the tool that wrote it",
-        };
         Complaint::new(format!(
-            "{path}: recording {recording}: the FMU {}, {when}; {what_to_do}",
-            end.how
+            "{path}: recording {recording}: the FMU {}, {when}; {}",
+            end.how, end.what_to_do
         ))
     }
 }

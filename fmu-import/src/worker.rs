@@ -24,7 +24,12 @@ pub struct End {
     pub how: String,
     /// Time that the simulation had reached, s; `None` before it began.
     pub reached_s: Option<f64>,
+    /// What to do about it.
+    pub what_to_do: &'static str,
 }
+
+/// What to do about an FMU that falls: it is not for us to mend.
+pub const ASK_ITS_TOOL: &str = "simulate it with these inputs in the tool that wrote it";
 
 /// A child.
 pub struct Worker {
@@ -41,6 +46,7 @@ impl Worker {
         let failed = |error: std::io::Error| End {
             how: format!("cannot be started in a process of its own: {error}"),
             reached_s: None,
+            what_to_do: "close other programs, or make room in the folder of temporary files",
         };
         // Nothing is reached yet.
         std::fs::write(&opening.clock, f64::NAN.to_le_bytes()).map_err(failed)?;
@@ -58,7 +64,11 @@ impl Worker {
             clock: opening.clock.clone(),
         };
         match worker.ask(opening, limit)? {
-            Answer::Refused(how) => Err(End { how, reached_s: None }),
+            Answer::Refused(how) => Err(End {
+                how,
+                reached_s: None,
+                what_to_do: "install what it needs beside itself, or export it for this platform",
+            }),
             _ => Ok(worker),
         }
     }
@@ -77,6 +87,7 @@ impl Worker {
                 Err(End {
                     how: format!("did not finish within {} s and was ended", limit.as_secs_f64()),
                     reached_s: self.reached_s(),
+                    what_to_do: "raise run.limit_s in the map if the FMU needs longer",
                 })
             }
         }
@@ -98,6 +109,7 @@ impl Worker {
                 format!("{how}, saying {words:?}")
             },
             reached_s: self.reached_s(),
+            what_to_do: ASK_ITS_TOOL,
         }
     }
 

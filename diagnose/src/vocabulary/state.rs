@@ -54,6 +54,9 @@ pub enum State {
 /// Texts of quantities that are named while the program runs. They stay, so that a state can be copied like the others; there are as many as models have columns.
 static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
 
+/// What the text of a simulated quantity begins with.
+const SIMULATED: &str = "simulated ";
+
 impl State {
     /// A quantity of somebody else's model: its name, and its unit after a comma.
     #[must_use]
@@ -65,6 +68,23 @@ impl State {
             kept
         });
         Self::Named(known)
+    }
+
+    /// A quantity that somebody else's model gives.
+    #[must_use]
+    pub fn simulated(text: &str) -> Self {
+        Self::named(&format!("{SIMULATED}{text}"))
+    }
+
+    /// Whether the specimen was made to do it, so that a complete model leaves nothing that depends on it: displacement, speed, inputs of
+    /// somebody else's model and their rates.
+    #[must_use]
+    pub fn is_driven(self) -> bool {
+        match self {
+            Self::Displacement | Self::Speed => true,
+            Self::Named(text) => !text.starts_with(SIMULATED),
+            _ => false,
+        }
     }
 
     /// The text: quantity, and unit after a comma.
@@ -89,6 +109,7 @@ mod tests {
         assert_eq!(State::P1MinusP2.quantity_and_unit(), ("p1 - p2", "Pa"));
         assert_eq!(State::Direction.quantity_and_unit(), ("direction of travel", ""));
         let rate = State::named("rate of x, m/s");
+        assert!(rate.is_driven() && State::Speed.is_driven() && !State::simulated("x, m").is_driven());
         assert_eq!(rate.quantity_and_unit(), ("rate of x", "m/s"));
         assert_eq!(
             (rate, rate.to_string()),

@@ -628,20 +628,20 @@ impl Specimen for CoSimulation {
 
 /// A quantity as a state; none for the time, which everything has.
 fn state(quantity: &Quantity) -> Option<State> {
-    let named = |before: &str, name: &str, per_second: &str| {
+    let text = |before: &str, name: &str, per_second: &str| {
         let column = Column::named(name.to_owned());
         let unit = match (column.unit(), per_second) {
             ("", "") => String::new(),
             ("", _) => ", 1/s".to_owned(),
             (unit, _) => format!(", {unit}{per_second}"),
         };
-        Some(State::named(&format!("{before}{}{unit}", column.quantity())))
+        format!("{before}{}{unit}", column.quantity())
     };
     match quantity {
         Quantity::Time | Quantity::SinceTurned(..) => None,
-        Quantity::Input(name) => named("", name, ""),
-        Quantity::Rate(name) => named("rate of ", name, "/s"),
-        Quantity::Simulated(name) => named("simulated ", name, ""),
+        Quantity::Input(name) => Some(State::named(&text("", name, ""))),
+        Quantity::Rate(name) => Some(State::named(&text("rate of ", name, "/s"))),
+        Quantity::Simulated(name) => Some(State::simulated(&text("", name, ""))),
     }
 }
 

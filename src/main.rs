@@ -50,6 +50,10 @@ enum Command {
     Bench(commands::bench::Args),
     Fmu(commands::fmu::Args),
     Seal(commands::seal::Args),
+    /// Simulates an FMU for the process that started this one, over pipes
+    #[cfg(feature = "fmu")]
+    #[command(hide = true)]
+    FmuChild,
     Show(commands::show::Args),
 }
 
@@ -69,6 +73,8 @@ fn main() -> ExitCode {
             Command::Bench(args) => commands::bench::run(&args),
             Command::Fmu(args) => commands::fmu::run(args),
             Command::Seal(args) => commands::seal::run(args),
+            #[cfg(feature = "fmu")]
+            Command::FmuChild => Ok(oleo_fmu_import::serve()),
             Command::Show(args) => commands::show::run(args, CommandLine::command()),
         },
         Err(error) => failure::usage(&error),

@@ -113,6 +113,36 @@ impl Campaign {
         Ok((campaign, Some(complete)))
     }
 
+    /// The campaign of a model that was read elsewhere and of recordings (CSV), in the order of their names. What is kept back is not fitted; all
+    /// recordings are then returned beside the campaign, with `again`, which reads the model of a text.
+    ///
+    /// # Errors
+    /// The errors of [`Self::open_in_part`].
+    pub fn of_files(
+        model: ModelFile,
+        files: &[PathBuf],
+        map: Option<&ColumnMap>,
+        kept_back: &KeptBack,
+        again: ReadModel,
+    ) -> Result<(Self, Option<CompleteRecordings>), DiagnoseError> {
+        let (columns, gaps) = (model.model.columns(), model.model.gap_policy());
+        let mut files = files.to_vec();
+        files.sort();
+        let (recordings, notes) = read_all(&files, &columns, gaps, map)?;
+        let all = Path::new("the recordings");
+        let mut names: Vec<&str> = recordings.iter().map(|recording| recording.name.as_str()).collect();
+        names.sort_unstable();
+        if let Some(same) = names.windows(2).find(|pair| pair[0] == pair[1]) {
+            let what = format!("two have the name {}; rename one of them", same[0]);
+            return Err(DiagnoseError::file(all, what));
+        }
+        if kept_back.is_nothing() {
+            return Ok((Self::of(model, recordings, notes)?, None));
+        }
+        let (campaign, complete) = Self::in_part(all, model, recordings, notes, kept_back)?;
+        Ok((campaign, Some(CompleteRecordings { again, ..complete })))
+    }
+
     fn in_part(
         folder: &Path,
         model: ModelFile,
@@ -152,7 +182,14 @@ impl Campaign {
             ));
         }
         let campaign = Self::of(model, fitted, notes)?;
-        Ok((campaign, CompleteRecordings { recordings: whole }))
+        let again: ReadModel = Box::new(|text| ModelFile::read(text, "improved model"));
+        Ok((
+            campaign,
+            CompleteRecordings {
+                recordings: whole,
+                again,
+            },
+        ))
     }
 
     fn of(file: ModelFile, recordings: Vec<Recording>, mut notes: Vec<String>) -> Result<Self, DiagnoseError> {
@@ -166,9 +203,13 @@ impl Campaign {
     }
 }
 
+/// Reads the model of a text, as that of a campaign was read.
+pub type ReadModel = Box<dyn Fn(&str) -> Result<ModelFile, DiagnoseError> + Send + Sync>;
+
 /// Every recording of a campaign in full, beside the part that was fitted.
 pub struct CompleteRecordings {
     recordings: Vec<Recording>,
+    again: ReadModel,
 }
 
 impl CompleteRecordings {
@@ -177,7 +218,7 @@ impl CompleteRecordings {
     /// # Errors
     /// As [`Campaign::open`].
     pub fn specimen(&self, model_toml: &str) -> Result<Box<dyn Specimen>, DiagnoseError> {
-        let file = ModelFile::read(model_toml, "improved model")?;
+        let file = (self.again)(model_toml)?;
         file.model.with_recordings(self.recordings.clone())
     }
 }

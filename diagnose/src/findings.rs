@@ -7,7 +7,7 @@ use std::time::Instant;
 use oleo_report::{Cell, Column, OutputDirectory, OutputError, Page, Table};
 use serde_json::Value;
 
-use crate::campaign::{Campaign, CompleteRecordings, KeptBack, MODEL_FILE};
+use crate::campaign::{Campaign, CompleteRecordings, KeptBack};
 use crate::diagnosis::Diagnosis;
 use crate::error::DiagnoseError;
 use crate::estimation::LeastSquares;
@@ -86,7 +86,7 @@ impl Findings {
     pub fn write(&self, out: &mut OutputDirectory, seed: Option<u64>, command: &str) -> Result<(), OutputError> {
         out.summary("report.json", seed, &self.report())?;
         out.page(&self.page(command))?;
-        out.write(MODEL_FILE, &self.diagnosis.model_toml)
+        out.write(self.campaign.specimen.model_file(), &self.diagnosis.model_toml)
     }
 
     /// The result in a sentence and tables.

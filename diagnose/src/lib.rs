@@ -54,6 +54,7 @@
 mod analytic;
 pub mod campaign;
 pub mod confidence;
+pub mod correction;
 pub mod criteria;
 pub mod diagnosis;
 pub mod effect;

@@ -99,10 +99,10 @@ fn tested(series: &[Vec<f64>], inputs: &[Vec<Input>]) -> Whiteness {
     }
 }
 
-/// What the specimen was made to do: displacement and speed.
+/// What the specimen was made to do: displacement and speed, or the inputs of somebody else's model.
 fn inputs(specimen: &dyn Specimen, recording: usize) -> Vec<Input> {
     (specimen.states(recording).into_iter())
-        .filter(|s| matches!(s.state, State::Displacement | State::Speed))
+        .filter(|s| s.state.is_driven())
         .map(|s| (s.state, centred(&s.values)))
         .collect()
 }

@@ -49,6 +49,12 @@ fn on_signal(signal: i32) {
     std::process::exit(SIGNALLED + signal);
 }
 
+/// A folder that is removed too if a signal ends the process. Its owner removes it otherwise.
+pub fn removes(folder: &Path) {
+    install();
+    staged().push(folder.to_path_buf());
+}
+
 /// The exit status of a command that was asked to end and did: 128 and the number of the signal.
 pub fn status() -> Option<u8> {
     let signal = REQUESTED.load(Ordering::SeqCst);

@@ -1,5 +1,6 @@
 //! `oleo diagnose`: finds the physics that a model leaves out.
 
+mod foreign;
 mod self_test;
 mod vehicle;
 
@@ -8,8 +9,9 @@ use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use oleo_diagnose::{Campaign, Findings, KeptBack, MODEL_FILE};
-use oleo_report::Progress;
+use oleo_diagnose::campaign::CompleteRecordings;
+use oleo_diagnose::{Campaign, DiagnoseError, Findings, KeptBack};
+use oleo_report::{OutputDirectory, Progress};
 
 use super::column_map::column_map;
 use super::vehicle_log::DatabaseArgs;
@@ -31,6 +33,8 @@ use crate::shard::arguments::of_this_process;
     oleo diagnose drives --out found                           a folder with model.toml, four strut files and logs\n  \
     oleo diagnose a.log b.log --vehicle model.toml --out found\n  \
     oleo diagnose a.mf4 --vehicle model.toml --dbc car.dbc --signals map.toml   a log with messages of another database\n\n\
+    Somebody else's model, an FMU for co-simulation, is diagnosed with a map of its variables to the columns of recordings (docs/fmu.md):\n  \
+    oleo diagnose --fmu model.fmu --map map.toml a.csv b.csv --out found\n\n\
     To test the improved model on data that it was not fitted to, hold part of the data out:\n  \
     oleo diagnose gas-spring --fit-until 0.5 --out found       fits the first half of every recording\n  \
     oleo diagnose cylinder --hold-out 5bar --out found         fits all recordings except 5bar.csv\n\
@@ -39,8 +43,8 @@ use crate::shard::arguments::of_this_process;
     and it resumes there. After a new build of oleo, use a new DIR."
 )]
 pub struct Args {
-    /// Folder with model.toml and the recordings (*.csv, or *.log, *.asc, *.mf4 of a vehicle); with --vehicle the logs themselves
-    #[arg(value_name = "CAMPAIGN|LOG", required_unless_present = "self_test")]
+    /// Folder with model.toml and the recordings (*.csv, or *.log, *.asc, *.mf4 of a vehicle); with --vehicle the logs themselves, with --fmu the recordings
+    #[arg(value_name = "CAMPAIGN|LOG|RECORDING", required_unless_present = "self_test")]
     campaign: Vec<PathBuf>,
     /// Model of a vehicle (kind = "vehicle"), beside which the models of its four struts lie
     #[arg(long, value_name = "MODEL.toml", conflicts_with_all = ["fit_until", "hold_out", "self_test"])]
@@ -54,6 +58,8 @@ pub struct Args {
     /// Map of the columns of recordings that another program wrote: separator, decimal commas, titles and units (docs/diagnose.md)
     #[arg(long, value_name = "MAP.toml", conflicts_with_all = ["vehicle", "self_test"])]
     columns: Option<PathBuf>,
+    #[command(flatten)]
+    foreign: foreign::ForeignArgs,
     #[command(flatten)]
     database: DatabaseArgs,
     #[command(flatten)]
@@ -87,6 +93,9 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
             "--shard: one campaign is one case; leave it out, or see oleo study fleet for a folder of campaigns",
         ));
     }
+    if let Some(fmu) = &args.foreign.fmu {
+        return foreign::run(fmu, &args);
+    }
     if let Some(logs) = args.logs(folder)? {
         return vehicle::run(&logs, &args.database, &args.results);
     }
@@ -104,22 +113,42 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     };
     let mut inputs = inputs(folder);
     inputs.extend(args.columns.clone());
-    // Staged before the work: Ctrl-C from here on removes the folder and ends with nothing half-written.
-    let mut out = (args.results).stage("oleo diagnose", &format!("diagnose-{}", campaign.name), inputs)?;
-    if let Some(out) = &out {
-        out.refuse(MODEL_FILE)?;
-    }
+    let out = stage(&args.results, &campaign, inputs)?;
     let stop = AtomicBool::new(false);
+    let findings = found(campaign, complete.as_ref(), kept_back, begun, &stop)?;
+    write(&args.results, out, &findings)
+}
+
+/// Stages the folder of the results. This is done before the work: Ctrl-C from here on removes the folder and ends with nothing half-written.
+fn stage(results: &ResultsArgs, campaign: &Campaign, inputs: Vec<PathBuf>) -> Result<Option<OutputDirectory>, Failure> {
+    let out = results.stage("oleo diagnose", &format!("diagnose-{}", campaign.name), inputs)?;
+    if let Some(out) = &out {
+        out.refuse(campaign.specimen.model_file())?;
+    }
+    Ok(out)
+}
+
+/// Diagnoses a campaign with a progress bar.
+fn found(
+    campaign: Campaign,
+    complete: Option<&CompleteRecordings>,
+    kept_back: KeptBack,
+    begun: Instant,
+    stop: &AtomicBool,
+) -> Result<Findings, DiagnoseError> {
     let progress = Progress::new(&campaign.name, STEPS);
-    let findings = Findings::of(campaign, complete.as_ref(), kept_back, begun, &stop, &|phase, part| {
+    Findings::of(campaign, complete, kept_back, begun, stop, &|phase, part| {
         progress.phase(phase);
         progress.set((part * STEPS as f64) as u64);
-    })?;
-    drop(progress);
+    })
+}
+
+/// Writes what was found, and says it.
+fn write(results: &ResultsArgs, mut out: Option<OutputDirectory>, findings: &Findings) -> Result<ExitCode, Failure> {
     if let Some(out) = &mut out {
         findings.write(out, None, &command_line())?;
     }
-    args.results.publish(out, &findings.text())?;
+    results.publish(out, &findings.text())?;
     Ok(ExitCode::SUCCESS)
 }
 

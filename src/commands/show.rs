@@ -176,7 +176,8 @@ fn manual(mut program: clap::Command, command: Option<&str>) -> Result<String, F
     let page = match command {
         None => program,
         Some(name) => {
-            let names: Vec<&str> = program.get_subcommands().map(clap::Command::get_name).collect();
+            let shown = program.get_subcommands().filter(|command| !command.is_hide_set());
+            let names: Vec<&str> = shown.map(clap::Command::get_name).collect();
             let what = || format!("{name}: is no command: {}", suggestion(name, &names, "commands"));
             let found = program.find_subcommand(name).ok_or_else(|| Failure::new(what()))?;
             found.clone()

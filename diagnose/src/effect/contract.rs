@@ -6,6 +6,7 @@ use oleo_plant_sim::strut::{Equation, StrutModel};
 use super::candidate::Candidate;
 use super::drawn::{Drawn, TrueNumber};
 use super::relation;
+use crate::correction::Corrections;
 use crate::excitation;
 use crate::vocabulary::{EffectId, Site, SpecimenKind};
 
@@ -80,6 +81,11 @@ pub trait Effect: Sync {
         None
     }
 
+    /// What the effect does around somebody else's model; `None` if it cannot be added from outside.
+    fn in_co_simulation(&self) -> Option<&dyn ActsOn<CoSimulation>> {
+        None
+    }
+
     /// Name in a heading or a table; `label` distinguishes laws without a name.
     fn named(&self, _kind: SpecimenKind, _label: &str) -> &'static str {
         self.name()
@@ -97,6 +103,7 @@ pub trait Effect: Sync {
             SpecimenKind::GasSpring => self.in_gas_spring()?.equation(),
             SpecimenKind::Cylinder => self.in_cylinder()?.equation(),
             SpecimenKind::Damper | SpecimenKind::Drive => self.in_mechanism()?.equation(),
+            SpecimenKind::CoSimulation => self.in_co_simulation()?.equation(),
         })
     }
 
@@ -107,6 +114,7 @@ pub trait Effect: Sync {
             SpecimenKind::GasSpring => self.in_gas_spring()?.experiment(),
             SpecimenKind::Cylinder => self.in_cylinder()?.experiment(),
             SpecimenKind::Damper | SpecimenKind::Drive => self.in_mechanism()?.experiment(),
+            SpecimenKind::CoSimulation => self.in_co_simulation()?.experiment(),
         })
     }
 }
@@ -192,6 +200,14 @@ pub struct Mechanism;
 impl Kind for Mechanism {
     type Model = MechanismEffects;
     type Excitation = excitation::Mechanism;
+}
+
+/// The kind of specimen "co-simulation model", to which everything is added from outside.
+pub struct CoSimulation;
+
+impl Kind for CoSimulation {
+    type Model = Corrections;
+    type Excitation = excitation::CoSimulation;
 }
 
 /// The channels in which an effect shows.

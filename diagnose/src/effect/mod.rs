@@ -53,7 +53,8 @@ mod tests;
 
 pub use candidate::{Candidate, ExclusionGroup};
 pub use contract::{
-    ActsOn, Concealed, Cylinder, Effect, Experiment, GasSpring, Kind, Mechanism, ShowsIn, Strut, StrutEffect,
+    ActsOn, CoSimulation, Concealed, Cylinder, Effect, Experiment, GasSpring, Kind, Mechanism, ShowsIn, Strut,
+    StrutEffect,
 };
 pub use drawn::{Drawn, TrueNumber};
 pub use registry::{ALL, in_struts, of};

@@ -9,6 +9,9 @@ use crate::vocabulary::Site;
 pub fn at(site: &Site) -> String {
     match site {
         Site::Sensor(column) => format!("instrument {column}"),
+        Site::Output(column) => format!("output {column} of the model"),
+        Site::Input(column) => format!("input {column} of the model"),
+        Site::Parameter(name) => format!("parameter {name} of the model"),
         Site::MainSeal | Site::EndStop | Site::Damper | Site::Drive => "force balance".into(),
         Site::Mount => "motion of the strut (mount)".into(),
         Site::MainChamber => "continuity of the oil".into(),

@@ -6,6 +6,7 @@ use oleo_plant_sim::strut::{Effects, Equation, StrutModel, TermId};
 use strum::VariantArray;
 
 use super::*;
+use crate::correction::{Corrections, Quantity};
 use crate::excitation;
 use crate::recording::Recording;
 use crate::vocabulary::{Column, EffectId, Site, SpecimenKind};
@@ -82,6 +83,31 @@ fn candidates(kind: SpecimenKind) -> Vec<Candidate> {
         }
         SpecimenKind::Damper => of_mechanism(Site::Damper, [1, 0], Column::FORCE),
         SpecimenKind::Drive => of_mechanism(Site::Drive, [0, 1], Column::POSITION),
+        SpecimenKind::CoSimulation => {
+            let reading = |name| excitation::Reading {
+                column: Column::known(name),
+                spread: 1.0,
+            };
+            let known = |quantity, range| excitation::Known {
+                quantity,
+                range,
+                switches: false,
+            };
+            let excitation = excitation::CoSimulation {
+                outputs: vec![reading("force_N")],
+                inputs: vec![reading("x_m")],
+                quantities: vec![
+                    known(Quantity::Input("x_m".to_owned()), (-1.0, 1.0)),
+                    known(Quantity::Time, (0.0, 60.0)),
+                ],
+                tunable: vec!["k".to_owned()],
+                duration_s: 60.0,
+                interval_s: 0.01,
+            };
+            all.filter_map(Effect::in_co_simulation)
+                .flat_map(|e| e.candidates(&Corrections::default(), &excitation))
+                .collect()
+        }
         SpecimenKind::Cylinder => {
             let text =
                 "[specimen]\nname = \"a\"\nkind = \"cylinder\"\n[[chamber]]\ncolumn = \"p_Pa\"\narea_m2 = 4.9e-4\n";

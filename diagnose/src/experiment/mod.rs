@@ -210,6 +210,12 @@ pub fn isolate(specimen: &dyn Specimen, left: &Location) -> String {
             valves(specimen, r, left.t_s).map_or(String::new(), |v| format!(", {v}"))
         );
     }
+    if specimen.kind() == SpecimenKind::CoSimulation {
+        return format!(
+            "{place} Record this stretch again with one input changed at a time, at half and at twice its size and at a third and at three \
+             times its rate."
+        );
+    }
     let mut how = Vec::new();
     if let Some(strokes) = Strokes::of(specimen, left) {
         let speeds = SPEEDS.map(|part| oleo_report::significant(part * strokes.fastest_m_s, 2));

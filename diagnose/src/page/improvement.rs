@@ -4,6 +4,7 @@ use oleo_report::{Axis, Cell, Column, Curves, Dots, Page, Style, Table, signific
 
 use crate::campaign::Campaign;
 use crate::diagnosis::Diagnosis;
+use crate::vocabulary::State;
 use crate::whiteness::{CHI_SQUARE_99, LAGS, Whiteness};
 
 pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
@@ -102,19 +103,32 @@ fn in_words(tested: &[(&str, &Whiteness)]) -> String {
         return "The held-out residuals of every channel are white and independent of the inputs.".into();
     }
     let most = (tested.iter().map(|(_, w)| w.explained())).fold(0.0, f64::max);
+    let inputs = match tested.iter().any(|(_, w)| is_of_named_inputs(w)) {
+        true => "the inputs and their rates",
+        false => "displacement and speed",
+    };
     format!(
-        "The held-out residuals of {} fail at least one of the two tests of residuals; displacement and speed explain at most \
+        "The held-out residuals of {} fail at least one of the two tests of residuals; {inputs} explain at most \
          {} % of the variance of any channel.",
         failing.join(", "),
         significant(100.0 * most, 2)
     )
 }
 
+/// Whether the inputs are those of somebody else's model.
+fn is_of_named_inputs(whiteness: &Whiteness) -> bool {
+    matches!(whiteness.input, Some((State::Named(_), _)))
+}
+
 fn left(page: &mut Page, diagnosis: &Diagnosis) {
+    let inputs = match diagnosis.whiteness.iter().any(is_of_named_inputs) {
+        true => "with an input nor with the rate of one",
+        false => "with displacement nor with speed",
+    };
     page.text(&format!(
         "Two tests check whether the held-out residuals of the improved model are noise. A residual is white if no sample helps \
          to predict the following ones; the Ljung-Box statistic over {LAGS} lags then stays below {CHI_SQUARE_99} in 99 of 100 \
-         cases. A residual is independent if it correlates neither with displacement nor with speed up to {LAGS} samples \
+         cases. A residual is independent if it correlates neither {inputs} up to {LAGS} samples \
          earlier. With many samples both tests also detect effects that are too small to matter, so the last column says how \
          much of the residual's variance the input explains. {}",
         residuals_in_words(diagnosis)
@@ -164,7 +178,6 @@ fn left(page: &mut Page, diagnosis: &Diagnosis) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vocabulary::State;
 
     fn channel(ljung_box: f64, correlation: f64) -> Whiteness {
         Whiteness {

@@ -8,10 +8,21 @@ use crate::vocabulary::SpecimenKind;
 
 pub fn section(page: &mut Page, kind: SpecimenKind, diagnosis: &Diagnosis) {
     page.section("The improved model");
-    page.text(
+    let file = match kind {
+        SpecimenKind::CoSimulation => "map.toml",
+        _ => "model.toml",
+    };
+    if kind == SpecimenKind::CoSimulation {
+        page.text(
+            "The improved model is the model as it was given, run with the file map.toml beside this page: it has the format of the given map, with \
+             the recalibrated values and with what was added from outside. Give it to oleo diagnose --fmu as --map.",
+        );
+    } else {
+        page.text(
         "The improved model is the file model.toml beside this page. It has the format of the given model. To simulate the inputs \
          of another recording with it, run oleo predict --model model.toml RECORDING.csv --out SIM.csv.",
-    );
+        );
+    }
     if kind == SpecimenKind::TwoStageStrut {
         page.text("oleo rig and oleo hil accept the file with the option --strut model.toml.");
     }
@@ -23,11 +34,11 @@ pub fn section(page: &mut Page, kind: SpecimenKind, diagnosis: &Diagnosis) {
     if !added.is_empty() {
         let mut table = Table::new([Column::text("Added to the model"), Column::text("Value")]);
         for c in added {
-            table.row([c.key.clone(), short(&c.after)]);
+            table.row([c.key.clone(), short(&c.after, file)]);
         }
         page.table(table);
     }
-    page.code("model.toml, to copy", &diagnosis.model_toml);
+    page.code(&format!("{file}, to copy"), &diagnosis.model_toml);
     calibration(page, diagnosis);
 }
 
@@ -93,10 +104,10 @@ fn calibration(page: &mut Page, diagnosis: &Diagnosis) {
 }
 
 /// A value of a model file as a table of the page shows it: a list is drawn above, and stands in the file below.
-fn short(value: &str) -> String {
+fn short(value: &str, file: &str) -> String {
     let list = (value.parse::<toml::Value>().ok()).and_then(|value| value.as_array().map(Vec::len));
     match list {
-        Some(count) => format!("{count} values, in model.toml"),
+        Some(count) => format!("{count} values, in {file}"),
         None => value.parse().map_or(value.to_owned(), |v: f64| significant(v, 5)),
     }
 }
@@ -156,9 +167,9 @@ mod tests {
 
     #[test]
     fn a_list_is_counted_and_a_number_is_rounded() {
-        assert_eq!(short("[0.1, 0.2, 1e-81]"), "3 values, in model.toml");
-        assert_eq!(short("0.123456789"), "0.12346");
-        assert_eq!(short("\"displacement\""), "\"displacement\"");
+        assert_eq!(short("[0.1, 0.2, 1e-81]", "model.toml"), "3 values, in model.toml");
+        assert_eq!(short("0.123456789", "model.toml"), "0.12346");
+        assert_eq!(short("\"displacement\"", "model.toml"), "\"displacement\"");
     }
 
     #[test]

@@ -19,6 +19,9 @@ pub fn effect_name(effect: &Effect) -> String {
 pub fn at(place: &Place) -> String {
     match &place.site {
         Site::Sensor(column) => format!("({column})"),
+        Site::Output(column) => format!("at the output {column}"),
+        Site::Input(column) => format!("at the input {column}"),
+        Site::Parameter(name) => format!("in the parameter {name}"),
         Site::MainChamber => "in the main chamber".into(),
         Site::MainSeal => "at the main seal".into(),
         Site::Mount => "at the mount".into(),

@@ -69,6 +69,11 @@ pub trait Specimen: Send + Sync {
     /// A law that cannot be written into the model file.
     fn model_toml(&self, hypothesis: &Hypothesis) -> Result<String, String>;
 
+    /// Name of the file of [`Self::model_toml`] among the results.
+    fn model_file(&self) -> &'static str {
+        "model.toml"
+    }
+
     /// The states over which residuals are shown and explained. They may differ between recordings.
     fn states(&self, recording: usize) -> Vec<StateSeries>;
 

@@ -10,6 +10,8 @@
 //!
 //! Damper and drive are mechanisms with one degree of freedom and the same effects; `mechanism` holds what they share.
 //!
+//! `co_simulation` is no kind of model file: it is somebody else's model, which is simulated elsewhere and named on the command line.
+//!
 //! What a model may lack is not here: each effect says what it does in each kind of specimen ([`crate::effect`]).
 //!
 //! A new kind is a folder, a variant of [`SpecimenKind`](crate::vocabulary::SpecimenKind), a [`Kind`](crate::effect::Kind) with
@@ -18,6 +20,7 @@
 //! A kind with one compared channel implements [`single_output::SingleOutput`] instead of the whole trait.
 
 pub mod channel;
+pub mod co_simulation;
 pub mod contract;
 mod cylinder;
 mod damper;

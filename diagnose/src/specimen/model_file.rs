@@ -4,7 +4,7 @@ use oleo_plant_sim::model_file::InvalidValue;
 use oleo_plant_sim::model_file::names::suggestion;
 use oleo_plant_sim::specimen::{CylinderModel, DamperModel, DriveModel, GasSpringModel, specimen_name};
 use oleo_plant_sim::strut::StrutModel;
-use strum::VariantNames;
+use strum::VariantArray;
 
 use super::contract::BelievedModel;
 use crate::error::DiagnoseError;
@@ -32,6 +32,7 @@ impl ModelFile {
             SpecimenKind::Cylinder => Box::new(CylinderModel::from_toml(text, source)?),
             SpecimenKind::Damper => Box::new(DamperModel::from_toml(text, source)?),
             SpecimenKind::Drive => Box::new(DriveModel::from_toml(text, source)?),
+            SpecimenKind::CoSimulation => return Err(unknown(&head.kind).in_file(text, source).into()),
         };
         model.check_noise().map_err(|invalid| invalid.in_file(text, source))?;
         Ok(Self { name: head.name, model })
@@ -39,6 +40,10 @@ impl ModelFile {
 }
 
 fn unknown(kind: &str) -> InvalidValue {
-    let what = format!("is {kind:?}: {}", suggestion(kind, SpecimenKind::VARIANTS, "kinds"));
+    let kinds: Vec<&str> = (SpecimenKind::VARIANTS.iter())
+        .filter(|kind| **kind != SpecimenKind::CoSimulation)
+        .map(|kind| kind.as_str())
+        .collect();
+    let what = format!("is {kind:?}: {}", suggestion(kind, &kinds, "kinds"));
     InvalidValue::new("kind", what).inside("specimen")
 }

@@ -92,6 +92,12 @@ pub enum Site {
     Drive,
     /// The instrument behind a column.
     Sensor(Column),
+    /// An output of somebody else's model, by the column that it is compared with.
+    Output(Column),
+    /// An input of somebody else's model, by the column that it is taken from.
+    Input(Column),
+    /// A parameter of somebody else's model.
+    Parameter(Column),
     /// The place is unknown.
     Unknown,
 }
@@ -165,6 +171,10 @@ impl From<Site> for Place {
 
 /// What begins the text of an instrument's place.
 const SENSOR: &str = "sensor:";
+/// The same of an output, an input and a parameter of somebody else's model.
+const OUTPUT: &str = "output:";
+const INPUT: &str = "input:";
+const PARAMETER: &str = "parameter:";
 /// Text of [`Site::Accumulators`] as a candidate.
 const ACCUMULATORS: &str = "accumulators";
 /// The same where it is reported.
@@ -189,6 +199,9 @@ impl fmt::Display for Site {
             Self::Damper => out.write_str("damper"),
             Self::Drive => out.write_str("drive"),
             Self::Sensor(column) => write!(out, "{SENSOR}{column}"),
+            Self::Output(column) => write!(out, "{OUTPUT}{column}"),
+            Self::Input(column) => write!(out, "{INPUT}{column}"),
+            Self::Parameter(name) => write!(out, "{PARAMETER}{name}"),
             Self::Unknown => out.write_str("unknown"),
         }
     }
@@ -234,8 +247,21 @@ impl FromStr for Site {
     type Err = PlaceError;
 
     fn from_str(text: &str) -> Result<Self, PlaceError> {
-        if let Some(column) = text.strip_prefix(SENSOR).filter(|column| !column.is_empty()) {
-            return Ok(Self::Sensor(Column::named(column.to_owned())));
+        let column = |prefix| {
+            let name = text.strip_prefix(prefix).filter(|name: &&str| !name.is_empty());
+            name.map(|name| Column::named(name.to_owned()))
+        };
+        if let Some(column) = column(SENSOR) {
+            return Ok(Self::Sensor(column));
+        }
+        if let Some(column) = column(OUTPUT) {
+            return Ok(Self::Output(column));
+        }
+        if let Some(column) = column(INPUT) {
+            return Ok(Self::Input(column));
+        }
+        if let Some(name) = column(PARAMETER) {
+            return Ok(Self::Parameter(name));
         }
         Ok(match text {
             "main-chamber" => Self::MainChamber,
@@ -297,6 +323,9 @@ mod tests {
             Just(Site::Damper),
             Just(Site::Drive),
             "[a-z][a-z0-9_]{0,8}_(Pa|m|N)".prop_map(|name| Site::Sensor(Column::named(name))),
+            "[a-z][a-z0-9_.]{0,8}".prop_map(|name| Site::Output(Column::named(name))),
+            "[a-z][a-z0-9_.]{0,8}".prop_map(|name| Site::Input(Column::named(name))),
+            "[a-z][a-z0-9_.]{0,8}".prop_map(|name| Site::Parameter(Column::named(name))),
             Just(Site::Unknown),
         ]
     }

@@ -1,9 +1,9 @@
 //! The kinds of specimen, as `specimen.kind` of a model file names them.
 
-use strum::{Display, EnumString, IntoStaticStr, VariantArray, VariantNames};
+use strum::{Display, EnumString, IntoStaticStr, VariantArray};
 
 /// A kind of specimen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Display, EnumString, IntoStaticStr, VariantNames, VariantArray)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Display, EnumString, IntoStaticStr, VariantArray)]
 pub enum SpecimenKind {
     /// Hydropneumatic strut with two accumulators, two dampers and three valves, on a test rig.
     #[strum(serialize = "two-stage hydropneumatic strut")]
@@ -20,6 +20,9 @@ pub enum SpecimenKind {
     /// Carriage that is pushed by a measured force, and its position.
     #[strum(serialize = "drive")]
     Drive,
+    /// Somebody else's model, whatever it is of. No model file has this kind: the model is an FMU, and a map says what it is compared with.
+    #[strum(serialize = "co-simulation model")]
+    CoSimulation,
 }
 
 impl SpecimenKind {

@@ -1,13 +1,14 @@
 //! States: what a residual may depend on.
 
-use strum::{Display, EnumString, IntoStaticStr, VariantArray};
+use std::collections::BTreeSet;
+use std::sync::{Mutex, PoisonError};
+
+use strum::{Display, IntoStaticStr};
 
 /// A quantity that was recorded, or follows from what was recorded, and over which residuals are shown and explained.
 ///
 /// The text is the quantity with its unit after a comma.
-#[derive(
-    Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Display, EnumString, IntoStaticStr, VariantArray,
-)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Display, IntoStaticStr)]
 pub enum State {
     /// Displacement from the static position, jounce positive.
     #[strum(serialize = "displacement, m")]
@@ -45,9 +46,47 @@ pub enum State {
     /// Sum of the chambers' pressures on their areas, all counted positive: what presses the seals.
     #[strum(serialize = "pressing force, N")]
     PressingForce,
+    /// A quantity of somebody else's model, by its text.
+    #[strum(transparent)]
+    Named(&'static str),
 }
 
+/// Texts of quantities that are named while the program runs. They stay, so that a state can be copied like the others; there are as many as models have columns.
+static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+
+/// What the text of a simulated quantity begins with.
+const SIMULATED: &str = "simulated ";
+
 impl State {
+    /// A quantity of somebody else's model: its name, and its unit after a comma.
+    #[must_use]
+    pub fn named(text: &str) -> Self {
+        let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = names.get(text).copied().unwrap_or_else(|| {
+            let kept: &'static str = Box::leak(text.to_owned().into_boxed_str());
+            names.insert(kept);
+            kept
+        });
+        Self::Named(known)
+    }
+
+    /// A quantity that somebody else's model gives.
+    #[must_use]
+    pub fn simulated(text: &str) -> Self {
+        Self::named(&format!("{SIMULATED}{text}"))
+    }
+
+    /// Whether the specimen was made to do it, so that a complete model leaves nothing that depends on it: displacement, speed, inputs of
+    /// somebody else's model and their rates.
+    #[must_use]
+    pub fn is_driven(self) -> bool {
+        match self {
+            Self::Displacement | Self::Speed => true,
+            Self::Named(text) => !text.starts_with(SIMULATED),
+            _ => false,
+        }
+    }
+
     /// The text: quantity, and unit after a comma.
     #[must_use]
     pub fn as_str(self) -> &'static str {
@@ -66,11 +105,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn texts_are_read_back() {
-        for &state in State::VARIANTS {
-            assert_eq!(state.as_str().parse(), Ok(state));
-        }
+    fn a_text_is_a_quantity_and_its_unit() {
         assert_eq!(State::P1MinusP2.quantity_and_unit(), ("p1 - p2", "Pa"));
         assert_eq!(State::Direction.quantity_and_unit(), ("direction of travel", ""));
+        let rate = State::named("rate of x, m/s");
+        assert!(rate.is_driven() && State::Speed.is_driven() && !State::simulated("x, m").is_driven());
+        assert_eq!(rate.quantity_and_unit(), ("rate of x", "m/s"));
+        assert_eq!(
+            (rate, rate.to_string()),
+            (State::named("rate of x, m/s"), "rate of x, m/s".to_owned())
+        );
     }
 }

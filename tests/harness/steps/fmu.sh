@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# writes FMUs of both versions, and lets FMPy validate, simulate, save and restore them, many at once
+# writes FMUs of both versions, and lets FMPy validate, simulate, save and restore them, many at once; diagnoses FMUs of others
 . tests/harness/lib.sh
 
-if ! python_packages 'fmpy, numpy, lxml' 'fmpy>=0.3.32,<0.4' 'numpy>=1.26'; then
+if ! python_packages 'fmpy, numpy, lxml, pythonfmu' 'fmpy>=0.3.32,<0.4' 'numpy>=1.26' 'pythonfmu>=0.7,<0.8'; then
     skip "FMUs" "a package cannot be installed: $(tail -n 1 "$OLEO_LOGS/pip-$OLEO_STEP.log")"
     exit 0
 fi
@@ -15,4 +15,8 @@ check "FMPy opens the strut, which is that of the command line" python3 fmu/test
 sed -n 's/^\.*\(FMI [23]:\)/   \1/p' "$log"
 check "FMPy couples vehicle and controller to our own loop" python3 fmu/tests/test_system.py "$program" "$library"
 sed -n 's/^\.*\(SSP:\)/   \1/p' "$log"
+check "FMUs of other programs are diagnosed" \
+    python3 fmu/tests/test_foreign.py "$program" "$library" ../shared/recordings
+sed -n 's/^\.*\(FMI 2: \)/   \1/p' "$log"
+libtest "FMUs that hang, fall and lack physics" cargo test "${FEATURES[@]}" --locked --test foreign_model -- --show-output
 exit 0

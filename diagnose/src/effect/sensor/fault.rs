@@ -3,9 +3,10 @@
 use oleo_plant_sim::specimen::{CylinderModel, GasSpringModel, MechanismEffects};
 use oleo_plant_sim::strut::{COLUMNS, Equation, SensorEffect, StrutModel, TermId};
 
+use crate::correction::Corrections;
 use crate::effect::candidate::Candidate;
 use crate::effect::contract::{
-    ActsOn, Concealed, Cylinder, Effect, Experiment, GasSpring, Mechanism, Strut, StrutEffect,
+    ActsOn, CoSimulation, Concealed, Cylinder, Effect, Experiment, GasSpring, Mechanism, Strut, StrutEffect,
 };
 use crate::effect::drawn::{Drawn, TrueNumber};
 use crate::excitation;
@@ -135,6 +136,45 @@ impl Effect for Fault {
 
     fn in_mechanism(&self) -> Option<&dyn ActsOn<Mechanism>> {
         Some(self)
+    }
+
+    fn in_co_simulation(&self) -> Option<&dyn ActsOn<CoSimulation>> {
+        Some(self)
+    }
+}
+
+/// Every compared column, and every input that is not switched. What a fault does to an input is undone before the model is simulated, except a lag, of which only noise would
+/// be left.
+impl ActsOn<CoSimulation> for Fault {
+    fn equation(&self) -> Equation {
+        self.term.equation()
+    }
+
+    fn candidates(&self, _model: &Corrections, excitation: &excitation::CoSimulation) -> Vec<Candidate> {
+        let of = |reading: &excitation::Reading| {
+            self.candidate(&Reading::new(
+                reading.column.clone(),
+                reading.spread,
+                excitation.duration_s,
+                excitation.interval_s,
+            ))
+        };
+        let inputs = (excitation.inputs.iter())
+            .filter(|_| self.id != EffectId::SensorLag)
+            .map(of)
+            .map(|mut candidate| {
+                (candidate.parameters.iter_mut()).for_each(|p| p.instrument_only = false);
+                candidate
+            });
+        excitation.outputs.iter().map(of).chain(inputs).collect()
+    }
+
+    fn put(&self, model: &mut Corrections, candidate: &Candidate, values: &[f64]) {
+        self.enter(model.sensor_fault_mut(self.term), candidate, values);
+    }
+
+    fn experiment(&self) -> Experiment {
+        self.without_valves
     }
 }
 

@@ -16,6 +16,7 @@
 //! plant-sim's `LawArgument`, which the solver must read at the place. A law with a state of its own (heat, memory) is not
 //! a table of a quantity: it needs a term in plant-sim and then, having a name, an effect.
 
+mod co_simulation_laws;
 mod cylinder_laws;
 mod forms;
 mod gas_spring_laws;

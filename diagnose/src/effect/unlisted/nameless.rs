@@ -3,10 +3,10 @@
 use oleo_plant_sim::strut::{Equation, StrutModel, TermId};
 
 use super::words::NamelessLaw;
-use super::{cylinder_laws, gas_spring_laws, mechanism_laws, strut_laws, textbook};
+use super::{co_simulation_laws, cylinder_laws, gas_spring_laws, mechanism_laws, strut_laws, textbook};
 use crate::effect::candidate::Candidate;
 use crate::effect::contract::{
-    ActsOn, Concealed, Cylinder, Effect, Experiment, GasSpring, Mechanism, Strut, StrutEffect,
+    ActsOn, CoSimulation, Concealed, Cylinder, Effect, Experiment, GasSpring, Mechanism, Strut, StrutEffect,
 };
 use crate::effect::drawn::{Drawn, TrueNumber};
 use crate::excitation;
@@ -78,12 +78,16 @@ impl Effect for Unlisted {
     fn in_mechanism(&self) -> Option<&dyn ActsOn<Mechanism>> {
         Some(&mechanism_laws::Laws)
     }
+
+    fn in_co_simulation(&self) -> Option<&dyn ActsOn<CoSimulation>> {
+        Some(&co_simulation_laws::Laws)
+    }
 }
 
-/// Words of a law of one number; `None` for a table, which a strut's laws are.
+/// Words of a law of one number; `None` for a table, which the laws of struts and of somebody else's models are.
 fn words(kind: SpecimenKind, label: &str) -> Option<NamelessLaw> {
     match kind {
-        SpecimenKind::TwoStageStrut => None,
+        SpecimenKind::TwoStageStrut | SpecimenKind::CoSimulation => None,
         SpecimenKind::GasSpring => gas_spring_laws::words(label),
         SpecimenKind::Cylinder => cylinder_laws::words(label),
         SpecimenKind::Damper | SpecimenKind::Drive => mechanism_laws::words(label),

@@ -6,9 +6,9 @@ use crate::parameter::Parameter;
 const MOST: f64 = 1e4;
 
 /// Points of a table and what is known of the law there.
-pub struct Grid {
+pub struct Grid<'k> {
     /// Values of the argument at which the table has points.
-    pub knots: &'static [f64],
+    pub knots: &'k [f64],
     /// Value of the argument at rest, where a law changes nothing.
     pub at_rest: f64,
     /// Size of one fitted number that would be visible.
@@ -17,7 +17,7 @@ pub struct Grid {
     pub longest_s: f64,
 }
 
-impl Grid {
+impl Grid<'_> {
     /// Largest value that a fitted number may have.
     #[must_use]
     pub fn most(&self) -> f64 {

@@ -47,7 +47,7 @@ pub const fn law(
 impl Law {
     /// At rest a law adds nothing and leaves everything as believed: displacement, speed, flow and drop zero, gas volume
     /// the static one, smallest pressure. The duration of the longest recording scales what is fitted of time.
-    pub fn grid(&self, longest_s: f64) -> Grid {
+    pub fn grid(&self, longest_s: f64) -> Grid<'static> {
         Grid {
             knots: self.knots,
             at_rest: match (self.place, self.depends_on) {

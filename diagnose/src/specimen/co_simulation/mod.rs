@@ -1,0 +1,649 @@
+//! Somebody else's model, whatever it is of: it is simulated by a [`Simulator`], and a [`Map`] says what it is compared with.
+//!
+//! Nothing inside the model can be changed but its parameters. What it lacks is added from outside ([`crate::correction`]): at the instruments, at its inputs
+//! before it is simulated, at its outputs afterwards.
+//!
+//! | file | what it says |
+//! |---|---|
+//! | `simulator` | what a model must be able to do |
+//! | `map` | the file that says which column is what |
+//! | `fit` | whether map and model go together |
+//! | `stepping` | the times of a simulation, and what is driven at them |
+//! | `mod` | the specimen |
+
+mod fit;
+pub mod map;
+pub mod simulator;
+mod stepping;
+
+use std::sync::Arc;
+
+use oleo_plant_sim::model_file::{InvalidValue, ModelFileError};
+use oleo_plant_sim::specimen::smooth_motion;
+
+use super::channel::{Channel, Series, StateSeries};
+use super::contract::{BelievedModel, Specimen};
+use super::hypothesis::Hypothesis;
+use super::model_file::ModelFile;
+use crate::correction::{Corrections, Law, Quantity, Target, moved_since_turned};
+use crate::effect::{ALL, Candidate, of, sensor};
+use crate::error::DiagnoseError;
+use crate::excitation::{self, Known, Reading, spread};
+use crate::parameter::Parameter;
+use crate::recording::{ColumnKind, ColumnSpec, GapPolicy, Recording};
+use crate::vocabulary::{Column, EffectId, Place, Site, SpecimenKind, State};
+use map::{Instant, Map};
+use simulator::{Course, Driven, Role, Simulator};
+use stepping::Times;
+
+/// Half-width of the window over which the rate of an input is taken for laws that depend on it, in sampling intervals: five samples, where the map
+/// asks for no smoothing.
+const RATE_WINDOW: f64 = 2.5;
+/// How far an input moves after it has turned until it resists fully, as parts of its spread.
+const TURNS: [f64; 3] = [0.003, 0.02, 0.1];
+/// Name of the file of an improved map.
+const MAP_FILE: &str = "map.toml";
+
+/// A model with the map to its recordings.
+pub struct CoSimulationModel {
+    map: Map,
+    simulator: Arc<dyn Simulator>,
+}
+
+impl CoSimulationModel {
+    /// A model with a map that fits it. `text` and `file` are those of the map, for messages.
+    ///
+    /// # Errors
+    /// What in the map does not fit the model, with its line.
+    pub fn new(map: Map, text: &str, file: &str, simulator: Arc<dyn Simulator>) -> Result<Self, ModelFileError> {
+        fit::check(&map, simulator.variables()).map_err(|invalid| invalid.in_file(text, file))?;
+        Ok(Self { map, simulator })
+    }
+
+    /// As a model file that was read.
+    #[must_use]
+    pub fn into_model_file(self) -> ModelFile {
+        let name = match &self.map.specimen {
+            Some(specimen) => specimen.name.clone(),
+            None => self.simulator.name().to_owned(),
+        };
+        ModelFile {
+            name,
+            model: Box::new(self),
+        }
+    }
+
+    /// Place of a variable among those of the model. The map was checked, so that it is there.
+    fn variable(&self, name: &str) -> usize {
+        (self.simulator.variables().iter())
+            .position(|variable| variable.name == name)
+            .unwrap_or_default()
+    }
+
+    /// The value of a setting where the map or the model states one.
+    fn stated(&self, name: &str) -> Option<f64> {
+        let own = self.map.parameters.get(name).and_then(|setting| setting.value);
+        own.or(self.simulator.variables()[self.variable(name)].start)
+    }
+
+    /// What may be off within tolerance: settings, offsets of inputs, offsets of outputs, each in the order of the map.
+    fn calibrated(&self) -> Vec<(Calibrated<'_>, f64)> {
+        let settings = self.map.parameters.iter().filter_map(|(name, setting)| {
+            let relative = setting.tolerance.map(|part| (Calibrated::Part(name), part));
+            relative.or(setting.tolerance_absolute.map(|size| (Calibrated::Setting(name), size)))
+        });
+        let inputs = (self.map.inputs.iter())
+            .filter_map(|(name, input)| Some((Calibrated::InputOffset(name), input.offset_tolerance?)));
+        let outputs = (self.map.outputs.values())
+            .filter_map(|output| Some((Calibrated::OutputOffset(&output.column), output.offset_tolerance?)));
+        settings.chain(inputs).chain(outputs).collect()
+    }
+
+    fn calibration(&self) -> Vec<Parameter> {
+        (self.calibrated().into_iter())
+            .map(|(calibrated, tolerance)| match calibrated {
+                Calibrated::Part(name) => Parameter::calibration(format!("{name} (relative)"), tolerance),
+                Calibrated::Setting(name) => Parameter::calibration(name, tolerance),
+                Calibrated::InputOffset(name) => Parameter::calibration(format!("{name} offset"), tolerance),
+                Calibrated::OutputOffset(column) => {
+                    Parameter::calibration(format!("{column} offset"), tolerance).on_instrument()
+                }
+            })
+            .collect()
+    }
+
+    /// The deviation of a calibrated value in a hypothesis; zero for what is not calibrated.
+    fn deviation(&self, of: Calibrated, hypothesis: &Hypothesis) -> f64 {
+        let position = self.calibrated().iter().position(|(calibrated, _)| *calibrated == of);
+        let deviation = position.and_then(|position| hypothesis.calibration.get(position));
+        deviation.copied().unwrap_or(0.0)
+    }
+
+    /// The value of a setting in a hypothesis.
+    fn calibrated_value(&self, name: &str, value: f64, hypothesis: &Hypothesis) -> f64 {
+        let part = self.deviation(Calibrated::Part(name), hypothesis);
+        value * (1.0 + part) + self.deviation(Calibrated::Setting(name), hypothesis)
+    }
+}
+
+/// What may be off within tolerance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Calibrated<'m> {
+    /// A setting, by a part of its value.
+    Part(&'m str),
+    /// A setting, in its unit.
+    Setting(&'m str),
+    /// The offset of an input, by its variable.
+    InputOffset(&'m str),
+    /// The offset of a compared column.
+    OutputOffset(&'m str),
+}
+
+impl BelievedModel for CoSimulationModel {
+    fn columns(&self) -> Vec<ColumnSpec> {
+        let compared = self
+            .map
+            .compared()
+            .map(|name| ColumnSpec::new(name, ColumnKind::Output));
+        let sources = self.map.sources();
+        compared
+            .chain(sources.into_iter().map(|name| ColumnSpec::new(name, ColumnKind::Input)))
+            .collect()
+    }
+
+    fn check_noise(&self) -> Result<(), InvalidValue> {
+        // The map was refused without.
+        Ok(())
+    }
+
+    fn gap_policy(&self) -> GapPolicy {
+        GapPolicy::Cut
+    }
+
+    fn with_recordings(self: Box<Self>, recordings: Vec<Recording>) -> Result<Box<dyn Specimen>, DiagnoseError> {
+        let channels: Vec<Channel> = (self.map.outputs.values())
+            .map(|output| Channel {
+                column: Column::named(output.column.clone()),
+                noise: output.noise,
+            })
+            .collect();
+        let times = (recordings.iter())
+            .map(|recording| {
+                let interval = recording.interval_s();
+                Times::of(&recording.time_s, interval, &self.map.run, self.simulator.stepping())
+            })
+            .collect::<Result<Vec<_>, String>>()
+            .map_err(DiagnoseError::Model)?;
+        let mut specimen = CoSimulation {
+            model: *self,
+            recordings,
+            times,
+            channels,
+            inputs: vec![],
+            rates: vec![],
+            as_stated: vec![],
+            calibration: vec![],
+            candidates: vec![],
+        };
+        specimen.look_at_inputs();
+        // One after the other and before the search, so that the first recording on which the model fails is the one that is named.
+        let stated = Hypothesis::default();
+        for r in 0..specimen.recordings.len() {
+            let failed = |what| DiagnoseError::Simulation {
+                recording: specimen.recordings[r].name.clone(),
+                what,
+            };
+            if r == 0 {
+                let course = specimen.course(&stated, &specimen.corrections(&stated), r);
+                (specimen.model.simulator)
+                    .check_repeatable(&specimen.recordings[r].name, &course)
+                    .map_err(failed)?;
+            }
+            let simulated = specimen.simulate(&stated, r).map_err(failed)?;
+            specimen.as_stated.push(simulated);
+        }
+        specimen.calibration = specimen.model.calibration();
+        specimen.candidates = candidates(&specimen);
+        Ok(Box::new(specimen))
+    }
+}
+
+/// A recorded input over all recordings.
+struct InputColumn {
+    name: String,
+    switches: bool,
+}
+
+/// A model with recordings.
+struct CoSimulation {
+    model: CoSimulationModel,
+    recordings: Vec<Recording>,
+    times: Vec<Times>,
+    channels: Vec<Channel>,
+    /// Recorded inputs, in the order of their columns.
+    inputs: Vec<InputColumn>,
+    /// Rates of the inputs of each recording; of what switches empty.
+    rates: Vec<Series>,
+    /// What the model gives as it is stated, recording by recording.
+    as_stated: Vec<Series>,
+    calibration: Vec<Parameter>,
+    candidates: Vec<Candidate>,
+}
+
+impl CoSimulation {
+    /// Finds which inputs switch, and the rates of the others.
+    fn look_at_inputs(&mut self) {
+        let first = self.channels.len();
+        let sources: Vec<String> = self.model.map.sources().into_iter().map(str::to_owned).collect();
+        self.inputs = (sources.into_iter().enumerate())
+            .map(|(k, name)| InputColumn {
+                name,
+                switches: (self.recordings.iter())
+                    .all(|r| r.columns[first + k].iter().all(|value| *value == 0.0 || *value == 1.0)),
+            })
+            .collect();
+        self.rates = (self.recordings.iter())
+            .map(|recording| {
+                let shortest = RATE_WINDOW * recording.interval_s();
+                (self.inputs.iter().zip(&recording.columns[first..]))
+                    .map(|(input, column)| match input.switches {
+                        true => vec![],
+                        false => {
+                            let window = self.model.map.smoothed_s(&input.name).max(shortest);
+                            smooth_motion(&recording.time_s, column, window).speed_m_s
+                        }
+                    })
+                    .collect()
+            })
+            .collect();
+    }
+
+    /// What is added from outside under a hypothesis.
+    fn corrections(&self, hypothesis: &Hypothesis) -> Corrections {
+        let mut corrections = self.model.map.effects.clone();
+        for (index, values) in &hypothesis.effects {
+            let candidate = &self.candidates[*index];
+            if let Some(effect) = of(candidate.id).in_co_simulation() {
+                effect.put(&mut corrections, candidate, values);
+            }
+        }
+        corrections
+    }
+
+    /// The samples of a quantity; `None` where it is not known. `simulated` are the channels as the model gives them.
+    fn quantity(&self, quantity: &Quantity, recording: usize, simulated: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let input = |name: &str| self.inputs.iter().position(|input| input.name == name);
+        Some(match quantity {
+            Quantity::Time => self.times[recording].samples_s.clone(),
+            Quantity::Input(name) => self.recordings[recording].columns[self.channels.len() + input(name)?].clone(),
+            Quantity::SinceTurned(name, most) => {
+                let column = &self.recordings[recording].columns[self.channels.len() + input(name)?];
+                moved_since_turned(column, *most)
+            }
+            Quantity::Rate(name) => self.rates[recording][input(name)?].clone(),
+            Quantity::Simulated(name) => {
+                let channel = self
+                    .channels
+                    .iter()
+                    .position(|channel| channel.column == name.as_str())?;
+                simulated.get(channel)?.clone()
+            }
+        })
+        .filter(|values| !values.is_empty())
+    }
+
+    /// The samples of a law's value.
+    fn law(&self, law: &Law, recording: usize, simulated: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let argument = self.quantity(&law.over, recording, simulated)?;
+        Some(argument.into_iter().map(|argument| law.value_at(argument)).collect())
+    }
+
+    /// The true samples of a recorded input.
+    fn true_input(&self, corrections: &Corrections, recording: usize, name: &str) -> Vec<f64> {
+        let recorded = &self.recordings[recording];
+        let position = self
+            .inputs
+            .iter()
+            .position(|input| input.name == name)
+            .unwrap_or_default();
+        let shown = &recorded.columns[self.channels.len() + position];
+        let mut truth = corrections.undo(name, &recorded.time_s, shown);
+        for law in corrections.laws_at(Target::Input, name) {
+            if let Some(added) = self.law(law, recording, &[]) {
+                truth.iter_mut().zip(added).for_each(|(value, added)| *value += added);
+            }
+        }
+        truth
+    }
+
+    /// What is simulated of a recording under a hypothesis.
+    fn course(&self, hypothesis: &Hypothesis, corrections: &Corrections, recording: usize) -> Course {
+        let (model, times) = (&self.model, &self.times[recording]);
+        let variables = model.simulator.variables();
+        let columns: Vec<Vec<f64>> = (self.inputs.iter())
+            .map(|input| self.true_input(corrections, recording, &input.name))
+            .collect();
+        let mut driven: Vec<Driven> = (model.map.inputs.iter())
+            .map(|(name, input)| {
+                let source = self.inputs.iter().position(|column| column.name == input.source());
+                let source = source.unwrap_or_default();
+                let variable = model.variable(name);
+                let smoothed = input.smooth_s.map(|width| {
+                    smooth_motion(&self.recordings[recording].time_s, &columns[source], width).displacement_m
+                });
+                let column = smoothed.as_ref().unwrap_or(&columns[source]);
+                let (during, at) = if input.rate_of.is_some() {
+                    times.rate(column)
+                } else {
+                    let switches = self.inputs[source].switches || !variables[variable].is_real;
+                    let usual = if switches { Instant::Begin } else { Instant::Middle };
+                    times.driven(column, switches, input.at.unwrap_or(usual))
+                };
+                let off = model.deviation(Calibrated::InputOffset(name), hypothesis);
+                let (factor, offset) = (input.factor.unwrap_or(1.0), input.offset.unwrap_or(0.0) + off);
+                let in_its_unit = |values: Vec<f64>| values.iter().map(|value| factor * value + offset).collect();
+                Driven {
+                    variable,
+                    during: in_its_unit(during),
+                    at: in_its_unit(at),
+                }
+            })
+            .collect();
+        let mut starts = Vec::new();
+        for (name, setting) in &model.map.parameters {
+            let first = setting
+                .first_of
+                .as_ref()
+                .and_then(|column| self.first(recording, column));
+            // What the model alone knows is left to it.
+            let Some(stated) = first.or_else(|| model.stated(name)) else {
+                continue;
+            };
+            let value = model.calibrated_value(name, stated, hypothesis);
+            let variable = model.variable(name);
+            starts.push((variable, value));
+            let mut factor: Option<Vec<f64>> = None;
+            for law in corrections.laws_at(Target::Parameter, name) {
+                if let Some(of_law) = self.law(law, recording, &[]) {
+                    let all = factor.get_or_insert_with(|| vec![1.0; of_law.len()]);
+                    all.iter_mut().zip(of_law).for_each(|(all, of_law)| *all *= of_law);
+                }
+            }
+            if let Some(factor) = factor {
+                let (during, at) = times.driven(&factor, false, Instant::Middle);
+                let scaled = |factors: Vec<f64>| factors.iter().map(|factor| value * factor).collect();
+                driven.push(Driven {
+                    variable,
+                    during: scaled(during),
+                    at: scaled(at),
+                });
+            }
+        }
+        Course {
+            times_s: times.model_s.clone(),
+            starts,
+            driven,
+            outputs: model.map.outputs.keys().map(|name| model.variable(name)).collect(),
+        }
+    }
+
+    /// The first sample of a column.
+    fn first(&self, recording: usize, column: &str) -> Option<f64> {
+        let channel = self.channels.iter().position(|channel| channel.column == column);
+        let input = || self.inputs.iter().position(|input| input.name == column);
+        let position = channel.or_else(|| Some(self.channels.len() + input()?))?;
+        self.recordings[recording].columns[position].first().copied()
+    }
+
+    /// The largest spread of a column within a recording.
+    fn spread(&self, position: usize) -> f64 {
+        let spreads = self
+            .recordings
+            .iter()
+            .map(|recording| spread(&recording.columns[position]));
+        spreads.fold(0.0, f64::max)
+    }
+
+    /// What residuals are shown over, and whether it has only two values.
+    fn shown_quantities(&self) -> Vec<(Quantity, bool)> {
+        let inputs = (self.inputs.iter()).map(|input| (Quantity::Input(input.name.clone()), input.switches));
+        let moving = self.inputs.iter().filter(|input| !input.switches);
+        let rates = moving.map(|input| (Quantity::Rate(input.name.clone()), false));
+        let simulated = (self.channels.iter()).map(|c| (Quantity::Simulated(c.column.to_string()), false));
+        inputs.chain(rates).chain(simulated).collect()
+    }
+
+    /// What a law may depend on, and whether it has only two values.
+    fn quantities(&self) -> Vec<(Quantity, bool)> {
+        let turns = (self.inputs.iter().enumerate())
+            .filter(|(_, input)| !input.switches)
+            .flat_map(|(k, input)| {
+                let spread = self.spread(self.channels.len() + k);
+                TURNS.map(|part| Quantity::SinceTurned(input.name.clone(), two_digits(part * spread)))
+            })
+            .filter(|quantity| matches!(quantity, Quantity::SinceTurned(_, most) if *most > 0.0));
+        let further = turns.chain([Quantity::Time]).map(|quantity| (quantity, false));
+        self.shown_quantities().into_iter().chain(further).collect()
+    }
+}
+
+/// A number with two digits, which a map shows.
+fn two_digits(number: f64) -> f64 {
+    format!("{number:.1e}").parse().unwrap_or(number)
+}
+
+/// Everything that can be added from outside: laws without a name, then faults of instruments.
+fn candidates(specimen: &CoSimulation) -> Vec<Candidate> {
+    let recordings = || 0..specimen.recordings.len();
+    let largest = |of: &dyn Fn(usize) -> f64| recordings().map(of).fold(0.0, f64::max);
+    let reading = |column: Column, position: usize| Reading {
+        column,
+        spread: specimen.spread(position),
+    };
+    let (first, model) = (specimen.channels.len(), &specimen.model);
+    let known = specimen.quantities().into_iter().filter_map(|(quantity, switches)| {
+        let series: Vec<Vec<f64>> = recordings()
+            .filter_map(|r| specimen.quantity(&quantity, r, &specimen.as_stated[r]))
+            .collect();
+        let range = excitation::CoSimulation::range_of(series.iter().map(Vec::as_slice))?;
+        Some(Known {
+            quantity,
+            range,
+            switches,
+        })
+    });
+    let excitation = excitation::CoSimulation {
+        outputs: (specimen.channels.iter().enumerate())
+            .map(|(k, channel)| {
+                let reading = reading(channel.column.clone(), k);
+                // What hardly moves may still be wrong by its noise.
+                let spread = reading.spread.max(channel.noise);
+                Reading { spread, ..reading }
+            })
+            .collect(),
+        inputs: (specimen.inputs.iter().enumerate())
+            .filter(|(_, input)| !input.switches)
+            .map(|(k, input)| reading(Column::named(input.name.clone()), first + k))
+            .filter(|reading| reading.spread > 0.0)
+            .collect(),
+        quantities: known.collect(),
+        tunable: (model.calibrated().into_iter())
+            .filter_map(|(calibrated, _)| match calibrated {
+                Calibrated::Part(name) | Calibrated::Setting(name) => Some(name.to_owned()),
+                Calibrated::InputOffset(_) | Calibrated::OutputOffset(_) => None,
+            })
+            .filter(|name| model.simulator.variables()[model.variable(name)].role == Role::TunableParameter)
+            .collect(),
+        duration_s: largest(&|r| specimen.times[r].samples_s.last().copied().unwrap_or(0.0)),
+        interval_s: largest(&|r| specimen.recordings[r].interval_s()),
+    };
+    let of_effect = |id: EffectId| {
+        of(id)
+            .in_co_simulation()
+            .map_or(vec![], |effect| effect.candidates(&model.map.effects, &excitation))
+    };
+    let physics = ALL.iter().copied().filter(|id| id.is_physics());
+    (physics.chain([EffectId::Unlisted]).chain(sensor::IN_ORDER))
+        .flat_map(of_effect)
+        .collect()
+}
+
+impl Specimen for CoSimulation {
+    fn kind(&self) -> SpecimenKind {
+        SpecimenKind::CoSimulation
+    }
+
+    fn recordings(&self) -> &[Recording] {
+        &self.recordings
+    }
+
+    fn channels(&self) -> &[Channel] {
+        &self.channels
+    }
+
+    fn measured(&self, recording: usize, channel: usize) -> &[f64] {
+        // A model may have no input, so that the compared columns are the first.
+        &self.recordings[recording].columns[channel]
+    }
+
+    fn calibration(&self) -> &[Parameter] {
+        &self.calibration
+    }
+
+    fn candidates(&self) -> &[Candidate] {
+        &self.candidates
+    }
+
+    fn simulate(&self, hypothesis: &Hypothesis, recording: usize) -> Result<Series, String> {
+        let course = self.course(hypothesis, &self.corrections(hypothesis), recording);
+        let outputs = (self.model.simulator).simulate(&self.recordings[recording].name, &course)?;
+        Ok((self.model.map.outputs.values().zip(outputs))
+            .map(|(output, values)| {
+                let factor = output.factor.unwrap_or(1.0);
+                let mut values = self.times[recording].at_samples(&values);
+                values.iter_mut().for_each(|value| *value *= factor);
+                values
+            })
+            .collect())
+    }
+
+    fn observe(&self, hypothesis: &Hypothesis, recording: usize, truth: &Series) -> Series {
+        let corrections = self.corrections(hypothesis);
+        let time_s = &self.recordings[recording].time_s;
+        (self.channels.iter().zip(self.model.map.outputs.values()).zip(truth))
+            .map(|((channel, output), truth_of_channel)| {
+                let mut shown = truth_of_channel.clone();
+                for law in corrections.laws_at(Target::Output, channel.column.as_str()) {
+                    if let Some(added) = self.law(law, recording, truth) {
+                        shown.iter_mut().zip(added).for_each(|(value, added)| *value += added);
+                    }
+                }
+                corrections.show(channel.column.as_str(), time_s, &mut shown);
+                let off = (self.model).deviation(Calibrated::OutputOffset(&output.column), hypothesis);
+                let offset = output.offset.unwrap_or(0.0) + off;
+                shown.iter_mut().for_each(|value| *value += offset);
+                shown
+            })
+            .collect()
+    }
+
+    fn model_toml(&self, hypothesis: &Hypothesis) -> Result<String, String> {
+        let mut map = self.model.map.clone();
+        for (name, setting) in &mut map.parameters {
+            // A value that is taken from each recording stays taken from it.
+            if setting.first_of.is_none() {
+                let stated = self.model.stated(name);
+                setting.value = stated.map(|value| self.model.calibrated_value(name, value, hypothesis));
+            }
+        }
+        let moved = |offset: &mut Option<f64>, by: f64| {
+            if by != 0.0 {
+                *offset = Some(offset.unwrap_or(0.0) + by);
+            }
+        };
+        for (name, input) in &mut map.inputs {
+            let by = self.model.deviation(Calibrated::InputOffset(name), hypothesis);
+            moved(&mut input.offset, by);
+        }
+        for output in map.outputs.values_mut() {
+            let by = self
+                .model
+                .deviation(Calibrated::OutputOffset(&output.column), hypothesis);
+            moved(&mut output.offset, by);
+        }
+        map.effects = self.corrections(hypothesis);
+        toml::to_string_pretty(&map).map_err(|error| error.to_string())
+    }
+
+    fn model_file(&self) -> &'static str {
+        MAP_FILE
+    }
+
+    fn states(&self, recording: usize) -> Vec<StateSeries> {
+        let simulated = self.as_stated.get(recording).map_or(&[][..], Vec::as_slice);
+        (self.shown_quantities().into_iter())
+            .filter_map(|(quantity, _)| {
+                let state = state(&quantity)?;
+                Some(StateSeries::new(state, self.quantity(&quantity, recording, simulated)?))
+            })
+            .collect()
+    }
+
+    fn inputs_in_words(&self) -> &'static str {
+        "the inputs that its map names"
+    }
+
+    fn law(&self, candidate: usize, values: &[f64]) -> Option<serde_json::Value> {
+        let candidate = &self.candidates[candidate];
+        let mut corrections = Corrections::default();
+        (of(candidate.id).in_co_simulation()?).put(&mut corrections, candidate, values);
+        serde_json::to_value(corrections.law.first()?).ok()
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let map = &self.model.map;
+        (self.model.simulator.variables().iter())
+            .filter(|v| {
+                v.role == Role::Input && !map.inputs.contains_key(&v.name) && !map.parameters.contains_key(&v.name)
+            })
+            .map(|v| {
+                format!(
+                    "The input {} of the model is not in the map and keeps its value at the start.",
+                    v.name
+                )
+            })
+            .collect()
+    }
+
+    fn nearest_channels(&self, place: &Place) -> Vec<Column> {
+        match &place.site {
+            Site::Sensor(column) | Site::Output(column) => {
+                let compared = self.channels.iter().any(|channel| channel.column == *column);
+                compared.then(|| column.clone()).into_iter().collect()
+            }
+            _ => vec![],
+        }
+    }
+}
+
+/// A quantity as a state; none for the time, which everything has.
+fn state(quantity: &Quantity) -> Option<State> {
+    let text = |before: &str, name: &str, per_second: &str| {
+        let column = Column::named(name.to_owned());
+        let unit = match (column.unit(), per_second) {
+            ("", "") => String::new(),
+            ("", _) => ", 1/s".to_owned(),
+            (unit, _) => format!(", {unit}{per_second}"),
+        };
+        format!("{before}{}{unit}", column.quantity())
+    };
+    match quantity {
+        Quantity::Time | Quantity::SinceTurned(..) => None,
+        Quantity::Input(name) => Some(State::named(&text("", name, ""))),
+        Quantity::Rate(name) => Some(State::named(&text("rate of ", name, "/s"))),
+        Quantity::Simulated(name) => Some(State::simulated(&text("", name, ""))),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -19,6 +19,7 @@
 //! | [`calibration`] | the table of what can be calibrated, and the rule by which a written value is accepted |
 //! | `memory` | the addresses that a tool sees |
 //! | `daq` | lists of measurements that are sent by themselves |
+//! | `a2l` | the description file for tools, of the same tables (feature `a2l`) |
 //! | [`slave`] | the state machine of the protocol |
 //!
 //! Source: ASAM MCD-1 XCP, protocol layer specification (commands, errors, DAQ) and transport layer specification for CAN, versions
@@ -29,10 +30,16 @@
 //! [`Builder::build`](oleo_controller::Builder::build), and that [`Node::reconfigure`](oleo_controller::Node) takes only while all
 //! valves are closed. The work of a tick is bounded: one command, and at most [`slave::MOST_SENT`] frames.
 //!
-//! The crate needs no std, no heap and no clock, and never panics (`tests/hostile_frames.rs`). The image for the board does not
+//! The crate needs no std (but for the feature `a2l`), no heap and no clock, and never panics (`tests/hostile_frames.rs`). The image for the board does not
 //! contain it: see `docs/xcp.md`.
 #![no_std]
 #![forbid(unsafe_code)]
+
+#[cfg(feature = "a2l")]
+extern crate std;
+
+#[cfg(feature = "a2l")]
+pub mod a2l;
 
 pub mod bus;
 pub mod calibration;

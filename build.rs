@@ -4,12 +4,13 @@ use std::path::Path;
 use std::process::Command;
 
 /// What the program is made of.
-const SOURCES: [&str; 9] = [
+const SOURCES: [&str; 10] = [
     "build.rs",
     "Cargo.lock",
     "src",
     "interface/src",
     "controller/src",
+    "xcp/src",
     "plant-sim/src",
     "hil/src",
     "diagnose/src",

@@ -49,6 +49,7 @@ enum Command {
     Convert(commands::convert::Args),
     Bench(commands::bench::Args),
     Fmu(commands::fmu::Args),
+    A2l(commands::a2l::Args),
     Seal(commands::seal::Args),
     /// Simulates an FMU for the process that started this one, over pipes
     #[cfg(feature = "fmu")]
@@ -72,6 +73,7 @@ fn main() -> ExitCode {
             Command::Convert(args) => commands::convert::run(&args),
             Command::Bench(args) => commands::bench::run(&args),
             Command::Fmu(args) => commands::fmu::run(args),
+            Command::A2l(args) => commands::a2l::run(&args),
             Command::Seal(args) => commands::seal::run(args),
             #[cfg(feature = "fmu")]
             Command::FmuChild => Ok(oleo_fmu_import::serve()),

@@ -8,10 +8,12 @@ use std::process::Command;
 use support::run;
 
 /// Pages with commands.
-const PAGES: [&str; 8] = [
+const PAGES: [&str; 10] = [
     "README.md",
     "docs/start.md",
     "docs/hil.md",
+    "docs/bench.md",
+    "docs/xcp.md",
     "docs/diagnose.md",
     "docs/fmu.md",
     "docs/handling.md",

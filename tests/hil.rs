@@ -355,6 +355,13 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         (&["--bus", "slcan:tcp:127.0.0.1:1"], "--node"),
         (&["--node", "plant"], "--bus socketcan"),
         (&["--node", "driver"], "plant"),
+        (&["--xcp"], "--bus socketcan:IFACE"),
+        (
+            &["--xcp", "--node", "plant", "--bus", "socketcan:vcan0"],
+            "controller's node",
+        ),
+        (&["--xcp", "250000"], "500000, 1000000"),
+        (&["--xcp-write"], "--xcp"),
         (&["--threads", "3"], "--threads"),
         (&["--rod", "flat"], "--road"),
         (&["--handling", &path("strut.toml")], "strut.toml"),

@@ -39,6 +39,10 @@ const NOTHING_RECEIVED: PerSensorMessage<Receiver> = PerSensorMessage {
 const STATUS_TICKS: u32 = STATUS.period_ms / TICK_MS;
 const BOARD_TICKS: u32 = BOARD.period_ms / TICK_MS;
 
+/// Number of ticks after which a valve that was commanded closed is closed, whatever it did before (report: at most 90 ms).
+#[cfg(feature = "calibration")]
+const CLOSED_TICKS: u8 = (90 / TICK_MS + 1) as u8;
+
 /// What has been seen on the bus, for statistics. The counters wrap.
 ///
 /// ```
@@ -101,6 +105,9 @@ pub struct Node {
     board_state: Option<BoardMessage>,
     board_countdown: u32,
     counters: BusCounters,
+    /// Ticks since a valve was commanded open, or a bend was handled; it saturates.
+    #[cfg(feature = "calibration")]
+    calm_ticks: u8,
 }
 
 impl Node {
@@ -121,6 +128,8 @@ impl Node {
             board_state: None,
             board_countdown: 0,
             counters: BusCounters::default(),
+            #[cfg(feature = "calibration")]
+            calm_ticks: 0,
         }
     }
 
@@ -200,6 +209,11 @@ impl Node {
         self.end_of_reception();
         let outputs = tick(&self.configuration, &mut self.state, &self.inputs);
         self.inputs.foreign_sender = false;
+        #[cfg(feature = "calibration")]
+        {
+            let calm = outputs.command == crate::ValveCommand::SAFE && !outputs.handling && !outputs.rollover_guard;
+            self.calm_ticks = if calm { self.calm_ticks.saturating_add(1) } else { 0 };
+        }
 
         let mut send = |contract: &Contract, mut data: [u8; FRAME_BYTES], counter: &mut Counter| {
             counter.protect(contract, &mut data);
@@ -275,6 +289,34 @@ impl Node {
                 None => {}
             }
         }
+    }
+
+    /// What the last tick was told: for a tool that looks on.
+    #[inline]
+    pub fn inputs(&self) -> &Inputs {
+        &self.inputs
+    }
+
+    /// Tick of the plant, modulo 256, of which the last displacements are.
+    #[inline]
+    pub fn plant_tick(&self) -> u8 {
+        self.echo_tick
+    }
+
+    /// Whether another tuning may take effect now: all valves are closed, as long as the slowest needs, and no bend is handled.
+    #[cfg(feature = "calibration")]
+    pub fn may_reconfigure(&self) -> bool {
+        self.calm_ticks >= CLOSED_TICKS
+    }
+
+    /// Takes another configuration from the next tick on, if [`Self::may_reconfigure`]. The state goes on. Returns whether it was taken.
+    #[cfg(feature = "calibration")]
+    pub fn reconfigure(&mut self, configuration: Configuration) -> bool {
+        let may = self.may_reconfigure();
+        if may {
+            self.configuration = configuration;
+        }
+        may
     }
 
     /// Bus statistics since the start.
@@ -376,6 +418,26 @@ mod tests {
             assert_eq!(self.plant.end_of_tick(), self.plant.output().command());
             (outputs, status)
         }
+    }
+
+    #[cfg(all(feature = "calibration", feature = "comparison"))]
+    #[test]
+    fn another_tuning_waits_until_every_valve_is_closed() {
+        let soft = Configuration::defender110().with_strategy(crate::Strategy::AlwaysSoft);
+        let stiff = Configuration::defender110().with_strategy(crate::Strategy::AlwaysStiff);
+        let mut pair = Pair::settled();
+        assert!(pair.node.reconfigure(soft), "a smooth road: all valves are closed");
+        let open = (0..400).any(|_| pair.step(|_| {}, |_| true).0.command == crate::ValveCommand::SOFT);
+        assert!(open && !pair.node.may_reconfigure());
+        assert!(!pair.node.reconfigure(stiff), "every valve is open");
+        // Silence closes them; a valve needs up to 90 ms for it.
+        let mut closed = 0;
+        while !pair.node.may_reconfigure() {
+            closed += u32::from(pair.step(|_| {}, |_| false).0.command == crate::ValveCommand::SAFE);
+            assert!(closed < 100);
+        }
+        assert_eq!(closed, 19);
+        assert!(pair.node.reconfigure(stiff));
     }
 
     #[test]

@@ -5,10 +5,11 @@
 
 use std::time::Duration;
 
-use oleo_controller::{Configuration, FaultCode, Mode, Node};
+use oleo_controller::{Configuration, FaultCode, Mode, Node, Outputs};
 
 use crate::Frame;
 use crate::bus::{Bus, BusCounters, BusError, Trace};
+use crate::companion::Companion;
 use crate::deadline::Deadline;
 use crate::newcomer::Newcomer;
 use crate::scenario::{Fault, FaultKind};
@@ -31,6 +32,7 @@ pub enum Heard {
 pub struct ControllerNode<B> {
     bus: Trace<B>,
     node: Node,
+    companion: Option<Box<dyn Companion>>,
     configuration: Configuration,
     /// Faults in which this node restarts.
     restarts: Vec<Fault>,
@@ -56,6 +58,7 @@ impl<B: Bus> ControllerNode<B> {
         Self {
             bus: Trace::counting(bus),
             node: Node::new(configuration),
+            companion: None,
             configuration,
             restarts: restarts.copied().collect(),
             e2e_errors_before_restart: 0,
@@ -69,6 +72,11 @@ impl<B: Bus> ControllerNode<B> {
             plant_sent: 0,
             accepted: 0,
         }
+    }
+
+    /// Serves something else on the same bus.
+    pub fn serve(&mut self, companion: Box<dyn Companion>) {
+        self.companion = Some(companion);
     }
 
     /// Takes part in a session whose plant is another process.
@@ -118,6 +126,13 @@ impl<B: Bus> ControllerNode<B> {
     }
 
     fn take(&mut self, frame: &Frame) {
+        if self
+            .companion
+            .as_mut()
+            .is_some_and(|companion| companion.receive(frame))
+        {
+            return;
+        }
         if let Some(id) = frame.standard_id() {
             self.node.receive(id, frame.data());
         }
@@ -144,6 +159,9 @@ impl<B: Bus> ControllerNode<B> {
                 self.e2e_errors_before_restart = self.e2e_errors();
                 self.node = Node::new(self.configuration);
                 self.accepted = 0;
+                if let Some(companion) = &mut self.companion {
+                    companion.restart();
+                }
             }
             self.words.push(0);
             return Ok(());
@@ -161,7 +179,21 @@ impl<B: Bus> ControllerNode<B> {
         for frame in frames {
             self.bus.send(&frame.into())?;
         }
-        Ok(())
+        self.accompany(&outputs)
+    }
+
+    /// Lets the companion look at the tick. Nothing waits for its frames: what the bus does not take at once is left out.
+    fn accompany(&mut self, outputs: &Outputs) -> Result<(), BusError> {
+        let Some(companion) = &mut self.companion else {
+            return Ok(());
+        };
+        let mut offered = Ok(true);
+        companion.end_of_tick(self.tick, &mut self.node, outputs, &mut |frame| {
+            if offered.is_ok() {
+                offered = self.bus.offer(&frame);
+            }
+        });
+        offered.map(drop)
     }
 
     /// Tells the plant that this tick is answered.

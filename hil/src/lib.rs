@@ -19,6 +19,7 @@
 //! * [`metrics`] and [`output`] turn a recording into figures and files; [`bit_timing`] computes when a wire would have carried each
 //!   frame.
 //! * [`strut_recording`] gives a run as a recording of one strut, for a diagnosis.
+//! * [`companion`] is what else the controller's node serves on its bus: XCP, where the program was built with it (`xcp`).
 //! * [`drive`] drives a vehicle without a bus, with the controller called directly.
 //! * [`logs`] reads the frames of logs in any format. [`drive_log`] makes the drives of a vehicle of messages of our own database, and
 //!   `signal_log` (feature `logs`) of those of any other.
@@ -27,6 +28,7 @@
 pub mod bit_timing;
 pub mod bus;
 pub mod clock;
+pub mod companion;
 pub mod comparison;
 pub mod controller_node;
 mod deadline;
@@ -54,6 +56,8 @@ pub mod strut_recording;
 pub mod sync;
 pub mod time_series;
 pub mod vehicle;
+#[cfg(feature = "xcp")]
+pub mod xcp;
 
 pub use frame::Frame;
 pub use scenario::Scenario;

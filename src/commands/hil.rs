@@ -1,6 +1,7 @@
 //! `oleo hil`: reads the options and the scenario, runs them with `oleo_hil`, and writes the results.
 
 mod record;
+mod xcp;
 
 use std::io::Write as _;
 use std::path::PathBuf;
@@ -10,6 +11,7 @@ use std::str::FromStr;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use oleo_controller::{DamperPolicy, FaultCode, Mode, Strategy};
 use oleo_hil::bus::BusAddress;
+use oleo_hil::companion::Companion;
 use oleo_hil::metrics::Metrics;
 use oleo_hil::output::{self, Summary};
 use oleo_hil::record::command_hash;
@@ -24,6 +26,7 @@ use oleo_report::{Column, OutputDirectory, Progress, Table, significant};
 use strum::VariantNames;
 
 use self::record::{Recorded, record, recorded};
+use self::xcp::XcpArgs;
 use super::course_arguments::{CourseArgs, option_failure};
 use super::show::{DBC, scenarios};
 use crate::failure::Failure;
@@ -45,6 +48,7 @@ Examples:
   oleo hil --record rear-left --out run                     record a strut, for oleo diagnose run/rear-left
   oleo hil --bus socketcan:vcan0                            send the frames over SocketCAN
   oleo hil --clock realtime --duration-s 5                  run in real time
+  oleo hil --bus socketcan:vcan0 --clock realtime --xcp     let a calibration tool read the controller
   oleo hil --firmware oleo-firmware                         run the controller as an image on an emulated board
   oleo hil --node controller --bus socketcan:vcan0          run the two nodes as two processes,
   oleo hil --node plant --bus socketcan:vcan0 --out run     which may be started in either order
@@ -116,6 +120,8 @@ pub struct Args {
     #[arg(long, value_name = "CORNER|all", value_parser = recorded, conflicts_with = "no_out")]
     record: Option<Recorded>,
     #[command(flatten)]
+    xcp: XcpArgs,
+    #[command(flatten)]
     results: ResultsArgs,
 }
 
@@ -129,13 +135,14 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     if args.firmware.is_some() {
         suits_image(&scenario)?;
     }
+    let companion = args.xcp.companion(&scenario, args.node)?;
     if args.node == Some(Role::Controller) {
         if args.record.is_some() {
             return Err(Failure::new(
                 "--record: the controller's node has no strut; give it to the plant's node",
             ));
         }
-        return controller(&args, &scenario);
+        return controller(&args, &scenario, companion);
     }
     let name = format!("hil-{}", scenario.name);
     let staged = args.results.stage("oleo hil", &name, inputs(&args, &scenario))?;
@@ -162,7 +169,7 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
             &mut || waiting_for(Role::Controller, &scenario),
             &mut watch,
         )?,
-        (None, None) => run::both(&scenario, vehicle, args.threads.into(), &mut watch)?,
+        (None, None) => run::both_with(&scenario, vehicle, args.threads.into(), companion, &mut watch)?,
     };
     drop(progress);
     report(&args, &scenario, &parameters, &outcome, road_measured_m, staged)
@@ -299,12 +306,12 @@ fn waiting_for(partner: Role, scenario: &Scenario) {
 }
 
 /// Runs the controller's node alone. Its results go to standard output and to `summary.json`.
-fn controller(args: &Args, scenario: &Scenario) -> Result<ExitCode, Failure> {
+fn controller(args: &Args, scenario: &Scenario, companion: Option<Box<dyn Companion>>) -> Result<ExitCode, Failure> {
     let name = format!("hil-{}-controller", scenario.name);
     let mut staged = args
         .results
         .stage("oleo hil --node controller", &name, inputs(args, scenario))?;
-    let ended = run::controller_alone(scenario, &mut || waiting_for(Role::Plant, scenario))?;
+    let ended = run::controller_alone(scenario, companion, &mut || waiting_for(Role::Plant, scenario))?;
     let mut table = Table::new([Column::text("Quantity"), Column::number("Value")]);
     table.row(["node".to_owned(), Role::Controller.name().to_owned()]);
     table.row(["ticks".to_owned(), ended.words.len().to_string()]);

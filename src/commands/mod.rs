@@ -1,6 +1,7 @@
 //! One file a command: `pub struct Args` (clap, with units and an example in the help) and
 //! `pub fn run(args: Args) -> Result<ExitCode, Failure>`.
 
+pub mod a2l;
 pub mod bench;
 mod column_map;
 pub mod compare;

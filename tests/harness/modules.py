@@ -25,6 +25,7 @@ import tomllib
 ORDER = [
     {"oleo-interface"},
     {"oleo-controller", "oleo-plant-sim", "oleo-report"},
+    {"oleo-xcp"},
     {"oleo-hil", "oleo-diagnose", "oleo-firmware", "oleo-bench", "oleo-fmu-import"},
     {"oleo-fmu"},
     {"oleo", "oleo-fuzz", "oleo-python"},

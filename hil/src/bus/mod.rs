@@ -100,6 +100,15 @@ pub trait Bus: Send {
     /// The bus fails or is closed.
     fn send(&mut self, frame: &Frame) -> Result<(), BusError>;
 
+    /// Sends a frame if there is room for it at once, and says whether there was. For frames that may be left out, and for which nothing may
+    /// wait.
+    ///
+    /// # Errors
+    /// The bus fails or is closed.
+    fn offer(&mut self, frame: &Frame) -> Result<bool, BusError> {
+        self.send(frame).map(|()| true)
+    }
+
     /// The next frame, or `None` if none comes within `wait`.
     ///
     /// # Errors
@@ -119,6 +128,10 @@ impl<B: Bus + ?Sized> Bus for &mut B {
         (**self).send(frame)
     }
 
+    fn offer(&mut self, frame: &Frame) -> Result<bool, BusError> {
+        (**self).offer(frame)
+    }
+
     fn receive(&mut self, wait: Duration) -> Result<Option<Frame>, BusError> {
         (**self).receive(wait)
     }
@@ -135,6 +148,10 @@ impl<B: Bus + ?Sized> Bus for Box<B> {
 
     fn send(&mut self, frame: &Frame) -> Result<(), BusError> {
         (**self).send(frame)
+    }
+
+    fn offer(&mut self, frame: &Frame) -> Result<bool, BusError> {
+        (**self).offer(frame)
     }
 
     fn receive(&mut self, wait: Duration) -> Result<Option<Frame>, BusError> {

@@ -175,6 +175,16 @@ impl Bus for SerialLine {
         Ok(())
     }
 
+    fn offer(&mut self, frame: &Frame) -> Result<bool, BusError> {
+        // A line that has begun is finished, so all that can be asked is whether the other end takes bytes at all.
+        if self.ready(Duration::ZERO, PollFlags::POLLOUT)? {
+            self.send(frame).map(|()| true)
+        } else {
+            self.counters.send_lost += 1;
+            Ok(false)
+        }
+    }
+
     fn receive(&mut self, wait: Duration) -> Result<Option<Frame>, BusError> {
         let deadline = Instant::now() + wait;
         loop {

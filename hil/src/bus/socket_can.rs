@@ -96,6 +96,41 @@ impl SocketCan {
         }
     }
 
+    /// Sends a frame, and waits at most so long for a full queue. Returns whether it was sent.
+    fn write(&mut self, frame: &Frame, patience: Duration) -> Result<bool, BusError> {
+        let whole = if frame.is_remote() {
+            CanFrame::new_remote(frame.id(), frame.dlc())
+        } else {
+            CanFrame::new(frame.id(), frame.data())
+        };
+        let Some(whole) = whole else { return Ok(true) };
+        let started = Instant::now();
+        loop {
+            let Err(error) = self.socket.write_frame(&whole) else {
+                self.counters.sent += 1;
+                return Ok(true);
+            };
+            match error.raw_os_error().map(Errno::from_raw) {
+                Some(Errno::ENOBUFS | Errno::EAGAIN) if started.elapsed() < patience => {
+                    self.counters.back_offs += 1;
+                    std::thread::sleep(BACK_OFF);
+                }
+                Some(Errno::ENOBUFS | Errno::EAGAIN) => {
+                    self.counters.send_lost += 1;
+                    return Ok(false);
+                }
+                Some(Errno::EINTR) => {}
+                _ => {
+                    return Err(BusError::Io {
+                        bus: self.name.clone(),
+                        action: "sending",
+                        source: error,
+                    });
+                }
+            }
+        }
+    }
+
     /// A frame that has already arrived, if there is one.
     fn try_receive(&mut self) -> Result<Option<Frame>, BusError> {
         loop {
@@ -133,37 +168,11 @@ impl SocketCan {
 
 impl Bus for SocketCan {
     fn send(&mut self, frame: &Frame) -> Result<(), BusError> {
-        let whole = if frame.is_remote() {
-            CanFrame::new_remote(frame.id(), frame.dlc())
-        } else {
-            CanFrame::new(frame.id(), frame.data())
-        };
-        let Some(whole) = whole else { return Ok(()) };
-        let started = Instant::now();
-        loop {
-            let Err(error) = self.socket.write_frame(&whole) else {
-                self.counters.sent += 1;
-                return Ok(());
-            };
-            match error.raw_os_error().map(Errno::from_raw) {
-                Some(Errno::ENOBUFS | Errno::EAGAIN) if started.elapsed() < PATIENCE => {
-                    self.counters.back_offs += 1;
-                    std::thread::sleep(BACK_OFF);
-                }
-                Some(Errno::ENOBUFS | Errno::EAGAIN) => {
-                    self.counters.send_lost += 1;
-                    return Ok(());
-                }
-                Some(Errno::EINTR) => {}
-                _ => {
-                    return Err(BusError::Io {
-                        bus: self.name.clone(),
-                        action: "sending",
-                        source: error,
-                    });
-                }
-            }
-        }
+        self.write(frame, PATIENCE).map(drop)
+    }
+
+    fn offer(&mut self, frame: &Frame) -> Result<bool, BusError> {
+        self.write(frame, Duration::ZERO)
     }
 
     fn receive(&mut self, wait: Duration) -> Result<Option<Frame>, BusError> {

@@ -130,6 +130,14 @@ impl<B: Bus> Bus for Trace<B> {
         Ok(())
     }
 
+    fn offer(&mut self, frame: &Frame) -> Result<bool, BusError> {
+        let sent = self.inner.offer(frame)?;
+        if sent {
+            self.note(Direction::Sent, frame);
+        }
+        Ok(sent)
+    }
+
     fn receive(&mut self, wait: Duration) -> Result<Option<Frame>, BusError> {
         let frame = self.inner.receive(wait)?;
         if let Some(frame) = &frame {

@@ -29,6 +29,7 @@ use crc::{CRC_16_IBM_3740, Crc};
 use oleo_controller::{Builder, Configuration};
 
 use crate::bus::{Bus, BusAddress, Compared, in_process_pair};
+use crate::companion::Companion;
 use crate::controller_node::{ControllerNode, Heard};
 use crate::emulator::Emulator;
 use crate::handshake::handshake;
@@ -44,18 +45,26 @@ pub use plant::{vehicle, vehicle_on};
 pub use plant_loop::Watch;
 use waiting::{CONTROLLER_PHASE, PATIENCE, TICK, partner_timeout};
 
-/// The controller's configuration for a scenario: the vehicle as its files describe it, without its load.
+/// What the controller is built from in a scenario: the vehicle as its files describe it, without its load.
 ///
 /// # Errors
-/// A file is missing or wrong, or a value is outside the range for which the controller was designed.
-pub fn configuration(scenario: &Scenario) -> Result<Configuration, RunError> {
+/// A file is missing or wrong.
+pub fn builder(scenario: &Scenario) -> Result<Builder, RunError> {
     let mut builder = Builder {
         vehicle: Parameters::read(scenario)?.description(),
         strategy: scenario.strategy,
         ..Builder::default()
     };
     builder.tuning.strategy.ride_handling.dampers.policy = scenario.damper_policy;
-    Ok(builder.build()?)
+    Ok(builder)
+}
+
+/// The controller's configuration for a scenario.
+///
+/// # Errors
+/// A file is missing or wrong, or a value is outside the range for which the controller was designed.
+pub fn configuration(scenario: &Scenario) -> Result<Configuration, RunError> {
+    Ok(builder(scenario)?.build()?)
 }
 
 /// Runs both nodes in this process, in `threads` (1 or 2; real time always takes 2).
@@ -63,6 +72,20 @@ pub fn configuration(scenario: &Scenario) -> Result<Configuration, RunError> {
 /// # Errors
 /// See [`RunError`].
 pub fn both(scenario: &Scenario, vehicle: Vehicle, threads: usize, watch: Watch) -> Result<Outcome, RunError> {
+    both_with(scenario, vehicle, threads, None, watch)
+}
+
+/// The same; the controller's node also serves something else.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn both_with(
+    scenario: &Scenario,
+    vehicle: Vehicle,
+    threads: usize,
+    companion: Option<Box<dyn Companion>>,
+    watch: Watch,
+) -> Result<Outcome, RunError> {
     let (plant_end, controller_end) = both_ends(scenario)?;
     let real_time = scenario.clock == Clock::RealTime;
     let mut plant = PlantNode::new(plant_end, scenario, vehicle, real_time);
@@ -72,6 +95,9 @@ pub fn both(scenario: &Scenario, vehicle: Vehicle, threads: usize, watch: Watch)
         &scenario.faults,
         scenario.ticks as usize,
     );
+    if let Some(companion) = companion {
+        controller.serve(companion);
+    }
     let started = Instant::now();
     let mut lateness = Vec::new();
     let end = if real_time {
@@ -144,14 +170,21 @@ pub fn with_firmware(scenario: &Scenario, vehicle: Vehicle, image: &Path, watch:
     Ok(end.outcome(plant, Vec::new(), started))
 }
 
-/// Runs the controller; the plant is another process and says when it is over. `waiting` is called once if that takes more than a second
-/// to answer.
+/// Runs the controller, and what it serves beside; the plant is another process and says when it is over. `waiting` is called once if that
+/// takes more than a second to answer.
 ///
 /// # Errors
 /// See [`RunError`].
-pub fn controller_alone(scenario: &Scenario, waiting: &mut dyn FnMut()) -> Result<ControllerOutcome, RunError> {
+pub fn controller_alone(
+    scenario: &Scenario,
+    companion: Option<Box<dyn Companion>>,
+    waiting: &mut dyn FnMut(),
+) -> Result<ControllerOutcome, RunError> {
     let bus = scenario.bus.open()?.ok_or(RunError::NoOtherProcess)?;
     let mut controller = ControllerNode::new(bus, configuration(scenario)?, &scenario.faults, scenario.ticks as usize);
+    if let Some(companion) = companion {
+        controller.serve(companion);
+    }
     let name = scenario.bus.to_string();
     let session = handshake(
         controller.bus(),

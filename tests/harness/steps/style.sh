@@ -21,7 +21,7 @@ if cargo machete --version > /dev/null 2>&1 || {
     # Without optimisation: building takes longer than running.
     CARGO_PROFILE_DEV_DEBUG=0 cargo install --quiet --debug --locked cargo-machete > "$OLEO_LOGS/cargo-machete.log" 2>&1
 }; then
-    for package in "$copy/oleo" interface controller plant-sim hil diagnose report python fmu fmu-import "$copy/firmware" fuzz; do
+    for package in "$copy/oleo" interface controller xcp plant-sim hil diagnose report python fmu fmu-import "$copy/firmware" fuzz; do
         check "no unused dependency in $(basename "$package")" cargo machete "$package"
     done
 else

@@ -15,14 +15,18 @@ fn writable() -> Pair {
 }
 
 fn write(pair: &mut Pair, name: &str, value: f32) -> Result<(), u8> {
-    let quantity = calibration::quantities()
-        .find(|quantity| quantity.name == name)
-        .unwrap();
-    let [a, b, c, d] = quantity.address.to_le_bytes();
+    let [a, b, c, d] = address_of(name).to_le_bytes();
     pair.ok(&[0xF6, 0, 0, 0, a, b, c, d]);
     let [a, b, c, d] = value.to_le_bytes();
     let answer = pair.command(&[0xF0, 4, a, b, c, d]).unwrap();
     if answer[0] == 0xFF { Ok(()) } else { Err(answer[1]) }
+}
+
+fn address_of(name: &str) -> u32 {
+    calibration::quantities()
+        .find(|quantity| quantity.name == name)
+        .unwrap()
+        .address
 }
 
 const SHIFT: &str = "tuning.spring.trapped_shift_m";
@@ -36,7 +40,7 @@ fn a_permitted_value_becomes_the_configuration_that_a_file_would_make() {
     builder.tuning.spring.trapped_shift_m = 0.011;
     assert_eq!(pair.slave.take_changed(), Some(builder.build().unwrap()));
     assert_eq!(pair.slave.take_changed(), None);
-    assert_eq!(pair.upload(0x2000 + 8, 4), 0.011_f32.to_le_bytes());
+    assert_eq!(pair.upload(address_of(SHIFT), 4), 0.011_f32.to_le_bytes());
     assert_eq!(pair.slave.counters().written, 1);
 }
 
@@ -47,7 +51,7 @@ fn a_value_outside_of_its_range_changes_nothing() {
         assert_eq!(write(&mut pair, SHIFT, value), Err(0x22), "{value}");
         assert_eq!(pair.slave.take_changed(), None);
     }
-    assert_eq!(pair.upload(0x2000 + 8, 4), 0.008_f32.to_le_bytes());
+    assert_eq!(pair.upload(address_of(SHIFT), 4), 0.008_f32.to_le_bytes());
 }
 
 #[test]
@@ -77,7 +81,7 @@ fn only_whole_parameters_are_written() {
         (0x2000, 5),
         (0x1000, 4),
         (0x3000, 4),
-        (0x2040, 4),
+        (calibration::ADDRESS + calibration::BYTES as u32, 4),
         (0, 4),
     ] {
         let [a, b, c, d] = address.to_le_bytes();

@@ -8,7 +8,7 @@ use std::process::Command;
 use support::run;
 
 /// Pages with commands.
-const PAGES: [&str; 8] = [
+const PAGES: [&str; 9] = [
     "README.md",
     "docs/start.md",
     "docs/hil.md",
@@ -17,6 +17,7 @@ const PAGES: [&str; 8] = [
     "docs/handling.md",
     "docs/scale.md",
     "docs/performance.md",
+    "docs/viewers.md",
 ];
 
 /// Commands of a page: lines of code that begin with `oleo` or run it with cargo, as words. What follows two spaces or a `#` explains.

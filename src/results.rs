@@ -97,6 +97,11 @@ impl ResultsArgs {
         Ok((folder, self.force))
     }
 
+    /// Whether files that this program did not write may be replaced.
+    pub fn force(&self) -> bool {
+        self.force
+    }
+
     /// The folder of `--out`.
     pub fn out(&self) -> Option<&Path> {
         self.out.as_deref()

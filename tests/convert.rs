@@ -105,7 +105,7 @@ fn what_cannot_be_converted_is_refused_in_one_line() {
     let refused = |arguments: &[&str]| complaint(&run(&[&["convert"], arguments].concat()));
     let log = file("a.log");
     assert!(refused(&[path(&log), path(&log)]).contains("is an input"));
-    assert!(refused(&[path(&log), path(&file("a.mf4"))]).contains("is no format that is written"));
+    assert!(refused(&[path(&log), path(&file("a.blf"))]).contains("is no format that is written"));
     assert!(refused(&[path(&log), path(&file("a.csv"))]).contains("1 frame with other identifiers"));
     assert!(refused(&[path(&file("none.log")), path(&file("b.log"))]).contains("check the path"));
     assert!(refused(&[path(&log), path(&file("b.log")), "--dbc", "a.dbc"]).contains("--signals"));

@@ -8,7 +8,7 @@ use std::process::Command;
 use support::run;
 
 /// Pages with commands.
-const PAGES: [&str; 10] = [
+const PAGES: [&str; 11] = [
     "README.md",
     "docs/start.md",
     "docs/hil.md",
@@ -19,6 +19,7 @@ const PAGES: [&str; 10] = [
     "docs/handling.md",
     "docs/scale.md",
     "docs/performance.md",
+    "docs/viewers.md",
 ];
 
 /// Commands of a page: lines of code that begin with `oleo` or run it with cargo, as words. What follows two spaces or a `#` explains.

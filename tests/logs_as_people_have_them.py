@@ -3,7 +3,7 @@
 
     logs_as_people_have_them.py OLEO FOLDER
 
-OLEO is the binary, FOLDER an empty folder. Needs python-can, asammdf and cantools. The last line is `N passed, N failed`; the exit
+OLEO is the binary, FOLDER an empty folder. Needs python-can, asammdf, cantools and pyarrow. The last line is `N passed, N failed`; the exit
 status is 1 if anything failed, 2 if a package is missing.
 """
 
@@ -21,8 +21,9 @@ try:
     import can
     import cantools
     import numpy
+    import pyarrow.parquet
 except ImportError as error:
-    print(f"logs_as_people_have_them.py: {error}: pip install python-can asammdf cantools", file=sys.stderr)
+    print(f"logs_as_people_have_them.py: {error}: pip install python-can asammdf cantools pyarrow", file=sys.stderr)
     sys.exit(2)
 
 import unsorted_mf4
@@ -146,6 +147,10 @@ def frames_through(messages):
         ("mixed.mf4", "c.log"),
         ("mixed.mf4", "d.asc"),
         ("a.asc", "e.log"),
+        ("mixed.log", "g.mf4"),
+        ("mixed.mf4", "h.mf4"),
+        ("g.mf4", "i.log"),
+        ("h.mf4", "j.asc"),
     ]
     for source, target in ways:
         if source.startswith("mixed"):
@@ -157,6 +162,54 @@ def frames_through(messages):
         check(f"{source} to {target}: the same frames", len(read) == len(mixed) and all(same), f"{len(read)} {sum(same)}")
         late = [abs((b.timestamp - read[0].timestamp) - (a.timestamp - mixed[0].timestamp)) for a, b in zip(mixed, read, strict=False)]
         check(f"{source} to {target}: the same times", max(late) < 2e-6, str(max(late)))
+
+
+def written_mf4(messages):
+    """MDF 4 that `oleo` writes is a bus log to asammdf: with our database it extracts the signals that cantools decodes."""
+    oleo("convert", "drive.log", "written.mf4")
+    check("written.mf4: the same columns, bit for bit", columns("written.mf4")[0] == (FOLDER / "drive.log.csv").read_text())
+    database = cantools.database.load_file(ROOT / "controller/oleo.dbc")
+    expected = {}
+    for message in messages:
+        definition = database.get_message_by_frame_id(message.arbitration_id)
+        signals = definition.decode(message.data, decode_choices=False)
+        expected.setdefault(definition.name, []).append((message.timestamp - messages[0].timestamp, signals))
+    with asammdf.MDF(FOLDER / "written.mf4") as log:
+        begun = log.header.start_time.timestamp()
+        check("written.mf4: begins with the log", abs(begun - messages[0].timestamp) < 2e-6, str(begun))
+        check("written.mf4: frames of a CAN bus", list(log.bus_logging_map["CAN"]) == [1], str(log.bus_logging_map))
+        extracted = log.extract_bus_logging({"CAN": [(ROOT / "controller/oleo.dbc", 0)]}, ignore_value2text_conversion=True)
+        compared = 0
+        for name, readings in expected.items():
+            times = numpy.array([time for time, _ in readings])
+            for signal in readings[0][1]:
+                where = [(group, index) for group, index in extracted.whereis(signal) if f" {name} 0x" in extracted.groups[group].channel_group.comment]
+                found = extracted.get(signal, *where[0], ignore_invalidation_bits=True) if where else None
+                if found is not None and found.samples.dtype.kind == "S":  # the text of a number
+                    found = extracted.get(signal, *where[0], ignore_invalidation_bits=True, raw=True)
+                values = numpy.array([signals[signal] for _, signals in readings], dtype=float)
+                good = found is not None and len(found.samples) == len(values)
+                good = good and numpy.allclose(found.samples.astype(float), values, rtol=1e-12, atol=0)
+                good = good and numpy.max(numpy.abs(found.timestamps - times)) < 2e-6
+                check(f"written.mf4: {name}.{signal} by asammdf as by cantools", good, str(where))
+                compared += len(values)
+        print(f"{compared} values of {sum(len(readings[0][1]) for readings in expected.values())} signals extracted by asammdf from our MDF 4")
+    # One record follows the other in a group, and no block is larger than the standard recommends.
+    blocks = re.findall(rb"##DZ.{20}DT(.).{5}(.{8})", (FOLDER / "written.mf4").read_bytes(), re.DOTALL)
+    check("written.mf4: deflated, transposed blocks", len(blocks) >= 1 and all(kind == b"\x01" for kind, _ in blocks), str(len(blocks)))
+
+
+def columns_for_data_frames():
+    """Parquet has the columns of the CSV file, with its numbers."""
+    oleo("convert", "drive.log", "drive.csv")
+    oleo("convert", "drive.log", "drive.parquet")
+    table = pyarrow.parquet.read_table(FOLDER / "drive.parquet")
+    with open(FOLDER / "drive.csv", newline="") as file:
+        titles, *rows = csv.reader(file)
+    check("drive.parquet: the same columns", table.column_names == titles, str(table.column_names))
+    for title, texts in zip(titles, zip(*rows)):
+        expected = numpy.array([float(text) if text else numpy.nan for text in texts])
+        check(f"drive.parquet: {title}", numpy.array_equal(table[title].to_numpy(), expected, equal_nan=True))
 
 
 def map_of(signal, displacement, pressure, valve):
@@ -277,6 +330,8 @@ OLEO, FOLDER = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).re
 logged = drive()
 drive_columns = own_database(logged)
 frames_through(logged)
+written_mf4(logged)
+columns_for_data_frames()
 own_database_by_map(drive_columns)
 another_database(drive_columns)
 if "--no-diagnosis" not in sys.argv:

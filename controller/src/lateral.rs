@@ -420,7 +420,8 @@ mod tests {
                 .product();
             assert!((front - left).abs() < 1e-5, "{delays}: {front} instead of {left}");
         }
-        assert!(fronts[5] < 0.25 && 0.92_f32.powi(6) > 0.6);
+        // With 0.92 from the beginning, 0.61 would be left after these six delays.
+        assert!(fronts[5] < 0.25);
     }
 
     #[test]

@@ -21,6 +21,7 @@
 //! * [`strut_recording`] gives a run as a recording of one strut, for a diagnosis.
 //! * [`companion`] is what else the controller's node serves on its bus: XCP, where the program was built with it (`xcp`).
 //! * [`drive`] drives a vehicle without a bus, with the controller called directly.
+//! * [`telemetry`] gives a run as messages for viewers, in a file or live.
 //! * [`logs`] reads the frames of logs in any format. [`drive_log`] makes the drives of a vehicle of messages of our own database, and
 //!   `signal_log` (feature `logs`) of those of any other.
 #![forbid(unsafe_code)]
@@ -54,6 +55,7 @@ pub mod scenario;
 pub mod signal_log;
 pub mod strut_recording;
 pub mod sync;
+pub mod telemetry;
 pub mod time_series;
 pub mod vehicle;
 #[cfg(feature = "xcp")]

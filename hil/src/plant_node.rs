@@ -9,7 +9,7 @@ use oleo_controller::PlantEnd;
 use oleo_plant_sim::course::{Ending, NotFinite, Track};
 
 use crate::Frame;
-use crate::bus::{Bus, BusError, FaultInjector, Trace};
+use crate::bus::{Bus, BusError, FaultInjector, Trace, TraceEntry};
 use crate::deadline::Deadline;
 use crate::instruments::{Instruments, StuckValves};
 use crate::newcomer::Newcomer;
@@ -103,6 +103,16 @@ impl<B: Bus> PlantNode<B> {
     /// Number of completed ticks.
     pub fn tick(&self) -> u32 {
         self.tick
+    }
+
+    /// What was driven until now.
+    pub fn recording(&self) -> &Recording {
+        &self.recording
+    }
+
+    /// The frames until now.
+    pub fn trace(&self) -> &[TraceEntry] {
+        self.bus.inner().entries()
     }
 
     /// Begins a tick: reads the sensors and sends them.
@@ -282,7 +292,7 @@ pub struct PlantResult {
     /// Samples of the run.
     pub recording: Recording,
     /// Every frame that was on the wire, in order.
-    pub trace: Vec<crate::bus::TraceEntry>,
+    pub trace: Vec<TraceEntry>,
     /// Number of messages of the database that were on the wire, both directions together.
     pub frames_sent: u64,
     /// How many of them one end sent and the other did not receive.

@@ -2,9 +2,10 @@
 
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Corner, PressurePoint};
+use oleo_plant_sim::vehicle::BodyMotion;
 
 use crate::metrics::Metrics;
-use crate::record::CourseMotion;
+use crate::record::{CourseMotion, Recording, Sample, StrategyReport};
 use crate::run::Outcome;
 
 /// A quantity of a steered vehicle.
@@ -27,6 +28,19 @@ const COURSE: [(&str, Quantity); 11] = [
     ("cone_margin_m", |at| at.cone_margin_m.unwrap_or(f64::NAN)),
 ];
 
+/// A quantity of the body.
+type OfBody = fn(&BodyMotion) -> f64;
+
+/// How the body moves.
+const BODY: [(&str, OfBody); 6] = [
+    ("heave_m", |body| body.heave_m),
+    ("roll_rad", |body| body.roll_rad),
+    ("pitch_rad", |body| body.pitch_rad),
+    ("heave_acceleration_m_s2", |body| body.heave_acceleration_m_s2),
+    ("roll_acceleration_rad_s2", |body| body.roll_acceleration_rad_s2),
+    ("pitch_acceleration_rad_s2", |body| body.pitch_acceleration_rad_s2),
+];
+
 /// The columns of words: mode and first cause as the controller's last status message says them, empty before the first.
 pub fn words(metrics: &Metrics) -> [(&'static str, Vec<&'static str>); 2] {
     let account = metrics.account.iter();
@@ -45,65 +59,103 @@ pub fn words(metrics: &Metrics) -> [(&'static str, Vec<&'static str>); 2] {
     ]
 }
 
+/// A tick of a run, as the columns take it.
+pub struct Tick<'r> {
+    /// Number of the tick, from 0.
+    pub number: usize,
+    /// State at its beginning, and the valve commands.
+    pub sample: &'r Sample,
+    /// Vertical acceleration at the driver's and at the left rear passenger's seat, m/s2: that of the last integration step before the
+    /// tick, 0 at the start.
+    pub felt_m_s2: [f64; 2],
+    /// What the controller had last reported of its strategy.
+    pub strategy: StrategyReport,
+}
+
+impl<'r> Tick<'r> {
+    /// The tick of this number; `None` if it was not driven.
+    pub fn of(recording: &'r Recording, number: usize, strategy: StrategyReport) -> Option<Self> {
+        let seats = &recording.seat_acceleration_m_s2;
+        let steps = seats.len() / recording.samples.len().max(1);
+        let last = (number * steps).checked_sub(1);
+        Some(Self {
+            number,
+            sample: recording.samples.get(number)?,
+            felt_m_s2: last.and_then(|at| seats.get(at)).copied().unwrap_or_default(),
+            strategy,
+        })
+    }
+}
+
+/// What a column takes of a tick.
+pub type OfTick = Box<dyn Fn(&Tick) -> f64 + Send>;
+
+/// Name of each column, and what it takes of a tick. Only a vehicle on a course has all of them.
+pub fn quantities(on_course: bool) -> Vec<(String, OfTick)> {
+    let mut columns: Vec<(String, OfTick)> = Vec::with_capacity(64);
+    let mut column = |name: &str, of: OfTick| columns.push((name.to_owned(), of));
+    column("time_s", Box::new(|at| at.number as f64 * TICK_S));
+    column("station_m", Box::new(|at| at.sample.motion.station_m));
+    for corner in Corner::ALL {
+        let name = corner.key();
+        column(
+            &format!("road_{name}_m"),
+            Box::new(move |at| at.sample.motion.wheel[corner].road_height_m),
+        );
+    }
+    for (name, of) in BODY {
+        column(name, Box::new(move |at| of(&at.sample.motion.body)));
+    }
+    column("driver_acceleration_m_s2", Box::new(|at| at.felt_m_s2[0]));
+    column("rear_left_acceleration_m_s2", Box::new(|at| at.felt_m_s2[1]));
+    for corner in Corner::ALL {
+        let name = corner.key();
+        column(
+            &format!("displacement_{name}_m"),
+            Box::new(move |at| at.sample.displacement_m[corner]),
+        );
+        column(
+            &format!("force_{name}_N"),
+            Box::new(move |at| at.sample.strut[corner].force_n),
+        );
+        for point in PressurePoint::ALL {
+            column(
+                &format!("{}_{name}_Pa", point.key()),
+                Box::new(move |at| at.sample.strut[corner].pressure_pa[point.index()]),
+            );
+        }
+        column(
+            &format!("wheel_load_{name}_N"),
+            Box::new(move |at| at.sample.motion.wheel[corner].load_n),
+        );
+    }
+    if on_course {
+        for (name, of) in COURSE {
+            column(
+                name,
+                Box::new(move |at| at.sample.motion.course.as_ref().map_or(f64::NAN, of)),
+            );
+        }
+    }
+    column("valve_word", Box::new(|at| f64::from(at.sample.command.word())));
+    column("energised_word", Box::new(|at| f64::from(at.sample.energised.word())));
+    column("handling", Box::new(|at| f64::from(u8::from(at.strategy.handling))));
+    column(
+        "rollover_guard",
+        Box::new(|at| f64::from(u8::from(at.strategy.rollover_guard))),
+    );
+    columns
+}
+
 /// Name and values of each column of `timeseries.csv`, a value for each tick.
 pub fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<f64>)> {
-    let samples = &outcome.plant.recording.samples;
-    let steps = outcome.plant.recording.seat_acceleration_m_s2.len() / samples.len().max(1);
-    let mut columns: Vec<(String, Vec<f64>)> = Vec::with_capacity(64);
-    let mut column = |name: &str, value: &dyn Fn(usize) -> f64| {
-        columns.push((name.to_owned(), (0..samples.len()).map(value).collect()));
-    };
-    column("time_s", &|i| i as f64 * TICK_S);
-    column("station_m", &|i| samples[i].motion.station_m);
-    for corner in Corner::ALL {
-        let name = corner.key();
-        column(&format!("road_{name}_m"), &|i| {
-            samples[i].motion.wheel[corner].road_height_m
-        });
-    }
-    column("heave_m", &|i| samples[i].motion.body.heave_m);
-    column("roll_rad", &|i| samples[i].motion.body.roll_rad);
-    column("pitch_rad", &|i| samples[i].motion.body.pitch_rad);
-    column("heave_acceleration_m_s2", &|i| {
-        samples[i].motion.body.heave_acceleration_m_s2
-    });
-    column("roll_acceleration_rad_s2", &|i| {
-        samples[i].motion.body.roll_acceleration_rad_s2
-    });
-    column("pitch_acceleration_rad_s2", &|i| {
-        samples[i].motion.body.pitch_acceleration_rad_s2
-    });
-    let felt = |i: usize, seat: usize| {
-        // At the beginning of a tick the acceleration is that of the last step before it.
-        let index = (i * steps).checked_sub(1);
-        index.map_or(0.0, |at| outcome.plant.recording.seat_acceleration_m_s2[at][seat])
-    };
-    column("driver_acceleration_m_s2", &|i| felt(i, 0));
-    column("rear_left_acceleration_m_s2", &|i| felt(i, 1));
-    for corner in Corner::ALL {
-        let name = corner.key();
-        column(&format!("displacement_{name}_m"), &|i| {
-            samples[i].displacement_m[corner]
-        });
-        column(&format!("force_{name}_N"), &|i| samples[i].strut[corner].force_n);
-        for point in PressurePoint::ALL {
-            let title = format!("{}_{name}_Pa", point.key());
-            column(&title, &|i| samples[i].strut[corner].pressure_pa[point.index()]);
-        }
-        column(&format!("wheel_load_{name}_N"), &|i| {
-            samples[i].motion.wheel[corner].load_n
-        });
-    }
-    if samples.iter().all(|sample| sample.motion.course.is_some()) {
-        for (name, value) in COURSE {
-            column(name, &|i| samples[i].motion.course.as_ref().map_or(f64::NAN, value));
-        }
-    }
-    column("valve_word", &|i| f64::from(samples[i].command.word()));
-    column("energised_word", &|i| f64::from(samples[i].energised.word()));
-    column("handling", &|i| f64::from(u8::from(metrics.strategy[i].handling)));
-    column("rollover_guard", &|i| {
-        f64::from(u8::from(metrics.strategy[i].rollover_guard))
-    });
-    columns
+    let recording = &outcome.plant.recording;
+    let ticks: Vec<Tick> = (metrics.strategy.iter().enumerate())
+        .filter_map(|(number, strategy)| Tick::of(recording, number, *strategy))
+        .collect();
+    let on_course = ticks.iter().all(|at| at.sample.motion.course.is_some());
+    quantities(on_course)
+        .into_iter()
+        .map(|(name, of)| (name, ticks.iter().map(of).collect()))
+        .collect()
 }

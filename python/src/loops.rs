@@ -145,9 +145,9 @@ pub fn hil<'py>(
         let vehicle = run::vehicle(&scenario)?;
         let road_measured_m = vehicle.measured_road_m();
         let total = f64::from(scenario.ticks.max(1));
-        let outcome = run::both(&scenario, vehicle, 1, &mut |ticks| {
-            if ticks % 200 == 0 {
-                tell("driving", f64::from(ticks) / total);
+        let outcome = run::both(&scenario, vehicle, 1, &mut |run| {
+            if run.ticks % 200 == 0 {
+                tell("driving", f64::from(run.ticks) / total);
             }
             !stop.load(Ordering::Relaxed)
         })?;

@@ -3,7 +3,8 @@
 mod record;
 mod xcp;
 
-use std::io::Write as _;
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -15,9 +16,10 @@ use oleo_hil::companion::Companion;
 use oleo_hil::metrics::Metrics;
 use oleo_hil::output::{self, Summary};
 use oleo_hil::record::command_hash;
-use oleo_hil::run::{self, ControllerOutcome, Outcome};
+use oleo_hil::run::{self, ControllerOutcome, Outcome, Underway};
 use oleo_hil::scenario::file::DEFENDER;
 use oleo_hil::scenario::{self, Clock, FaultKind, Overrides, Scenario};
+use oleo_hil::telemetry::{Live, McapFile, Rows};
 use oleo_hil::{page, sync::Role};
 use oleo_plant_sim::course::ManoeuvreKind;
 use oleo_plant_sim::road;
@@ -28,6 +30,7 @@ use strum::VariantNames;
 use self::record::{Recorded, record, recorded};
 use self::xcp::XcpArgs;
 use super::course_arguments::{CourseArgs, option_failure};
+use super::mcap::{McapArgs, program};
 use super::show::{DBC, scenarios};
 use crate::failure::Failure;
 use crate::results::{ResultsArgs, command_line, say};
@@ -49,6 +52,8 @@ Examples:
   oleo hil --bus socketcan:vcan0                            send the frames over SocketCAN
   oleo hil --clock realtime --duration-s 5                  run in real time
   oleo hil --bus socketcan:vcan0 --clock realtime --xcp     let a calibration tool read the controller
+  oleo hil --mcap drive.mcap                                write the run also for Foxglove and PlotJuggler
+  oleo hil --live --duration-s 60                           follow the run in Foxglove while it drives
   oleo hil --firmware oleo-firmware                         run the controller as an image on an emulated board
   oleo hil --node controller --bus socketcan:vcan0          run the two nodes as two processes,
   oleo hil --node plant --bus socketcan:vcan0 --out run     which may be started in either order
@@ -119,6 +124,12 @@ pub struct Args {
     /// has of the strut and sensor noise on every channel
     #[arg(long, value_name = "CORNER|all", value_parser = recorded, conflicts_with = "no_out")]
     record: Option<Recorded>,
+    /// Serve the run to Foxglove on this machine while it is under way, on this port; a run in lockstep is then held back to real time
+    /// (docs/viewers.md)
+    #[arg(long, value_name = "PORT", num_args = 0..=1, default_missing_value = "8765")]
+    live: Option<u16>,
+    #[command(flatten)]
+    mcap: McapArgs,
     #[command(flatten)]
     xcp: XcpArgs,
     #[command(flatten)]
@@ -137,15 +148,13 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     }
     let companion = args.xcp.companion(&scenario, args.node)?;
     if args.node == Some(Role::Controller) {
-        if args.record.is_some() {
-            return Err(Failure::new(
-                "--record: the controller's node has no strut; give it to the plant's node",
-            ));
-        }
+        has_no_vehicle(&args)?;
         return controller(&args, &scenario, companion);
     }
     let name = format!("hil-{}", scenario.name);
-    let staged = args.results.stage("oleo hil", &name, inputs(&args, &scenario))?;
+    let inputs = inputs(&args, &scenario);
+    let mcap = args.mcap.stage(&inputs, args.results.force())?;
+    let staged = args.results.stage("oleo hil", &name, inputs)?;
     let [vehicle, handling, strut] = [&scenario.vehicle, &scenario.handling, &scenario.strut]
         .map(|name| (name != DEFENDER).then(|| PathBuf::from(name)));
     let parameters = Parameters::read(vehicle.as_ref(), handling.as_ref(), strut.as_ref())?;
@@ -156,9 +165,14 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let road_measured_m = vehicle.measured_road_m();
     let progress = Progress::new(&scenario.name, scenario.ticks.into());
     // In real time Ctrl-C ends the run, and what has been driven is reported.
-    let graceful = (scenario.clock == Clock::RealTime).then(Graceful::begin);
-    let mut watch = |ticks: u32| {
-        progress.set(ticks.into());
+    let mut live = live(&args, &scenario)?;
+    let takes_its_time = scenario.clock == Clock::RealTime || live.is_some();
+    let graceful = takes_its_time.then(Graceful::begin);
+    let mut watch = |run: Underway| {
+        progress.set(run.ticks.into());
+        if let Some(live) = &mut live {
+            live.watch(run);
+        }
         !graceful.as_ref().is_some_and(Graceful::requested)
     };
     let outcome = match (&args.firmware, args.node) {
@@ -172,7 +186,58 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         (None, None) => run::both_with(&scenario, vehicle, args.threads.into(), companion, &mut watch)?,
     };
     drop(progress);
+    if let Some(live) = live {
+        let served = live.finish(&outcome);
+        let _ = writeln!(std::io::stderr(), "live: {served}");
+    }
+    if let Some(mcap) = mcap {
+        mcap.write(|out| messages(out, &scenario, &outcome))?;
+    }
     report(&args, &scenario, &parameters, &outcome, road_measured_m, staged)
+}
+
+/// Refuses options that concern the vehicle, which the controller's node does not have.
+fn has_no_vehicle(args: &Args) -> Result<(), Failure> {
+    let refused = |option: &str, what: &str| {
+        let text = format!("{option}: the controller's node has no {what}; give it to the plant's node");
+        Err(Failure::new(text))
+    };
+    if args.record.is_some() {
+        return refused("--record", "strut");
+    }
+    if args.live.is_some() {
+        return refused("--live", "vehicle");
+    }
+    if args.mcap.is_given() {
+        return refused("--mcap", "vehicle");
+    }
+    Ok(())
+}
+
+/// The server for viewers, if it is wanted. Says where they find it.
+fn live(args: &Args, scenario: &Scenario) -> Result<Option<Live>, Failure> {
+    let Some(port) = args.live else { return Ok(None) };
+    let rows = Rows::new(scenario.course.is_some());
+    let hold_back = scenario.clock == Clock::Lockstep;
+    let live = Live::begin(port, "oleo hil", rows, hold_back)?;
+    let _ = writeln!(
+        std::io::stderr(),
+        "live: open {} in Foxglove (Open connection, Foxglove WebSocket)",
+        live.address()
+    );
+    Ok(Some(live))
+}
+
+/// Writes the messages of a run.
+fn messages(out: &mut BufWriter<File>, scenario: &Scenario, outcome: &Outcome) -> std::io::Result<()> {
+    let plant = &outcome.plant;
+    let mut rows = Rows::new(scenario.course.is_some());
+    let mut file = McapFile::new(out, &program())?;
+    file.add(None, rows.columns())?;
+    while let Some((tick, row)) = rows.next(&plant.recording, &plant.trace, 0) {
+        file.row(0, Rows::time_ns(tick), row)?;
+    }
+    file.finish()
 }
 
 /// The files that a run reads; names of built-in things are no files.

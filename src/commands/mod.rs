@@ -12,6 +12,7 @@ mod dividable;
 pub mod drive;
 pub mod fmu;
 pub mod hil;
+mod mcap;
 pub mod merge;
 pub mod predict;
 mod prediction;

@@ -9,7 +9,7 @@ mkdir -p "$OLEO_LOGS"
 
 # One build serves all steps, so it has every feature; only `dependencies` looks at what the first command builds.
 # shellcheck disable=SC2034 # read by the steps
-readonly FEATURES=(--features 'logs,fmu,calibration')
+readonly FEATURES=(--features 'logs,mcap,parquet,fmu,calibration')
 
 # tally passed|failed|skipped COUNT NAME [REASON]
 tally() { printf '%s\t%s\t%s\t%s\n' "$1" "$2" "$OLEO_STEP: $3" "${4:-}" >> "$OLEO_TALLY"; }

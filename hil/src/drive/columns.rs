@@ -1,8 +1,11 @@
 //! The columns of the CSV files of a drive, and what its figures take of a sample.
 
 use oleo_controller::ValveCommand;
-use oleo_interface::{Axle, Corner, StrutValves};
+use oleo_interface::{Axle, Corner, StrutValves, Valve};
 use oleo_plant_sim::course::{Run, Sample, Signals};
+
+use super::driven::Driven;
+use crate::telemetry::Series;
 
 /// What a figure or column takes of a sample.
 pub type Signal = fn(&Sample) -> f64;
@@ -62,6 +65,28 @@ fn valve_word(signals: &Signals) -> u16 {
 pub fn open_valves(sample: &Sample, axle: Axle) -> f64 {
     let open = |valves: &StrutValves<bool>| valves.iter().filter(|(_, open)| **open).count();
     sample.valves.of_axle(axle).map(open).iter().sum::<usize>() as f64
+}
+
+/// The runs of a request for viewers: the columns of their CSV files, and the signal of each valve.
+pub fn series(drives: &[Driven]) -> Vec<Series> {
+    let of_run = |driven: &Driven| {
+        let run = &driven.run;
+        let mut columns: Vec<(String, Vec<f64>)> = (COLUMNS.iter())
+            .map(|(name, of)| ((*name).to_owned(), column(run, *of)))
+            .collect();
+        for corner in Corner::ALL {
+            for (number, valve) in (1..).zip(Valve::ALL) {
+                let signal = column(run, |sample| f64::from(u8::from(sample.valves[corner][valve])));
+                columns.push((format!("valve{number}_{}", corner.key()), signal));
+            }
+        }
+        Series {
+            run: (drives.len() > 1).then(|| driven.name.replace(' ', "-")),
+            time_s: column(run, |sample| sample.time_s),
+            columns,
+        }
+    };
+    drives.iter().map(of_run).collect()
 }
 
 /// One value for each sample of a run.

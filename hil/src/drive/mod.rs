@@ -15,7 +15,7 @@ mod request;
 mod suspension;
 
 pub use choice::{Kind, Model, Setting};
-pub use columns::{COLUMNS, Signal, column, open_valves};
+pub use columns::{COLUMNS, Signal, column, open_valves, series};
 pub use driven::{Driven, drive};
 pub use measures::{Measure, measures};
 pub use plan::Plan;

@@ -5,10 +5,9 @@ use std::io::{self, Write};
 use chrono::{DateTime, Utc};
 use embedded_can::Id;
 
-use super::frame::{Entry, FrameKind};
+use super::bus_numbers::BusNumbers;
+use super::frame::{Entry, FrameKind, fd_code};
 
-/// Number of data bytes by the code of CAN FD.
-const FD_LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
 /// Flags of the message in a line of CAN FD: the frame is CAN FD, its bit rate was switched, its sender was error-passive.
 const FD_MESSAGE: [u32; 3] = [1 << 12, 1 << 13, 1 << 14];
 
@@ -16,7 +15,7 @@ const FD_MESSAGE: [u32; 3] = [1 << 12, 1 << 13, 1 << 14];
 pub struct AscWriter<W: Write> {
     out: W,
     first_us: Option<u64>,
-    buses: Vec<String>,
+    buses: BusNumbers,
 }
 
 impl<W: Write> AscWriter<W> {
@@ -25,7 +24,7 @@ impl<W: Write> AscWriter<W> {
         Self {
             out,
             first_us: None,
-            buses: Vec::new(),
+            buses: BusNumbers::default(),
         }
     }
 
@@ -43,7 +42,7 @@ impl<W: Write> AscWriter<W> {
         };
         let since_us = entry.time_us.saturating_sub(first_us);
         let (seconds, micros) = (since_us / 1_000_000, since_us % 1_000_000);
-        let channel = self.channel(entry.bus);
+        let channel = self.buses.of(entry.bus);
         let frame = &entry.frame;
         let id = match frame.id {
             Id::Standard(id) => format!("{:X}", id.as_raw()),
@@ -64,7 +63,7 @@ impl<W: Write> AscWriter<W> {
             )?,
             FrameKind::Fd(flags) => {
                 let (brs, esi) = (flags & 1, flags >> 1 & 1);
-                let code = FD_LENGTHS.iter().position(|code| *code >= length).unwrap_or(15);
+                let code = fd_code(length);
                 write!(
                     self.out,
                     "{seconds:4}.{micros:06} CANFD {channel:>3} Rx   {id:>9} {brs} {esi} {code:x} {length:2}"
@@ -104,18 +103,6 @@ impl<W: Write> AscWriter<W> {
 
     fn bytes(&mut self, data: &[u8]) -> io::Result<()> {
         data.iter().try_for_each(|byte| write!(self.out, " {byte:02X}"))
-    }
-
-    /// The number of a bus: that of a log whose buses have numbers, else its place in the order in which buses appear.
-    fn channel(&mut self, bus: &str) -> usize {
-        if let Some(number) = bus.parse().ok().filter(|number| (1..=255).contains(number)) {
-            return number;
-        }
-        let known = self.buses.iter().position(|known| known == bus);
-        1 + known.unwrap_or_else(|| {
-            self.buses.push(bus.to_owned());
-            self.buses.len() - 1
-        })
     }
 }
 

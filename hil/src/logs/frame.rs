@@ -68,6 +68,15 @@ pub enum FrameKind {
 /// The flags of CAN FD that a log keeps.
 pub const FD_FLAGS: u8 = 0b11;
 
+/// Number of data bytes by the code of CAN FD.
+const FD_LENGTHS: [usize; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 12, 16, 20, 24, 32, 48, 64];
+
+/// The code of CAN FD for a number of data bytes, or for the next that it has one for.
+#[must_use]
+pub fn fd_code(length: usize) -> u8 {
+    FD_LENGTHS.iter().position(|code| *code >= length).unwrap_or(15) as u8
+}
+
 /// A frame of a log, without its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LoggedFrame {

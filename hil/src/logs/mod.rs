@@ -15,18 +15,22 @@
 //! | `text` | lines in constant memory |
 //! | `candump` | text of `candump -L`, read and written |
 //! | `asc`, `asc_writer` | Vector ASC, read and written |
+//! | `mf4_writer` | ASAM MDF 4, written |
+//! | `bus_numbers` | numbers of buses that have names |
 //! | `mf4` | ASAM MDF 4 with logged frames (feature `logs`) |
 //! | `without_mf4` | says how to come by that reader |
 
 mod account;
 mod asc;
 mod asc_writer;
+mod bus_numbers;
 pub mod candump;
 mod error;
 mod format;
 mod frame;
 #[cfg(feature = "logs")]
 mod mf4;
+mod mf4_writer;
 mod source;
 mod text;
 #[cfg(not(feature = "logs"))]
@@ -37,6 +41,7 @@ pub use asc_writer::AscWriter;
 pub use error::LogError;
 pub use format::{Format, in_memory, open};
 pub use frame::{Entry, FrameKind, LoggedFrame, MOST_BYTES, Payload, identifier};
+pub use mf4_writer::Mf4Writer;
 pub use source::{FrameSource, Sink};
 
 /// How to come by a program with the feature `logs`.

@@ -42,7 +42,7 @@ pub use error::RunError;
 pub use outcome::{ControllerOutcome, Outcome};
 pub use parameters::Parameters;
 pub use plant::{vehicle, vehicle_on};
-pub use plant_loop::Watch;
+pub use plant_loop::{Underway, Watch};
 use waiting::{CONTROLLER_PHASE, PATIENCE, TICK, partner_timeout};
 
 /// What the controller is built from in a scenario: the vehicle as its files describe it, without its load.

@@ -7,17 +7,37 @@ use oleo_interface::tick::TICK_S;
 use super::error::RunError;
 use super::outcome::Outcome;
 use super::waiting::{TICK, partner_timeout};
-use crate::bus::{Bus, BusError};
+use crate::bus::{Bus, BusError, TraceEntry};
 use crate::clock::{Lateness, RealTime};
 use crate::plant_node::{Answer, PlantNode};
+use crate::record::Recording;
 use crate::scenario::{OnControllerLoss, Scenario};
 use crate::sync::Role;
 
-/// Is called every few ticks with the number of ticks done. It returns `false` to end the run early.
-pub type Watch<'a> = &'a mut dyn FnMut(u32) -> bool;
+/// A run that is under way.
+#[derive(Clone, Copy)]
+pub struct Underway<'r> {
+    /// Number of ticks done.
+    pub ticks: u32,
+    /// What was driven until now.
+    pub recording: &'r Recording,
+    /// The frames until now.
+    pub trace: &'r [TraceEntry],
+}
 
-/// Number of ticks between two calls of [`Watch`].
-pub(super) const WATCH_TICKS: u32 = 50;
+/// Is called every few ticks with the run as it is. It returns `false` to end the run early.
+pub type Watch<'a> = &'a mut dyn FnMut(Underway) -> bool;
+
+/// Number of ticks between two calls of [`Watch`]: twenty calls in a second of driving, which look smooth to who follows it.
+pub(super) const WATCH_TICKS: u32 = 10;
+
+fn underway<B: Bus>(plant: &PlantNode<B>) -> Underway<'_> {
+    Underway {
+        ticks: plant.tick(),
+        recording: plant.recording(),
+        trace: plant.trace(),
+    }
+}
 
 /// How the plant's loop ended.
 pub(super) struct PlantEnd {
@@ -97,7 +117,7 @@ pub(super) fn in_lockstep<B: Bus>(
             }
         }
         plant.advance()?;
-        if plant.tick().is_multiple_of(WATCH_TICKS) && !watch(plant.tick()) {
+        if plant.tick().is_multiple_of(WATCH_TICKS) && !watch(underway(plant)) {
             interrupted = true;
             break;
         }
@@ -144,7 +164,7 @@ pub(super) fn in_real_time<B: Bus>(
         if is_gone && scenario.on_controller_loss == OnControllerLoss::End {
             break;
         }
-        if plant.tick().is_multiple_of(WATCH_TICKS) && !watch(plant.tick()) {
+        if plant.tick().is_multiple_of(WATCH_TICKS) && !watch(underway(plant)) {
             interrupted = true;
             break;
         }

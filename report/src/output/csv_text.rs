@@ -46,10 +46,14 @@ pub(super) fn write(file: &mut impl Write, rows: usize, numbers: &[Numbers], wor
     file.flush()
 }
 
-/// A number with nine significant digits, which is more than any sensor has, and with an exponent where zeros would hide them.
+/// A number as files of results have it: with nine significant digits, which is more than any sensor has.
+pub fn rounded(value: f64) -> f64 {
+    format!("{value:.8e}").parse().unwrap_or(value)
+}
+
+/// Writes a number, with an exponent where zeros would hide its digits.
 fn number(file: &mut impl Write, value: f64) -> io::Result<()> {
-    // Written with nine digits and read again, so that no zeros follow the last digit.
-    let rounded: f64 = format!("{value:.8e}").parse().unwrap_or(value);
+    let rounded = rounded(value);
     if value == 0.0 || (1e-5..1e15).contains(&value.abs()) {
         write!(file, "{rounded}")
     } else {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use oleo_hil::drive::{Kind, Model, Request, Setting};
 
 use crate::commands::course_arguments::CourseArgs;
+use crate::commands::mcap::McapArgs;
 use crate::commands::word::described;
 use crate::results::ResultsArgs;
 
@@ -17,6 +18,7 @@ use crate::results::ResultsArgs;
                   oleo drive --manoeuvre lane-change --road iso-d --driver hard --load laden --setting baseline\n  \
                   oleo drive --manoeuvre straight --side-slope-percent 10 --setting soft\n  \
                   oleo drive --manoeuvre belgian --gas-temperature-c -20 --setting soft\n  \
+                  oleo drive --manoeuvre lane-change --setting soft,controlled --mcap drives.mcap\n  \
                   oleo drive --manoeuvre bump --speed-km-h 10 --model both --setting baseline\n\n\
                   Steer angle, yaw rate and lateral values are positive to the left. Roll is positive with the left side up, pitch \
                   with the nose down."
@@ -63,6 +65,8 @@ pub struct Args {
     /// built-in defender110]
     #[arg(long, value_name = "MODEL.toml")]
     pub strut: Option<PathBuf>,
+    #[command(flatten)]
+    pub mcap: McapArgs,
     #[command(flatten)]
     pub results: ResultsArgs,
 }

@@ -8,13 +8,13 @@ mod parquet;
 #[path = "convert/without_parquet.rs"]
 mod parquet;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use oleo_hil::logs::Format;
 use oleo_report::OutputFile;
 
-use self::columns::ColumnFormat;
+use self::columns::{ColumnFormat, has_end};
 use super::vehicle_log::DatabaseArgs;
 use crate::failure::Failure;
 use crate::results::say;
@@ -99,8 +99,4 @@ pub fn convert(args: &Args) -> Result<String, Failure> {
         ));
     }
     frames::write(&args.input, stage()?, format)
-}
-
-fn has_end(path: &Path, end: &str) -> bool {
-    path.extension().is_some_and(|own| own.eq_ignore_ascii_case(end))
 }

@@ -7,7 +7,6 @@ use oleo_hil::telemetry::{Series, write_series};
 use oleo_interface::Corner;
 use oleo_report::OutputFile;
 
-use super::has_end;
 use super::parquet;
 use crate::commands::mcap::{self, program};
 use crate::failure::Failure;
@@ -101,4 +100,9 @@ fn columns(drives: &[Drive]) -> Vec<(String, Vec<f64>)> {
         }
     }
     columns
+}
+
+/// Whether a file's name has this end, in small or in capital letters.
+pub fn has_end(path: &Path, end: &str) -> bool {
+    path.extension().is_some_and(|own| own.eq_ignore_ascii_case(end))
 }

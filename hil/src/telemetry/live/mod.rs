@@ -11,19 +11,21 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `protocol` | the texts and bytes of the protocol |
+//! | `served` | what the server has done |
 //! | `server` | the hub, and the viewers that come |
 //! | `viewer` | one connection |
 
 mod protocol;
+mod served;
 mod server;
 mod viewer;
 
-use std::fmt;
 use std::io;
 use std::time::{Duration, Instant};
 
 use super::rows::{Rows, TICK_NS};
 use crate::run::{Outcome, Underway};
+pub use served::Served;
 use server::Server;
 
 /// Why viewers cannot be served.
@@ -32,28 +34,6 @@ use server::Server;
 pub struct LiveError {
     port: u16,
     source: io::Error,
-}
-
-/// What the server has done.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Served {
-    /// Number of viewers that were connected.
-    pub viewers: u64,
-    /// Number of ticks that were sent, over all viewers.
-    pub sent: u64,
-    /// Number of ticks that were left out, over all viewers, because a viewer was too slow.
-    pub dropped: u64,
-}
-
-impl fmt::Display for Served {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { viewers, sent, dropped } = self;
-        let plural = if *viewers == 1 { "" } else { "s" };
-        write!(
-            out,
-            "{viewers} viewer{plural}, {sent} ticks sent, {dropped} left out because a viewer was too slow"
-        )
-    }
 }
 
 /// A run that viewers follow.

@@ -10,8 +10,8 @@ use std::time::Duration;
 use crossbeam_channel::{Receiver, Sender, TrySendError, bounded, unbounded};
 
 use super::super::topic::{Column, Topic, Value};
-use super::Served;
 use super::protocol;
+use super::served::Served;
 use super::viewer::{self, Greeting, Messages};
 
 /// Rows that wait for the hub: five seconds of driving.

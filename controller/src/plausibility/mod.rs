@@ -278,8 +278,14 @@ impl State {
         comparisons
             .trapped
             .step(pressure, context.spring_commanded_closed, &mut verdict);
-        self.measured.charge[corner] =
-            (comparisons.oil).step(&parameters.oil_balance, x, pressure, context.learning, &mut verdict);
+        self.measured.charge[corner] = (comparisons.oil).step(
+            &parameters.oil_balance,
+            x,
+            pressure,
+            context.learning,
+            context.spring_commanded_closed,
+            &mut verdict,
+        );
         if self.disagreeing & bit(corner) != 0 || verdict != Verdicts::GOOD {
             // What was said of a reading that is wrong by itself now holds until it can be compared again.
             comparisons.verdicts = by_itself.select(comparisons.verdicts, verdict);

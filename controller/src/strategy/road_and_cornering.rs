@@ -105,10 +105,10 @@ impl Decide for RoadAndCornering {
         ])
     }
 
-    fn new(_: &VehicleDescription, tuning: &Tuning) -> Self {
+    fn new(vehicle: &VehicleDescription, tuning: &Tuning) -> Self {
         Self {
             cornering: cornering::Parameters::new(&tuning.cornering),
-            load_transfer: load_transfer::Parameters::new(),
+            load_transfer: load_transfer::Parameters::new(vehicle),
             rough_2: tuning.rough_m_s2.squared(),
             very_rough_2: tuning.very_rough_m_s2.squared(),
             guard: tuning.rollover_guard,
@@ -117,7 +117,12 @@ impl Decide for RoadAndCornering {
 
     fn step(&self, state: &mut State, estimate: &Estimate, trusted: &Trusted) -> Demand {
         let rollover_guard = state.guard.step(&self.guard, estimate);
-        let leans = (state.load_transfer).step(&self.load_transfer, trusted.load_to_right_m, state.corners);
+        let leans = (state.load_transfer).step(
+            &self.load_transfer,
+            trusted.load_to_right_m,
+            estimate.roll_rad,
+            state.corners,
+        );
         let corners = state.cornering.step(&self.cornering, estimate, leans);
         state.corners = corners;
         if !corners {

@@ -3,7 +3,7 @@
 . tests/harness/lib.sh
 libtest "cargo test" cargo test "${FEATURES[@]}" --workspace --locked --no-fail-fast -- --show-output
 # What the first command builds, which lacks the readers of other programs' logs and says so.
-libtest "without features" cargo test --locked --test convert -- --show-output
+libtest "without features" cargo test --workspace --locked --test convert -- --show-output
 # The board's image holds one strategy.
 libtest "controller as a board has it" cargo test --package oleo-controller --no-default-features --locked --lib --tests -- --show-output
 exit 0

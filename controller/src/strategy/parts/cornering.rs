@@ -178,8 +178,8 @@ struct Band {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     bands: [Band; 2],
-    /// Memory of the estimate's own running RMS so far, ticks.
-    own_memory: f32,
+    /// How far the memory of the estimate's own running RMS has grown beyond the first one, ticks.
+    further_memory: f32,
     corrected: bool,
     /// Ticks since the start; it saturates.
     known: u16,
@@ -190,7 +190,7 @@ pub(crate) struct State {
 impl State {
     pub const INITIAL: Self = Self {
         bands: [Band { witness: 0.0, own: 0.0 }; 2],
-        own_memory: 0.0,
+        further_memory: 0.0,
         corrected: false,
         known: 0,
         hold: 0,
@@ -203,21 +203,19 @@ impl State {
         let witnesses = lateral.witness_m_s2.squared();
         let learning = self.known < LEARNING_TICKS;
         self.known = self.known.saturating_add(1);
-        if self.own_memory < OWN_MEMORY_TICKS {
-            self.own_memory += 1.0;
-        }
-        if self.own_memory < FIRST_OWN_MEMORY_TICKS {
-            self.own_memory = FIRST_OWN_MEMORY_TICKS;
-        }
         if self.corrected != lateral.corrected {
-            self.own_memory = FIRST_OWN_MEMORY_TICKS;
+            self.further_memory = 0.0;
         }
         self.corrected = lateral.corrected;
+        let own_memory = FIRST_OWN_MEMORY_TICKS + self.further_memory;
+        if own_memory < OWN_MEMORY_TICKS {
+            self.further_memory += 1.0;
+        }
         let own_part = 1.0
             / if self.hold > 0 {
-                SLOWER_IN_BENDS * self.own_memory
+                SLOWER_IN_BENDS * own_memory
             } else {
-                self.own_memory
+                own_memory
             };
         let witness_2 = if lateral.corrected {
             c.witness_2

@@ -126,6 +126,50 @@ fn asc() {
     drive(targets::asc, &[log]);
 }
 
+#[cfg(feature = "fmu")]
+#[test]
+fn bus_operations() {
+    use oleo_fmu::ls_bus::{ArbitrationLost, ErrorCode, ErrorFlag, Identifier, NodeStatus, Operation, Setting};
+    let mut seed = Vec::new();
+    for operation in [
+        Operation::Configuration(Setting::CanBitRate(500_000)),
+        Operation::Configuration(Setting::ArbitrationLost(ArbitrationLost::DiscardAndNotify)),
+        Operation::Status(NodeStatus::ErrorPassive),
+        Operation::CanTransmit {
+            id: Identifier::Standard(0x110),
+            remote: false,
+            data: &[1, 2, 3, 4, 5, 6, 7, 8],
+        },
+        Operation::CanFdTransmit {
+            id: Identifier::Extended(0x1234_5678),
+            bit_rate_switch: true,
+            error_state: false,
+            data: &[7; 12],
+        },
+        Operation::CanXlTransmit {
+            id: Identifier::Standard(1),
+            extended_content: false,
+            content: 2,
+            network: 3,
+            acceptance: 4,
+            data: &[5; 20],
+        },
+        Operation::Confirm { id: 0x110 },
+        Operation::ArbitrationLost { id: 0x300 },
+        Operation::BusError {
+            id: 0x0A0,
+            code: ErrorCode::Ack,
+            flag: ErrorFlag::Secondary,
+            is_sender: true,
+        },
+        Operation::FormatError { data: &[9; 5] },
+        Operation::Wakeup,
+    ] {
+        operation.write(&mut seed);
+    }
+    drive(targets::bus_operations, &[&seed]);
+}
+
 #[cfg(feature = "logs")]
 #[test]
 fn mf4() {

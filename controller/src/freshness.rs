@@ -39,6 +39,7 @@ const COUNTER_MASK: u8 = 0x0F;
 
 /// Tick and counter of the last displacement message of an axle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Seen {
     plant_tick: u8,
     counter: u8,
@@ -46,6 +47,7 @@ struct Seen {
 
 /// What is known of the time at the other end of the bus.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Freshness {
     /// State of the generator of challenges; 0 before the first one, and never again.
     random: u32,

@@ -54,6 +54,7 @@ const CLOSED_TICKS: u8 = (90 / TICK_MS + 1) as u8;
 /// assert_eq!((counters.foreign, counters.received, counters.wrong_crc), (1, 1, 1));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BusCounters {
     /// Frames of the controller's messages.
     pub received: u32,
@@ -91,7 +92,10 @@ pub struct BusCounters {
 /// assert_eq!(mode, Mode::Normal);
 /// ```
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Node {
+    // Not a part of what is saved: see `under`.
+    #[cfg_attr(feature = "serde", serde(skip, default = "Configuration::defender110"))]
     configuration: Configuration,
     state: State,
     receivers: PerSensorMessage<Receiver>,
@@ -317,6 +321,14 @@ impl Node {
             self.configuration = configuration;
         }
         may
+    }
+
+    /// The node under a configuration. One that was read from its saved form has another's: a configuration holds what follows from a vehicle and
+    /// a tuning, which whoever saves the node knows.
+    #[cfg(feature = "serde")]
+    #[must_use]
+    pub fn under(self, configuration: Configuration) -> Self {
+        Self { configuration, ..self }
     }
 
     /// Bus statistics since the start.

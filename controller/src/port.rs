@@ -21,6 +21,7 @@ const SEND_QUEUE: usize = 4;
 
 /// What went wrong at the peripheral. The counters wrap. See [`Port`] for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PortCounters {
     /// Number of receive and transmit errors that the peripheral reported.
     pub errors: u32,
@@ -83,6 +84,7 @@ pub struct PortCounters {
 /// assert_eq!((port.counters().errors, port.counters().dropped), (0, 0));
 /// ```
 #[derive(Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Port<C: Can> {
     can: C,
     node: Node,
@@ -154,6 +156,16 @@ impl<C: Can> Port<C> {
         self.node.report_board(state);
     }
 
+    /// The port whose node has a configuration, see [`Node::under`].
+    #[cfg(feature = "serde")]
+    #[must_use]
+    pub fn under(self, configuration: crate::Configuration) -> Self {
+        Self {
+            node: self.node.under(configuration),
+            ..self
+        }
+    }
+
     /// Error counts since the start.
     pub fn counters(&self) -> PortCounters {
         self.counters
@@ -162,6 +174,11 @@ impl<C: Can> Port<C> {
     /// The node that runs behind this port.
     pub fn node(&self) -> &Node {
         &self.node
+    }
+
+    /// The CAN peripheral, to look at.
+    pub fn can(&self) -> &C {
+        &self.can
     }
 
     /// The CAN peripheral, for its own settings and its error counters.

@@ -16,6 +16,7 @@ use crate::sensor_message::MessageSet;
 /// assert_eq!(Reading::INVALID.value(), None);
 /// ```
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Reading(f32);
 
 impl Reading {
@@ -58,6 +59,7 @@ impl PartialEq for Reading {
 
 /// All that the controller is told in a tick. By default nothing is valid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Inputs {
     /// Strut displacement from the static position, m, compression positive, -0.25 to 0.25.
     pub displacement: Corners<Reading>,

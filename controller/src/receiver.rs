@@ -10,6 +10,7 @@ use crate::can::{CheckStatus, Contract, FRAME_BYTES, Period, Sequence, StateMach
 
 /// What a tick's frames say together.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Gathered {
     frames: u8,
     worst: Period,
@@ -27,6 +28,7 @@ impl Gathered {
 
 /// What is known of one message. Its contract is the caller's, and the same in every call.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 // Whole words, which a small image clears and copies without a call.
 #[repr(align(4))]
 pub struct Receiver {

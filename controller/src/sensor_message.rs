@@ -50,6 +50,7 @@ impl SensorMessage {
 /// assert_ne!(lost, MessageSet::ALL);
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct MessageSet(u8);
 
 impl MessageSet {
@@ -82,6 +83,7 @@ impl MessageSet {
 
 /// One value for each sensor message.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PerSensorMessage<T> {
     pub pressure: Corners<T>,
     pub displacement: Axles<T>,

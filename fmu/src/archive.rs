@@ -131,6 +131,12 @@ pub fn pack(resources: &Resources, version: FmiVersion, libraries: &[SharedLibra
     if let Some(refused) = given.into_iter().find_map(|variable| variable.refuses(variable.start)) {
         return Err(Complaint::new(refused));
     }
+    if definition.terminal.is_some() && version == FmiVersion::Two {
+        return Err(Complaint::new(format!(
+            "{} exchanges bus operations, which FMI 2.0 has no variables for: write FMI 3.0 with --fmi 3",
+            definition.identifier
+        )));
+    }
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let mut add = |path: &str, bytes: &[u8], mode: u32| {
         let options = SimpleFileOptions::DEFAULT.unix_permissions(mode);
@@ -159,6 +165,9 @@ pub fn pack(resources: &Resources, version: FmiVersion, libraries: &[SharedLibra
         folders.push(folder);
         let path = format!("binaries/{folder}/{}.{}", definition.identifier, platform.suffix);
         add(&path, bytes, 0o755)?;
+    }
+    for (path, text) in definition.terminal.iter().flat_map(|terminal| terminal.files()) {
+        add(path, text.as_bytes(), 0o644)?;
     }
     for (name, text) in resources.files()? {
         add(&format!("resources/{name}"), text.as_bytes(), 0o644)?;

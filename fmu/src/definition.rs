@@ -2,6 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
+use crate::ls_bus::terminal::Terminal;
 use crate::variable::{Kind, Variable};
 
 /// Everything that a tool is told about an FMU.
@@ -19,6 +20,8 @@ pub struct Definition {
     pub step_s: f64,
     /// Length of a simulation that a tool is advised to begin with, s.
     pub stop_s: f64,
+    /// The network that the model is a node of, if it is one. It then needs the event mode of FMI 3.
+    pub terminal: Option<Terminal>,
 }
 
 impl Definition {

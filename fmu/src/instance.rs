@@ -1,10 +1,14 @@
 //! One running model: which call is permitted when, the values, the time, and states to go back to.
 //!
 //! ```text
-//!   Instantiated --enter--> Initializing --exit--> Stepping --terminate--> Terminated
-//!        ^                                                                     |
-//!        +------------------------------- reset ------------------------------+   (from every phase)
+//!   Configuring <--> Instantiated --enter--> Initializing --exit--> Stepping --terminate--> Terminated
+//!                        ^                         |                  |  ^                      |
+//!                        |                         +----> Events <----+  |                      |
+//!                        |                                  +------------+                      |
+//!                        +------------------------------- reset -------------------------------+   (from every phase)
 //! ```
+//!
+//! Only a node on a network has structural parameters and so a configuration mode, and events: it begins in them, and exchanges bus operations there.
 //!
 //! Both versions of FMI call the same functions here. Nothing here is unsafe, and nothing prints.
 
@@ -15,6 +19,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::complaint::Complaint;
 use crate::definition::Definition;
+use crate::exchange::Exchange;
+use crate::ls_bus::terminal::Terminal;
 use crate::model::Model;
 use crate::resources::Resources;
 use crate::variable::{Kind, Role, Variable};
@@ -39,6 +45,8 @@ enum Phase {
     Initializing,
     Stepping,
     Terminated,
+    Configuring,
+    Events,
 }
 
 /// A type of values as FMI asks for them.
@@ -50,6 +58,10 @@ pub enum Asked {
     Switch,
     /// Words, as numbers from 0.
     Word,
+    /// Bytes.
+    Binary,
+    /// Clocks.
+    Clock,
     /// A type of which no variable is, by its name.
     Other(&'static str),
 }
@@ -64,6 +76,7 @@ pub struct Instance {
     /// The model has begun with the values as they are.
     has_begun: bool,
     start_s: f64,
+    exchange: Exchange,
 }
 
 /// A state: what is to be known beside the resources to go on.
@@ -73,16 +86,23 @@ struct Kept {
     has_begun: bool,
     start_s: f64,
     values: Vec<f64>,
+    exchange: Exchange,
     model: Vec<u8>,
 }
 
 impl Instance {
-    /// An instance of the FMU whose resources are in a folder. The token is that of the file; another one belongs to another version.
+    /// An instance of the FMU whose resources are in a folder. The token is that of the file; another one belongs to another version. The tool says
+    /// whether it will use the event mode.
     ///
     /// # Errors
-    /// The resources are wrong, or the token does not belong to them.
-    pub fn new(token: &str, resources: &Path) -> Result<Self, Complaint> {
+    /// The resources are wrong, the token does not belong to them, or the FMU can do nothing without events.
+    pub fn new(token: &str, resources: &Path, uses_events: bool) -> Result<Self, Complaint> {
         let (definition, model) = Resources::read(resources)?.build()?;
+        if definition.terminal.is_some() && !uses_events {
+            return Err(Complaint::new(
+                "the FMU exchanges bus operations in the event mode of FMI 3.0, which is not used: set eventModeUsed, or use an importer that has it",
+            ));
+        }
         let own = definition.token();
         if token != own {
             return Err(Complaint::new(format!(
@@ -98,6 +118,7 @@ impl Instance {
             phase: Phase::Instantiated,
             has_begun: false,
             start_s: 0.0,
+            exchange: Exchange::default(),
         })
     }
 
@@ -134,8 +155,165 @@ impl Instance {
     pub fn exit_initialization(&mut self) -> Result<(), Complaint> {
         self.only_in(&[Phase::Initializing], "the initialization mode ends")?;
         self.begin()?;
+        self.phase = if self.definition.terminal.is_some() {
+            self.offer();
+            Phase::Events
+        } else {
+            Phase::Stepping
+        };
+        Ok(())
+    }
+
+    /// Enters the configuration mode, in which structural parameters are set.
+    ///
+    /// # Errors
+    /// It is not the time for it, or there are no structural parameters.
+    pub fn enter_configuration(&mut self) -> Result<(), Complaint> {
+        if !(self.definition.variables.iter()).any(|variable| variable.role == Role::Structural) {
+            return Err(Complaint::new(
+                "there are no structural parameters, so there is no configuration mode",
+            ));
+        }
+        self.only_in(&[Phase::Instantiated], "the configuration mode begins")?;
+        self.phase = Phase::Configuring;
+        Ok(())
+    }
+
+    /// Leaves the configuration mode.
+    ///
+    /// # Errors
+    /// It is not the time for it.
+    pub fn exit_configuration(&mut self) -> Result<(), Complaint> {
+        self.only_in(&[Phase::Configuring], "the configuration mode ends")?;
+        self.phase = Phase::Instantiated;
+        Ok(())
+    }
+
+    /// Enters the event mode.
+    ///
+    /// # Errors
+    /// It is not the time for it, or there are no events.
+    pub fn enter_events(&mut self) -> Result<(), Complaint> {
+        self.terminal()?;
+        self.only_in(&[Phase::Stepping], "the event mode begins")?;
+        self.phase = Phase::Events;
+        Ok(())
+    }
+
+    /// Leaves the event mode.
+    ///
+    /// # Errors
+    /// It is not the time for it, or there are no events.
+    pub fn enter_steps(&mut self) -> Result<(), Complaint> {
+        self.in_events("the step mode begins")?;
         self.phase = Phase::Stepping;
         Ok(())
+    }
+
+    /// Whether the instance is in the event mode.
+    ///
+    /// # Errors
+    /// It is not, or there are no events.
+    pub fn in_events(&self, what: &str) -> Result<(), Complaint> {
+        self.terminal()?;
+        self.only_in(&[Phase::Events], what)
+    }
+
+    /// Ends an instant of the event mode: the model takes what has come with the clock, and what the tool has fetched is gone. What the model
+    /// answers is offered at the end of the next step.
+    ///
+    /// # Errors
+    /// It is not the time for it, or there are no events.
+    pub fn update_discrete_states(&mut self) -> Result<(), Complaint> {
+        self.in_events("discrete states are updated")?;
+        let received = self.exchange.end_of_instant();
+        if let (Some(received), Some(network)) = (received, self.model.network()) {
+            network.take(&received);
+            self.model.outputs(&mut self.values);
+        }
+        Ok(())
+    }
+
+    /// Whether clocks tick. An output clock says so once for each time that it ticks.
+    ///
+    /// # Errors
+    /// No clock has this reference, or it is not the time for it.
+    pub fn get_clocks(&mut self, references: &[u32]) -> Result<Vec<bool>, Complaint> {
+        let places = self.places(Asked::Clock, references)?;
+        let terminal = self.terminal()?;
+        self.only_in(&[Phase::Events], "clocks are asked for")?;
+        let ticks = |place: usize| {
+            if place == terminal.tx_clock() {
+                self.exchange.tells()
+            } else {
+                self.exchange.is_received
+            }
+        };
+        Ok(places.into_iter().map(ticks).collect())
+    }
+
+    /// Lets input clocks tick.
+    ///
+    /// # Errors
+    /// No clock has this reference, it is not an input, or it is not the time for it.
+    pub fn set_clocks(&mut self, references: &[u32], ticks: &[bool]) -> Result<(), Complaint> {
+        let places = self.places(Asked::Clock, references)?;
+        self.only_in(&[Phase::Events], "clocks are set")?;
+        (places.iter()).try_for_each(|place| self.may_set(&self.definition.variables[*place]))?;
+        if let Some(ticks) = ticks.last() {
+            self.exchange.is_received = *ticks;
+        }
+        Ok(())
+    }
+
+    /// The bytes of a binary variable. Those of an output are none while its clock does not tick.
+    ///
+    /// # Errors
+    /// No binary has this reference.
+    pub fn get_binary(&mut self, reference: u32) -> Result<&[u8], Complaint> {
+        let place = self.place(Asked::Binary, reference)?;
+        let terminal = self.terminal()?;
+        if place != terminal.tx_data() {
+            return Ok(&self.exchange.received);
+        }
+        if self.phase != Phase::Events {
+            return Ok(&[]);
+        }
+        Ok(self.exchange.fetch())
+    }
+
+    /// Sets binary variables. They count when their clock ticks in the same instant.
+    ///
+    /// # Errors
+    /// No binary has this reference, it is not an input, there are too many bytes, or it is not the time for it.
+    pub fn set_binaries(&mut self, references: &[u32], values: &[&[u8]]) -> Result<(), Complaint> {
+        let places = self.places(Asked::Binary, references)?;
+        self.only_in(
+            &[Phase::Events, Phase::Instantiated, Phase::Initializing],
+            "binaries are set",
+        )?;
+        for (place, value) in places.iter().zip(values) {
+            let variable = &self.definition.variables[*place];
+            self.may_set(variable)?;
+            if let Kind::Binary { most_bytes, .. } = variable.kind
+                && value.len() > most_bytes
+            {
+                return Err(Complaint::new(format!(
+                    "{} is set to {} bytes: at most {most_bytes} at a time",
+                    variable.name,
+                    value.len()
+                )));
+            }
+        }
+        if let Some(value) = values.last() {
+            self.exchange.received = value.to_vec();
+        }
+        Ok(())
+    }
+
+    /// Whether there are bus operations that the tool should fetch in the event mode.
+    pub fn has_event(&self) -> bool {
+        self.exchange.has_offers()
     }
 
     /// Ends the simulation.
@@ -143,7 +321,7 @@ impl Instance {
     /// # Errors
     /// It is not the time for it.
     pub fn terminate(&mut self) -> Result<(), Complaint> {
-        self.only_in(&[Phase::Stepping], "a simulation is terminated")?;
+        self.only_in(&[Phase::Stepping, Phase::Events], "a simulation is terminated")?;
         self.phase = Phase::Terminated;
         Ok(())
     }
@@ -154,6 +332,7 @@ impl Instance {
         self.phase = Phase::Instantiated;
         self.has_begun = false;
         self.start_s = 0.0;
+        self.exchange = Exchange::default();
     }
 
     /// The values of variables of a type.
@@ -161,9 +340,7 @@ impl Instance {
     /// # Errors
     /// No variable has this reference and type, or the model cannot begin with its parameters.
     pub fn get(&mut self, asked: Asked, references: &[u32]) -> Result<Vec<f64>, Complaint> {
-        let places: Vec<usize> = (references.iter())
-            .map(|reference| self.place(asked, *reference))
-            .collect::<Result<_, _>>()?;
+        let places = self.places(asked, references)?;
         let asks_outputs = || {
             places
                 .iter()
@@ -187,9 +364,7 @@ impl Instance {
                 values.len()
             )));
         }
-        let places: Vec<usize> = (references.iter())
-            .map(|reference| self.place(asked, *reference))
-            .collect::<Result<_, _>>()?;
+        let places = self.places(asked, references)?;
         for (place, value) in places.iter().zip(values) {
             let variable = &self.definition.variables[*place];
             self.may_set(variable)?;
@@ -246,9 +421,11 @@ impl Instance {
                 ticks * tick_s
             }
         };
+        self.exchange.has_room()?;
         self.model.step(&self.values, duration_s)?;
         self.model.outputs(&mut self.values);
         self.values[TIME] = from_s + step_s;
+        self.offer();
         match self.not_finite() {
             None => Ok(self.values[TIME]),
             Some(variable) => Err(Complaint::new(format!(
@@ -273,6 +450,7 @@ impl Instance {
             has_begun: self.has_begun,
             start_s: self.start_s,
             values: self.values.clone(),
+            exchange: self.exchange.clone(),
             model: if self.has_begun { self.model.save()? } else { Vec::new() },
         };
         let body = postcard::to_allocvec(&kept).map_err(Complaint::new)?;
@@ -292,6 +470,7 @@ impl Instance {
             self.model.load(&kept.values, &kept.model)?;
         }
         self.values = kept.values;
+        self.exchange = kept.exchange;
         self.phase = kept.phase;
         self.has_begun = kept.has_begun;
         self.start_s = kept.start_s;
@@ -336,6 +515,19 @@ impl Instance {
         Ok(())
     }
 
+    /// Offers what the model has to send.
+    fn offer(&mut self) {
+        if let Some(network) = self.model.network() {
+            self.exchange.offer(network.take_sent());
+        }
+    }
+
+    fn terminal(&self) -> Result<Terminal, Complaint> {
+        self.definition
+            .terminal
+            .ok_or_else(|| Complaint::new("there are no events and no clocks: the description says so"))
+    }
+
     fn not_finite(&self) -> Option<&Variable> {
         let variables = self.definition.variables.iter();
         (variables.zip(&self.values)).find_map(|(variable, value)| (!value.is_finite()).then_some(variable))
@@ -347,6 +539,11 @@ impl Instance {
         }
         let (now, when) = (self.phase.words(), permitted.first().map_or("", |phase| phase.words()));
         Err(Complaint::new(format!("{what} {when}: the instance is {now}")))
+    }
+
+    fn places(&self, asked: Asked, references: &[u32]) -> Result<Vec<usize>, Complaint> {
+        let place = |reference: &u32| self.place(asked, *reference);
+        references.iter().map(place).collect()
     }
 
     fn place(&self, asked: Asked, reference: u32) -> Result<usize, Complaint> {
@@ -361,6 +558,8 @@ impl Instance {
             Kind::Real { .. } => Asked::Real,
             Kind::Switch => Asked::Switch,
             Kind::Word { .. } => Asked::Word,
+            Kind::Binary { .. } => Asked::Binary,
+            Kind::Clock => Asked::Clock,
         };
         if own == asked {
             return Ok(place);
@@ -375,7 +574,8 @@ impl Instance {
 
     fn may_set(&self, variable: &Variable) -> Result<(), Complaint> {
         let may = match variable.role {
-            Role::Input | Role::Tunable => self.phase != Phase::Terminated,
+            Role::Input | Role::Tunable => !matches!(self.phase, Phase::Terminated | Phase::Configuring),
+            Role::Structural => self.phase == Phase::Configuring,
             Role::Fixed => matches!(self.phase, Phase::Instantiated | Phase::Initializing),
             Role::Time | Role::Output => false,
         };
@@ -385,6 +585,7 @@ impl Instance {
         let name = &variable.name;
         Err(Complaint::new(match variable.role {
             Role::Time | Role::Output => format!("{name} cannot be set: the model computes it"),
+            Role::Structural => format!("{name} cannot be set now: enter the configuration mode first"),
             _ => format!("{name} cannot be set now: the instance is {}", self.phase.words()),
         }))
     }
@@ -397,6 +598,8 @@ impl Phase {
             Self::Initializing => "in the initialization mode",
             Self::Stepping => "between the initialization mode and the end",
             Self::Terminated => "after the end",
+            Self::Configuring => "in the configuration mode",
+            Self::Events => "in the event mode",
         }
     }
 }
@@ -407,6 +610,8 @@ impl Asked {
             Self::Real => "a floating-point number",
             Self::Switch => "a boolean",
             Self::Word => "an enumeration",
+            Self::Binary => "a binary",
+            Self::Clock => "a clock",
             Self::Other(name) => name,
         }
     }

@@ -15,12 +15,15 @@
 //! |---|---|
 //! | `complaint` | what is wrong, in one line |
 //! | `variable` | a variable as every tool sees it: name, kind, causality, unit, range |
+//! | `ls_bus` | a CAN network as bytes: bus operations, the peripheral of a node, the terminal (FMI-LS-BUS) |
 //! | `definition` | the table of all variables of an FMU, and the token that binds a file to a library |
 //! | `numbers` | the numbers of a model file as parameters |
 //! | `model` | what every simulated model has: begin, step, outputs, save, load |
-//! | `strut`, `controller`, `vehicle` | the models |
+//! | `decision`, `controller_parameters` | what a controller has decided, and what it is told before it starts |
+//! | `strut`, `controller`, `can_controller`, `vehicle` | the models |
 //! | `raised_road` | a road with a height of its own under each wheel |
 //! | `resources` | the files inside an FMU from which its model is made |
+//! | `exchange` | bus operations and clocks between a node on a network and a tool |
 //! | `instance` | one running model: which call is permitted when, values, time, states |
 //! | `boundary` | the functions that tools call |
 //! | `description`, `archive` | the file that tools open (feature `pack`) |
@@ -30,12 +33,17 @@
 #[cfg(feature = "pack")]
 mod archive;
 mod boundary;
+mod can_controller;
 mod complaint;
 mod controller;
+mod controller_parameters;
+mod decision;
 mod definition;
 #[cfg(feature = "pack")]
 mod description;
+mod exchange;
 mod instance;
+pub mod ls_bus;
 mod model;
 mod numbers;
 mod raised_road;

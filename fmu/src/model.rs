@@ -31,6 +31,20 @@ pub trait Model: Send {
     /// # Errors
     /// The bytes are not a state, or a parameter is wrong.
     fn load(&mut self, values: &[f64], bytes: &[u8]) -> Result<(), Complaint>;
+
+    /// The network end of a model that has a terminal and has begun.
+    fn network(&mut self) -> Option<&mut dyn Network> {
+        None
+    }
+}
+
+/// A node on a network whose bus is the tool.
+pub trait Network {
+    /// Takes bus operations, which may be any bytes.
+    fn take(&mut self, operations: &[u8]);
+
+    /// Bus operations for the tool, which are then gone from here.
+    fn take_sent(&mut self) -> Vec<u8>;
 }
 
 /// Whether a value of the table is on.

@@ -8,8 +8,10 @@ use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::vehicle::VehicleParameters;
 use serde::{Deserialize, Serialize};
 
+use crate::can_controller::can_controller;
 use crate::complaint::Complaint;
-use crate::controller::{DescriptionFile, controller};
+use crate::controller::controller;
+use crate::controller_parameters::DescriptionFile;
 use crate::definition::Definition;
 use crate::model::Model;
 use crate::strut::strut;
@@ -40,6 +42,7 @@ pub struct Resources {
 enum Settings {
     Strut {},
     Controller {},
+    CanController {},
     Vehicle(Start),
 }
 
@@ -48,7 +51,7 @@ impl Settings {
     fn files(&self) -> &'static [&'static str] {
         match self {
             Self::Strut {} => &[STRUT],
-            Self::Controller {} => &[DESCRIPTION],
+            Self::Controller {} | Self::CanController {} => &[DESCRIPTION],
             Self::Vehicle(_) => &[VEHICLE, HANDLING, STRUT],
         }
     }
@@ -72,6 +75,17 @@ impl Resources {
         Ok(Self {
             settings: Settings::Controller {},
             files: vec![(DESCRIPTION, description)],
+        })
+    }
+
+    /// The controller of a vehicle as a node on CAN.
+    ///
+    /// # Errors
+    /// The description cannot be written as a file.
+    pub fn can_controller(vehicle: VehicleDescription) -> Result<Self, Complaint> {
+        Ok(Self {
+            settings: Settings::CanController {},
+            ..Self::controller(vehicle)?
         })
     }
 
@@ -135,9 +149,11 @@ impl Resources {
                 Ok((definition, Box::new(unit)))
             }
             Settings::Controller {} => {
-                let file: DescriptionFile = toml::from_str(self.text(DESCRIPTION))
-                    .map_err(|error| Complaint::new(format!("{DESCRIPTION}: {error}")))?;
-                let (definition, unit) = controller(file.vehicle());
+                let (definition, unit) = controller(self.description()?);
+                Ok((definition, Box::new(unit)))
+            }
+            Settings::CanController {} => {
+                let (definition, unit) = can_controller(self.description()?);
                 Ok((definition, Box::new(unit)))
             }
             Settings::Vehicle(start) => {
@@ -148,6 +164,12 @@ impl Resources {
                 Ok((definition, Box::new(unit)))
             }
         }
+    }
+
+    fn description(&self) -> Result<VehicleDescription, Complaint> {
+        let file: DescriptionFile = toml::from_str(self.text(DESCRIPTION))
+            .map_err(|error| Complaint::new(format!("{DESCRIPTION}: {error}")))?;
+        Ok(file.vehicle())
     }
 
     fn text(&self, name: &str) -> &str {

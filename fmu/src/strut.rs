@@ -88,6 +88,7 @@ pub fn strut(model: &StrutModel) -> Result<(Definition, StrutUnit), Complaint> {
         tick_s: None,
         step_s: 1e-3,
         stop_s: 10.0,
+        terminal: None,
     };
     let unit = StrutUnit {
         numbers,

@@ -14,6 +14,14 @@ pub enum Kind {
     Switch,
     /// One of several words: the name of the list, and the words.
     Word { list: &'static str, words: &'static [Word] },
+    /// Bytes of a type, which are valid when a clock ticks: the place of the clock in the table. In the table of values they have no value.
+    Binary {
+        mime_type: &'static str,
+        most_bytes: usize,
+        clock: usize,
+    },
+    /// Ticks when the one who has it says so. In the table of values it has no value.
+    Clock,
 }
 
 /// What a variable is for.
@@ -29,12 +37,14 @@ pub enum Role {
     Fixed,
     /// A number of the model that may be changed between two steps.
     Tunable,
+    /// A switch of the interface that is set in the configuration mode, before everything else.
+    Structural,
 }
 
 impl Role {
     /// Whether a tool gives the value, so that there is one to start with.
     pub fn is_given(self) -> bool {
-        matches!(self, Self::Input | Self::Fixed | Self::Tunable)
+        matches!(self, Self::Input | Self::Fixed | Self::Tunable | Self::Structural)
     }
 
     /// Whether it belongs to the model.
@@ -95,6 +105,24 @@ impl Variable {
             kind: Kind::Switch,
             role,
             start: 0.0,
+        }
+    }
+
+    /// One of several words, and the number of that to start with.
+    pub fn word(
+        name: impl Into<String>,
+        list: &'static str,
+        words: &'static [Word],
+        role: Role,
+        start: usize,
+        description: impl Into<String>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            description: description.into(),
+            kind: Kind::Word { list, words },
+            role,
+            start: start as f64,
         }
     }
 

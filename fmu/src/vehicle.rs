@@ -125,6 +125,7 @@ pub fn vehicle(
         tick_s: Some(step_s),
         step_s: TICK_S,
         stop_s: 10.0,
+        terminal: None,
     };
     let unit = VehicleUnit {
         body_numbers,

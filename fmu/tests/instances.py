@@ -50,8 +50,8 @@ class Fmu:
     def close(self):
         shutil.rmtree(self.unpacked, ignore_errors=True)
 
-    def instance(self, name="one"):
-        """A new instance, and the lines that it logs."""
+    def instance(self, name="one", events=False):
+        """A new instance, with the event mode of FMI 3 or without, and the lines that it logs."""
         kind = FMU2Slave if self.version == 2 else FMU3Slave
         slave = kind(
             guid=self.description.guid,
@@ -59,13 +59,13 @@ class Fmu:
             modelIdentifier=self.description.coSimulation.modelIdentifier,
             instanceName=name,
         )
-        return Instance(self, slave)
+        return Instance(self, slave, events)
 
 
 class Instance:
     """One instance, with the differences between the versions put away."""
 
-    def __init__(self, fmu, slave):
+    def __init__(self, fmu, slave, events):
         self.fmu, self.slave, self.lines, self.time_s = fmu, slave, [], 0.0
         if fmu.version == 2:
             self.callbacks = fmi2CallbackFunctions()
@@ -79,7 +79,7 @@ class Instance:
             self.callbacks = fmi3LogMessageCallback(
                 lambda environment, status, category, message: self.lines.append(message.decode())
             )
-            slave.instantiate(logMessage=self.callbacks)
+            slave.instantiate(logMessage=self.callbacks, eventModeUsed=events)
 
     def start(self, **values):
         """Sets values and makes the instance ready for a step."""

@@ -4,6 +4,8 @@
 //! Driven by libFuzzer (`fuzz_targets/`, coverage-guided, as long as one likes) and by `tests/hostile_bytes.rs` of the
 //! root package (mutated valid files, seconds, every test run).
 
+#[cfg(feature = "fmu")]
+mod bus_operations;
 mod fault_plan;
 #[cfg(feature = "logs")]
 mod foreign_logs;
@@ -20,6 +22,8 @@ use oleo_plant_sim::strut::{Strut, StrutModel};
 use oleo_plant_sim::vehicle::VehicleParameters;
 use std::path::Path;
 
+#[cfg(feature = "fmu")]
+pub use bus_operations::bus_operations;
 #[cfg(feature = "logs")]
 pub use foreign_logs::{can_database, mf4, signal_map};
 

@@ -13,6 +13,7 @@ use crate::failure::Failure;
     after_help = "Examples:\n  oleo fmu strut --out strut.fmu                              the built-in strut, FMI 2.0\n  \
     oleo fmu strut --strut model.toml --fmi 3 --out strut.fmu     another strut, FMI 3.0\n  \
     oleo fmu controller --out controller.fmu                      the controller of the built-in vehicle\n  \
+    oleo fmu can-controller --out can-controller.fmu              the same with frames in and out (FMI-LS-BUS), FMI 3.0\n  \
     oleo fmu vehicle --road belgian --speed-km-h 40 --out vehicle.fmu\n\n\
     The shared library is built with `cargo build --release --features fmu -p oleo -p oleo-fmu` and is looked for beside this program. docs/fmu.md describes \
     all variables."
@@ -29,6 +30,8 @@ enum What {
     Strut(StrutArgs),
     /// The controller: displacements and pressures in, switching signals of twelve valves out, a tick of 5 ms
     Controller(ControllerArgs),
+    /// The controller as a node on CAN: frames in, frames out, for a tool with FMI-LS-BUS 1.0 (FMI 3.0 only)
+    CanController(ControllerArgs),
     /// The vehicle on four struts, 14 degrees of freedom: valves, steering and pedals in, pressures and motion out
     Vehicle(VehicleArgs),
 }
@@ -91,9 +94,9 @@ struct FileArgs {
     /// File that is written
     #[arg(long, value_name = "FILE.fmu")]
     out: PathBuf,
-    /// Version of FMI, 2 or 3. One file has one version; more tools read 2.0
-    #[arg(long, value_name = "VERSION", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
-    fmi: u8,
+    /// Version of FMI, 2 or 3. One file has one version. The default is 2, which more tools read, and 3 for a node on CAN
+    #[arg(long, value_name = "VERSION", value_parser = clap::value_parser!(u8).range(2..=3))]
+    fmi: Option<u8>,
     /// Shared library that goes into the file. May be given once for each platform
     #[arg(long, value_name = "FILE")]
     library: Vec<PathBuf>,
@@ -110,6 +113,7 @@ struct FileArgs {
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let (What::Strut(StrutArgs { file, .. })
     | What::Controller(ControllerArgs { file, .. })
+    | What::CanController(ControllerArgs { file, .. })
     | What::Vehicle(VehicleArgs { file, .. })) = args.what;
     Err(Failure::new(format!(
         "{}: this program was built without FMUs; build it with `cargo build --release --features fmu -p oleo -p oleo-fmu`",
@@ -127,6 +131,10 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     use oleo_hil::description::describe;
     use oleo_hil::parameter_files::Parameters;
 
+    let least = match args.what {
+        What::CanController(_) => 3,
+        _ => 2,
+    };
     let (resources, file, inputs) = match args.what {
         What::Strut(StrutArgs { strut, file }) => {
             let read = Parameters::read(None, None, strut.as_ref())?;
@@ -136,6 +144,11 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
             let read = parameters.read()?;
             let described = describe(&read.vehicle, &read.handling, &read.strut);
             (Resources::controller(described)?, file, parameters.paths())
+        }
+        What::CanController(ControllerArgs { parameters, file }) => {
+            let read = parameters.read()?;
+            let described = describe(&read.vehicle, &read.handling, &read.strut);
+            (Resources::can_controller(described)?, file, parameters.paths())
         }
         What::Vehicle(VehicleArgs {
             parameters,
@@ -154,7 +167,8 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
             (resources, file, parameters.paths())
         }
     };
-    with_feature::write(&resources, &file, inputs.into_iter().flatten().collect())
+    let fmi = file.fmi.unwrap_or(least);
+    with_feature::write(&resources, &file, fmi, inputs.into_iter().flatten().collect())
 }
 
 #[cfg(feature = "fmu")]
@@ -184,13 +198,13 @@ mod with_feature {
     }
 
     /// Packs resources and libraries into a file.
-    pub fn write(resources: &Resources, file: &FileArgs, inputs: Vec<PathBuf>) -> Result<ExitCode, Failure> {
+    pub fn write(resources: &Resources, file: &FileArgs, fmi: u8, inputs: Vec<PathBuf>) -> Result<ExitCode, Failure> {
         let libraries = (libraries(file)?.iter())
             .map(|path| SharedLibrary::read(path))
             .collect::<Result<Vec<_>, _>>()?;
         let inputs = [inputs, file.library.clone()].concat();
         let out = OutputFile::stage(&file.out, &inputs, file.force)?;
-        let version = match file.fmi {
+        let version = match fmi {
             3 => FmiVersion::Three,
             _ => FmiVersion::Two,
         };
@@ -202,7 +216,7 @@ mod with_feature {
         let out = out.bytes(&bytes)?;
         say(&format!(
             "FMI {}.0 for co-simulation, {}: {inputs} inputs, {outputs} outputs, {parameters} parameters\n{}\n",
-            file.fmi,
+            fmi,
             platforms.join(", "),
             out.display()
         ))?;

@@ -7,6 +7,7 @@ use super::signals::field;
 
 /// What the processor's clock runs from. See [`BoardMessage`] for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromRepr)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 pub enum ClockSource {
     /// The crystal.
@@ -20,6 +21,7 @@ pub enum ClockSource {
 
 /// Whether the flash holds what was built. See [`BoardMessage`] for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromRepr)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 pub enum ImageState {
     /// The image has no check value: it was flashed as the compiler made it.
@@ -31,6 +33,7 @@ pub enum ImageState {
 
 /// How far the CAN peripheral is from leaving the bus. See [`BoardMessage`] for an example.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, FromRepr)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u8)]
 pub enum BusState {
     /// Few errors.
@@ -58,6 +61,7 @@ pub enum BusState {
 /// assert_eq!(BoardMessage::decode(&sent.encode()), Some(sent));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct BoardMessage {
     /// Why the board was reset, bit 0 up: brown-out, reset pin, supply, software, independent watchdog, window watchdog, low power.
     pub reset_causes: u8,

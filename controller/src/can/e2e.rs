@@ -77,6 +77,7 @@ impl Protector {
 
 /// What a [`Protector`] remembers. The contract is its caller's.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Counter(u8);
 
 impl Counter {
@@ -161,6 +162,7 @@ impl Checker {
 
 /// What a [`Checker`] remembers. The contract is its caller's.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Sequence {
     last: Option<u8>,
     /// By how much more than the contract says the counter may be further, because periods have passed without a frame.

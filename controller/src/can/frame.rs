@@ -11,6 +11,7 @@ pub const FRAME_BYTES: usize = 8;
 /// assert_eq!(frame.data.len(), 8);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 // It fills three words, so that it is copied in words.
 #[repr(align(4))]
 pub struct Frame {

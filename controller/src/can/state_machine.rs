@@ -28,6 +28,7 @@
 
 /// Outcome of one period of a message (`E2E_PCheckStatusType`). The graver one is the greater.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Period {
     /// One right frame in sequence.
     Ok,
@@ -43,6 +44,7 @@ pub enum Period {
 
 /// State of the machine (`E2E_SMStateType`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Trust {
     #[default]
     NoData,
@@ -77,6 +79,7 @@ const INVALID: Window = Window {
 
 /// The machine of one message. It starts without data.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StateMachine {
     trust: Trust,
     /// Right and wrong periods, the youngest in the lowest bit.

@@ -80,7 +80,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
         }
         // SAFETY: FMI: texts that end with a zero, or null.
         let (guid, resources) = unsafe { (text(guid, "fmuGUID")?, text(resources, "fmuResourceLocation")?) };
-        Instance::new(&guid, &path_of_uri(&resources))
+        Instance::new(&guid, &path_of_uri(&resources), false)
     })
 }
 

@@ -45,7 +45,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     resources: *const c_char,
     _visible: u8,
     _logging_on: u8,
-    _event_mode_used: u8,
+    event_mode_used: u8,
     _early_return_allowed: u8,
     _intermediate_variables: *const u32,
     _intermediate_count: usize,
@@ -56,7 +56,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     instantiate(log_to(logger, environment), || {
         // SAFETY: FMI: texts that end with a zero, or null.
         let (token, resources) = unsafe { (text(token, "instantiationToken")?, text(resources, "resourcePath")?) };
-        Instance::new(&token, Path::new(&resources))
+        Instance::new(&token, Path::new(&resources), event_mode_used != 0)
     })
 }
 
@@ -146,6 +146,10 @@ macro_rules! phases {
 phases! {
     fmi3ExitInitializationMode: Instance::exit_initialization;
     fmi3Terminate: Instance::terminate;
+    fmi3EnterConfigurationMode: Instance::enter_configuration;
+    fmi3ExitConfigurationMode: Instance::exit_configuration;
+    fmi3EnterEventMode: Instance::enter_events;
+    fmi3EnterStepMode: Instance::enter_steps;
     fmi3Reset: |instance| {
         instance.reset();
         Ok(())
@@ -339,7 +343,150 @@ pub unsafe extern "C" fn fmi3DoStep(
         (*event_needed, *terminate, *early_return) = (0, 0, 0);
         *reached = instance.time_s();
         *reached = instance.step(from_s, step_s)?;
+        *event_needed = u8::from(instance.has_event());
         Ok(())
+    };
+    // SAFETY: FMI: an instance of `fmi3InstantiateCoSimulation` or null.
+    unsafe { call(instance, work) }
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3GetBinary(
+    instance: *mut c_void,
+    references: *const u32,
+    count: usize,
+    sizes: *mut usize,
+    out: *mut *const u8,
+    places_count: usize,
+) -> c_int {
+    let work = |instance: &mut Instance| {
+        // SAFETY: FMI: as many references, sizes and places as are said, or null.
+        let (references, sizes, out) = unsafe {
+            (
+                values(references, count, "valueReferences")?,
+                places(sizes, places_count, "valueSizes")?,
+                places(out, places_count, "values")?,
+            )
+        };
+        as_many(count, places_count)?;
+        for ((reference, size), place) in references.iter().zip(sizes).zip(out) {
+            // FMI: the bytes stay until the tool calls another function of this instance, and so does the memory here.
+            let bytes = instance.get_binary(*reference)?;
+            (*size, *place) = (bytes.len(), bytes.as_ptr());
+        }
+        Ok(())
+    };
+    // SAFETY: FMI: an instance of `fmi3InstantiateCoSimulation` or null.
+    unsafe { call(instance, work) }
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3SetBinary(
+    instance: *mut c_void,
+    references: *const u32,
+    count: usize,
+    sizes: *const usize,
+    new: *const *const u8,
+    new_count: usize,
+) -> c_int {
+    let work = |instance: &mut Instance| {
+        // SAFETY: FMI: as many references, sizes and pointers as are said, or null.
+        let (references, sizes, new) = unsafe {
+            (
+                values(references, count, "valueReferences")?,
+                values(sizes, new_count, "valueSizes")?,
+                values(new, new_count, "values")?,
+            )
+        };
+        as_many(count, new_count)?;
+        // SAFETY: FMI: each pointer points at as many bytes as its size says, or is null.
+        let new: Vec<&[u8]> = (new.iter().zip(sizes))
+            .map(|(bytes, size)| unsafe { values(*bytes, *size, "values") })
+            .collect::<Result<_, _>>()?;
+        instance.set_binaries(references, &new)
+    };
+    // SAFETY: FMI: an instance of `fmi3InstantiateCoSimulation` or null.
+    unsafe { call(instance, work) }
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3GetClock(
+    instance: *mut c_void,
+    references: *const u32,
+    count: usize,
+    out: *mut u8,
+) -> c_int {
+    let work = |instance: &mut Instance| {
+        // SAFETY: FMI: as many references and places as are said, or null.
+        let (references, out) = unsafe {
+            (
+                values(references, count, "valueReferences")?,
+                places(out, count, "values")?,
+            )
+        };
+        for (place, ticks) in out.iter_mut().zip(instance.get_clocks(references)?) {
+            *place = u8::from(ticks);
+        }
+        Ok(())
+    };
+    // SAFETY: FMI: an instance of `fmi3InstantiateCoSimulation` or null.
+    unsafe { call(instance, work) }
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3SetClock(
+    instance: *mut c_void,
+    references: *const u32,
+    count: usize,
+    new: *const u8,
+) -> c_int {
+    let work = |instance: &mut Instance| {
+        // SAFETY: FMI: as many references and values as are said, or null.
+        let (references, new) = unsafe {
+            (
+                values(references, count, "valueReferences")?,
+                values(new, count, "values")?,
+            )
+        };
+        let ticks: Vec<bool> = new.iter().map(|ticks| *ticks != 0).collect();
+        instance.set_clocks(references, &ticks)
+    };
+    // SAFETY: FMI: an instance of `fmi3InstantiateCoSimulation` or null.
+    unsafe { call(instance, work) }
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3EvaluateDiscreteStates(instance: *mut c_void) -> c_int {
+    // No output of an instant depends on an input of the same instant.
+    // SAFETY: FMI: an instance of `fmi3InstantiateCoSimulation` or null.
+    unsafe { call(instance, |instance| instance.in_events("discrete states are evaluated")) }
+}
+
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3UpdateDiscreteStates(
+    instance: *mut c_void,
+    again: *mut u8,
+    terminate: *mut u8,
+    nominals_changed: *mut u8,
+    values_changed: *mut u8,
+    next_defined: *mut u8,
+    next_s: *mut f64,
+) -> c_int {
+    let work = |instance: &mut Instance| {
+        // SAFETY: FMI: six places for what is told of the instant.
+        let (again, terminate, nominals_changed, values_changed, next_defined, next_s) = unsafe {
+            (
+                place(again, "discreteStatesNeedUpdate")?,
+                place(terminate, "terminateSimulation")?,
+                place(nominals_changed, "nominalsOfContinuousStatesChanged")?,
+                place(values_changed, "valuesOfContinuousStatesChanged")?,
+                place(next_defined, "nextEventTimeDefined")?,
+                place(next_s, "nextEventTime")?,
+            )
+        };
+        (*again, *terminate, *nominals_changed, *values_changed) = (0, 0, 0, 0);
+        (*next_defined, *next_s) = (0, 0.0);
+        instance.update_discrete_states()
     };
     // SAFETY: FMI: an instance of `fmi3InstantiateCoSimulation` or null.
     unsafe { call(instance, work) }
@@ -356,26 +503,17 @@ macro_rules! denied {
     )*};
 }
 
-const NO_BINARIES: &str = "no variable is a binary or a clock: use the function of its type";
 const NO_DEPENDENCIES: &str = "there are no dependencies of elements: the description says so";
 const NO_DERIVATIVES: &str = "there are no derivatives: the description says so";
-const NO_CONFIGURATION: &str = "there are no structural parameters, so there is no configuration mode";
-const NO_CLOCKS: &str = "there are no clocks: the description says so";
-const NO_EVENTS: &str = "there are no events: the description says so";
+const NO_CLOCKS: &str = "no clock has an interval: there are none, or they are triggered, as the description says";
 const NO_EXCHANGE: &str = "the FMU is one for co-simulation, and this function is one of model exchange";
 
 denied! {
-    fmi3GetBinary(*const u32, usize, *mut usize, *mut *const u8, usize): NO_BINARIES;
-    fmi3SetBinary(*const u32, usize, *const usize, *const *const u8, usize): NO_BINARIES;
-    fmi3GetClock(*const u32, usize, *mut u8): NO_BINARIES;
-    fmi3SetClock(*const u32, usize, *const u8): NO_BINARIES;
     fmi3GetNumberOfVariableDependencies(u32, *mut usize): NO_DEPENDENCIES;
     fmi3GetVariableDependencies(u32, *mut usize, *mut u32, *mut usize, *mut c_int, usize): NO_DEPENDENCIES;
     fmi3GetDirectionalDerivative(*const u32, usize, *const u32, usize, *const f64, usize, *mut f64, usize): NO_DERIVATIVES;
     fmi3GetAdjointDerivative(*const u32, usize, *const u32, usize, *const f64, usize, *mut f64, usize): NO_DERIVATIVES;
     fmi3GetOutputDerivatives(*const u32, usize, *const i32, *mut f64, usize): NO_DERIVATIVES;
-    fmi3EnterConfigurationMode(): NO_CONFIGURATION;
-    fmi3ExitConfigurationMode(): NO_CONFIGURATION;
     fmi3GetIntervalDecimal(*const u32, usize, *mut f64, *mut c_int): NO_CLOCKS;
     fmi3GetIntervalFraction(*const u32, usize, *mut u64, *mut u64, *mut c_int): NO_CLOCKS;
     fmi3GetShiftDecimal(*const u32, usize, *mut f64): NO_CLOCKS;
@@ -385,10 +523,6 @@ denied! {
     fmi3SetShiftDecimal(*const u32, usize, *const f64): NO_CLOCKS;
     fmi3SetShiftFraction(*const u32, usize, *const u64, *const u64): NO_CLOCKS;
     fmi3ActivateModelPartition(u32, f64): NO_CLOCKS;
-    fmi3EnterEventMode(): NO_EVENTS;
-    fmi3EnterStepMode(): NO_EVENTS;
-    fmi3EvaluateDiscreteStates(): NO_EVENTS;
-    fmi3UpdateDiscreteStates(*mut u8, *mut u8, *mut u8, *mut u8, *mut u8, *mut f64): NO_EVENTS;
     fmi3EnterContinuousTimeMode(): NO_EXCHANGE;
     fmi3CompletedIntegratorStep(u8, *mut u8, *mut u8): NO_EXCHANGE;
     fmi3SetTime(f64): NO_EXCHANGE;

@@ -15,6 +15,8 @@ mod fmi2;
 mod fmi3;
 mod handle;
 mod memory;
+#[cfg(test)]
+mod network_tests;
 mod state;
 #[cfg(test)]
 mod tests;

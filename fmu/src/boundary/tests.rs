@@ -15,7 +15,7 @@ use crate::definition::Definition;
 use crate::resources::Resources;
 
 thread_local! {
-    static LOGGED: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
+    pub(super) static LOGGED: RefCell<Vec<String>> = const { RefCell::new(Vec::new()) };
 }
 
 /// A logger without the arguments behind the message, of which none is ever given.
@@ -36,7 +36,7 @@ unsafe extern "C" fn logger3(_: *mut c_void, status: c_int, _: *const c_char, me
 }
 
 /// The line that the last call has logged; there must be just one.
-fn logged() -> String {
+pub(super) fn logged() -> String {
     let lines = LOGGED.take();
     assert_eq!(lines.len(), 1, "{lines:?}");
     assert!(!lines[0].contains('\n'));
@@ -44,13 +44,13 @@ fn logged() -> String {
 }
 
 /// An unpacked FMU.
-struct Unpacked {
+pub(super) struct Unpacked {
     folder: tempfile::TempDir,
-    definition: Definition,
+    pub(super) definition: Definition,
 }
 
 impl Unpacked {
-    fn of(resources: &Resources) -> Self {
+    pub(super) fn of(resources: &Resources) -> Self {
         // The space is in the address as %20.
         let folder = tempfile::Builder::new().prefix("an fmu ").tempdir().unwrap();
         for (name, text) in resources.files().unwrap() {
@@ -68,7 +68,7 @@ impl Unpacked {
         self.folder.path()
     }
 
-    fn vr(&self, name: &str) -> u32 {
+    pub(super) fn vr(&self, name: &str) -> u32 {
         let place = self
             .definition
             .variables
@@ -106,6 +106,10 @@ impl Unpacked {
     }
 
     fn instance3(&self) -> *mut c_void {
+        self.instance3_with(false)
+    }
+
+    pub(super) fn instance3_with(&self, uses_events: bool) -> *mut c_void {
         let token = CString::new(self.definition.token()).unwrap();
         let path = CString::new(self.path().display().to_string()).unwrap();
         unsafe {
@@ -115,7 +119,7 @@ impl Unpacked {
                 path.as_ptr(),
                 0,
                 0,
-                0,
+                uses_events.into(),
                 0,
                 std::ptr::null(),
                 0,

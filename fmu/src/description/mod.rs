@@ -110,6 +110,7 @@ fn capabilities(definition: &Definition, version: FmiVersion) -> Attributes {
         ]),
         FmiVersion::Three => {
             attributes.extend([("canGetAndSetFMUState", yes()), ("canSerializeFMUState", yes())]);
+            attributes.extend(definition.terminal.map(|_| ("hasEventMode", yes())));
             attributes.extend(
                 definition
                     .tick_s
@@ -175,7 +176,10 @@ fn types(
 /// One variable: FMI 2 puts what belongs to the type into an element inside, FMI 3 has one element for both.
 fn scalar(variable: &Variable, place: usize, version: FmiVersion, xml: &mut Xml) -> io::Result<()> {
     let is_real = matches!(variable.kind, Kind::Real { .. });
+    let is_clock = variable.kind == Kind::Clock;
     let (causality, variability, initial) = match variable.role {
+        Role::Structural => ("structuralParameter", "fixed", Some("exact")),
+        Role::Output if is_clock => ("output", "discrete", None),
         Role::Time => ("independent", "continuous", None),
         Role::Input if is_real => ("input", "continuous", None),
         Role::Input => ("input", "discrete", None),
@@ -193,11 +197,19 @@ fn scalar(variable: &Variable, place: usize, version: FmiVersion, xml: &mut Xml)
     ];
     general.extend(initial.map(|initial| ("initial", initial.to_owned())));
     let (element, own) = of_kind(variable, version);
+    let is_given = variable.role.is_given();
     match version {
         FmiVersion::Two => around(xml, "ScalarVariable", &general, |xml| empty(xml, element, &own)),
         FmiVersion::Three => {
             general.extend(own);
-            empty(xml, element, &general)
+            if matches!(variable.kind, Kind::Binary { .. }) && is_given {
+                // No bytes.
+                around(xml, element, &general, |xml| {
+                    empty(xml, "Start", &[("value", String::new())])
+                })
+            } else {
+                empty(xml, element, &general)
+            }
         }
     }
 }
@@ -226,6 +238,19 @@ fn of_kind(variable: &Variable, version: FmiVersion) -> (&'static str, Attribute
             own.extend(is_given.then(|| ("start", (variable.start as i64).to_string())));
             ("Enumeration", own)
         }
+        Kind::Binary {
+            mime_type,
+            most_bytes,
+            clock,
+        } => {
+            let own = vec![
+                ("clocks", clock.to_string()),
+                ("mimeType", (*mime_type).to_owned()),
+                ("maxSize", most_bytes.to_string()),
+            ];
+            ("Binary", own)
+        }
+        Kind::Clock => ("Clock", vec![("intervalVariability", "triggered".to_owned())]),
     }
 }
 
@@ -250,8 +275,9 @@ fn structure(definition: &Definition, version: FmiVersion, xml: &mut Xml) -> io:
         FmiVersion::Three => {
             let reference = |place: &usize| ("valueReference", place.to_string());
             (outputs.iter()).try_for_each(|place| empty(xml, "Output", &[reference(place), no_inputs.clone()]))?;
-            outputs
-                .iter()
+            // What a clock ticks for is not known before the first instant.
+            let is_clocked = |place: &usize| matches!(definition.variables[*place].kind, Kind::Binary { .. });
+            (outputs.iter().filter(|place| !is_clocked(place)))
                 .try_for_each(|place| empty(xml, "InitialUnknown", &[reference(place)]))
         }
     }
@@ -309,6 +335,7 @@ mod tests {
             tick_s: Some(0.005),
             step_s: 0.005,
             stop_s: 1.0,
+            terminal: None,
         }
     }
 

@@ -13,6 +13,7 @@
 //! | `source` | what every reader does |
 //! | `format` | which format a file has, and its reader |
 //! | `text` | lines in constant memory |
+//! | `hex` | bytes as digits |
 //! | `candump` | text of `candump -L`, read and written |
 //! | `asc`, `asc_writer` | Vector ASC, read and written |
 //! | `blf`, `blf_writer` | Vector BLF, read and written |
@@ -31,6 +32,7 @@ pub mod candump;
 mod error;
 mod format;
 mod frame;
+mod hex;
 #[cfg(feature = "logs")]
 mod mf4;
 mod mf4_writer;

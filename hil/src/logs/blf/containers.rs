@@ -4,8 +4,7 @@ use std::io::{self, Read};
 
 use flate2::read::ZlibDecoder;
 
-use super::SIGNATURE;
-use super::object::{BASE_HEAD, CONTAINER, number};
+use super::object::{BASE_HEAD, CONTAINER, SIGNATURE, number};
 
 /// What every object begins with.
 const OBJECT: &[u8] = b"LOBJ";

@@ -21,13 +21,11 @@ use std::path::PathBuf;
 
 use self::containers::{Containers, Fault};
 use self::object::Event;
+pub use self::object::SIGNATURE;
 use super::account::Account;
 use super::error::LogError;
 use super::frame::{Entry, FrameKind};
 use super::source::{FrameSource, Sink};
-
-/// What a BLF log begins with.
-pub const SIGNATURE: &[u8] = b"LOGG";
 
 /// The frames of a BLF log.
 pub struct Blf {

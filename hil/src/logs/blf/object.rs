@@ -12,6 +12,8 @@
 
 use super::super::frame::{FrameKind, LoggedFrame, Payload, fd_length, identifier};
 
+/// What a BLF log begins with.
+pub const SIGNATURE: &[u8] = b"LOGG";
 /// Bytes of the head that every object has.
 pub const BASE_HEAD: usize = 16;
 /// Bytes of the head of an object with a time.

@@ -1,7 +1,7 @@
 //! The description file for calibration tools (ASAM MCD-2 MC, "A2L"), written from the tables that the slave itself serves.
 //!
 //! Name, place, kind, unit and range of every quantity come from [`measurement`] and
-//! [`calibration`]; how to connect comes from [`bus`] and `daq`. So a file and a slave of the same build
+//! [`calibration`]; how to connect comes from [`bus`](crate::bus) and `daq`. So a file and a slave of the same build
 //! cannot disagree, and [`identity`], which is in the file as `EPK`, tells builds apart. The crate `a2lfile`
 //! writes the file and checks it before it is given away.
 

@@ -63,7 +63,15 @@ fn a_drive_has_the_same_columns_in_every_format() {
     succeeds(&["convert", path(&log), path(&file("a.asc"))]);
     succeeds(&["convert", path(&file("a.asc")), path(&file("b.log"))]);
     assert_eq!(read("b.log").lines().count(), read("run/candump.log").lines().count());
-    for (input, output) in [(&log, "a.csv"), (&file("a.asc"), "b.csv"), (&file("b.log"), "c.csv")] {
+    succeeds(&["convert", path(&file("b.log")), path(&file("a.blf"))]);
+    succeeds(&["convert", path(&file("a.blf")), path(&file("c.log"))]);
+    assert_eq!(read("c.log"), read("b.log"));
+    for (input, output) in [
+        (&log, "a.csv"),
+        (&file("a.asc"), "b.csv"),
+        (&file("b.log"), "c.csv"),
+        (&file("a.blf"), "e.csv"),
+    ] {
         succeeds(&["convert", path(input), path(&file(output))]);
     }
     let expected = read("a.csv");
@@ -72,6 +80,7 @@ fn a_drive_has_the_same_columns_in_every_format() {
         "{expected:.200}"
     );
     assert_eq!((read("b.csv"), read("c.csv")), (expected.clone(), expected.clone()));
+    assert_eq!(read("e.csv"), expected);
     if cfg!(feature = "logs") {
         by_map_it_has_the_same_columns(folder.path(), &log, &expected);
     }
@@ -105,7 +114,7 @@ fn what_cannot_be_converted_is_refused_in_one_line() {
     let refused = |arguments: &[&str]| complaint(&run(&[&["convert"], arguments].concat()));
     let log = file("a.log");
     assert!(refused(&[path(&log), path(&log)]).contains("is an input"));
-    assert!(refused(&[path(&log), path(&file("a.blf"))]).contains("is no format that is written"));
+    assert!(refused(&[path(&log), path(&file("a.trc"))]).contains("is no format that is written"));
     assert!(refused(&[path(&log), path(&file("a.csv"))]).contains("1 frame with other identifiers"));
     assert!(refused(&[path(&file("none.log")), path(&file("b.log"))]).contains("check the path"));
     assert!(refused(&[path(&log), path(&file("b.log")), "--dbc", "a.dbc"]).contains("--signals"));
@@ -113,7 +122,12 @@ fn what_cannot_be_converted_is_refused_in_one_line() {
     assert!(refused(&[&[path(&log), path(&file("b.log"))], &both[..]].concat()).contains("leave the options out"));
     for (name, content, said) in [
         ("words.asc", &b"these are words\n"[..], "holds no frame"),
-        ("a.blf", b"LOGG\0\0", "can_logconvert"),
+        ("a.blf", b"LOGG\0\0", "is cut off"),
+        (
+            "b.blf",
+            &include_bytes!("golden/frames.blf")[..1000],
+            "after 0 whole frames; copy it again",
+        ),
     ] {
         std::fs::write(file(name), content).expect("written");
         let complaint = refused(&[path(&file(name)), path(&file("b.log"))]);
@@ -122,6 +136,34 @@ fn what_cannot_be_converted_is_refused_in_one_line() {
     // Nothing half-written, and the input as it was.
     assert!(!file("b.log").exists() && !file("a.csv").exists());
     assert_eq!(std::fs::read_to_string(&log).expect("a log"), line);
+}
+
+/// What a file is, its content says and not its name; error frames are counted.
+#[test]
+fn a_blf_log_of_python_can_is_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name);
+    for golden in [
+        &include_bytes!("golden/frames.blf")[..],
+        include_bytes!("golden/frames-plain.blf"),
+    ] {
+        std::fs::write(file("a.log"), golden).expect("written");
+        let ran = run(&["convert", path(&file("a.log")), path(&file("b.log"))]);
+        let said = String::from_utf8_lossy(&ran.stdout);
+        let expected = "44 frames of 48 entries; 4 error frames, 0 unreadable entries.";
+        assert!(said.starts_with(expected), "{said}");
+        let written = std::fs::read_to_string(file("b.log")).expect("a log");
+        let count = |what: &str| written.matches(what).count();
+        assert_eq!(
+            (written.lines().count(), count("##1"), count("#R8")),
+            (44, 10, 4),
+            "{written}"
+        );
+        assert!(
+            written.starts_with("(0000000000.000000) can1 1AEBDC75#5AD72524\n"),
+            "{written}"
+        );
+    }
 }
 
 /// A binary with the feature reads what others write.

@@ -170,6 +170,14 @@ fn bus_operations() {
     drive(targets::bus_operations, &[&seed]);
 }
 
+#[test]
+fn blf() {
+    let packed = include_bytes!("golden/frames.blf");
+    let plain = include_bytes!("golden/frames-plain.blf");
+    // Head of the file and of its one container.
+    drive(targets::blf, &[packed, plain, &plain[144 + 32..]]);
+}
+
 #[cfg(feature = "logs")]
 #[test]
 fn mf4() {

@@ -115,6 +115,12 @@ pub fn asc(bytes: &[u8]) {
     frames_of(&[b"base hex  timestamps absolute\n", bytes].concat());
 }
 
+/// A Vector BLF log: as it is, and as objects that are in no container, so that damage is not noticed by the checksum of a container.
+pub fn blf(bytes: &[u8]) {
+    frames_of(bytes);
+    frames_of(&[b"LOGG\x08\0\0\0", bytes].concat());
+}
+
 /// A candump log as `oleo diagnose` reads it. A drive that is accepted has samples, all of them finite or missing.
 pub fn drive_log(bytes: &[u8]) {
     match oleo_hil::drive_log::parse(bytes) {

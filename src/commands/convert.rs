@@ -26,12 +26,13 @@ use crate::results::say;
 #[command(
     after_help = "Examples:\n  oleo convert drive.mf4 drive.log                                  frames, as text of candump -L\n  \
     oleo convert drive.log.gz drive.asc                               frames, as Vector ASC\n  \
-    oleo convert drive.log drive.mf4                                  frames, as ASAM MDF 4\n  \
+    oleo convert drive.blf drive.mf4                                  frames, from Vector BLF to ASAM MDF 4\n  \
+    oleo convert drive.log drive.blf                                  frames, as Vector BLF\n  \
     oleo convert drive.log drive.csv                                  columns in SI units, one row every 5 ms\n  \
     oleo convert drive.log drive.mcap                                 the same for Foxglove and PlotJuggler\n  \
     oleo convert drive.log drive.parquet                              the same for pandas and DuckDB\n  \
     oleo convert drive.mf4 drive.csv --dbc car.dbc --signals map.toml   the same of messages of another database\n\n\
-    Read are candump -L (.log), Vector ASC (.asc), both also with .gz, and ASAM MDF 4 (.mf4), CAN FD included. Frames pass through \
+    Read are candump -L (.log), Vector ASC (.asc) and BLF (.blf), all three also with .gz, and ASAM MDF 4 (.mf4), CAN FD included. Frames pass through \
     one at a time, so that a log of any length needs no more memory than a short one; columns need the memory of the drives. \
     Error frames, statistics and unreadable entries are counted and left out. In columns, what is missing is NaN; in .mcap it is left out. .mcap and .parquet need features of their own."
 )]
@@ -39,7 +40,7 @@ pub struct Args {
     /// Log that is read
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// File that is written: .log (candump), .asc (Vector ASC), .mf4 (ASAM MDF 4), .csv, .mcap or .parquet (columns)
+    /// File that is written: .log (candump), .asc (Vector ASC), .blf (Vector BLF), .mf4 (ASAM MDF 4), .csv, .mcap or .parquet (columns)
     #[arg(value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
@@ -88,7 +89,7 @@ pub fn convert(args: &Args) -> Result<String, Failure> {
         Some(format) if !has_end(&args.output, "gz") => format,
         _ => {
             return Err(Failure::new(format!(
-                "{}: is no format that is written; give a name that ends in .log, .asc, .mf4, .csv, .mcap or .parquet",
+                "{}: is no format that is written; give a name that ends in .log, .asc, .blf, .mf4, .csv, .mcap or .parquet",
                 args.output.display()
             )));
         }

@@ -7,6 +7,7 @@ use embedded_can::Id;
 
 use super::bus_numbers::BusNumbers;
 use super::frame::{Entry, FrameKind, fd_code};
+use super::hex;
 
 /// Flags of the message in a line of CAN FD: the frame is CAN FD, its bit rate was switched, its sender was error-passive.
 const FD_MESSAGE: [u32; 3] = [1 << 12, 1 << 13, 1 << 14];
@@ -55,7 +56,7 @@ impl<W: Write> AscWriter<W> {
                     self.out,
                     "{seconds:4}.{micros:06} {channel}  {id:<15} Rx   d {length:X}"
                 )?;
-                self.bytes(frame.data())?;
+                hex::write_spaced(&mut self.out, frame.data())?;
             }
             FrameKind::Remote(length) => write!(
                 self.out,
@@ -68,7 +69,7 @@ impl<W: Write> AscWriter<W> {
                     self.out,
                     "{seconds:4}.{micros:06} CANFD {channel:>3} Rx   {id:>9} {brs} {esi} {code:x} {length:2}"
                 )?;
-                self.bytes(frame.data())?;
+                hex::write_spaced(&mut self.out, frame.data())?;
                 let [is_fd, is_switched, is_passive] = FD_MESSAGE;
                 let flags = is_fd | (is_switched * u32::from(brs)) | (is_passive * u32::from(esi));
                 write!(self.out, " {:>8} {:>4} {flags:>8X} 0 0 0 0 0", 0, 0)?;
@@ -99,10 +100,6 @@ impl<W: Write> AscWriter<W> {
             self.out,
             "date {date}\nbase hex  timestamps absolute\nno internal events logged\nBegin Triggerblock {date}"
         )
-    }
-
-    fn bytes(&mut self, data: &[u8]) -> io::Result<()> {
-        data.iter().try_for_each(|byte| write!(self.out, " {byte:02X}"))
     }
 }
 

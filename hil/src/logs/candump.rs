@@ -16,6 +16,7 @@ use embedded_can::Id;
 use super::account::Account;
 use super::error::LogError;
 use super::frame::{Entry, FD_FLAGS, FrameKind, LoggedFrame, Payload, identifier};
+use super::hex;
 use super::source::{FrameSource, Sink};
 use super::text::Lines;
 
@@ -53,10 +54,8 @@ pub fn write_line(
         FrameKind::Fd(flags) => write!(out, "#{:X}", flags & FD_FLAGS)?,
         FrameKind::Classic => {}
     }
-    for byte in frame.data() {
-        write!(out, "{byte:02X}")?;
-    }
-    writeln!(out)
+    hex::write(out, frame.data())?;
+    out.write_all(b"\n")
 }
 
 /// Reads one line; `None` if it is not that of a frame.
@@ -103,12 +102,9 @@ fn parse_frame(text: &str) -> Option<LoggedFrame> {
             (FrameKind::Fd(flags & FD_FLAGS), fd.get(1..)?)
         }
     };
-    if !data.len().is_multiple_of(2) || !data.bytes().all(|b| b.is_ascii_hexdigit()) {
-        return None;
-    }
     let mut payload = Payload::EMPTY;
-    for at in (0..data.len()).step_by(2) {
-        payload.push(u8::from_str_radix(data.get(at..at + 2)?, 16).ok()?)?;
+    for digits in data.as_bytes().chunks(2) {
+        payload.push(hex::byte(digits)?)?;
     }
     LoggedFrame::new(id, kind, payload)
 }

@@ -7,6 +7,7 @@ use std::path::Path;
 use flate2::read::MultiGzDecoder;
 
 use super::asc::Asc;
+use super::blf::{self, Blf};
 use super::candump::Candump;
 use super::error::LogError;
 #[cfg(feature = "logs")]
@@ -28,13 +29,20 @@ pub enum Format {
     Candump,
     /// Vector ASC.
     Asc,
+    /// Vector BLF.
+    Blf,
     /// ASAM MDF 4.
     Mf4,
 }
 
 impl Format {
-    /// Ends of the names of logs, in lower case; those of texts may be followed by `.gz`.
-    pub const ENDS: [(&'static str, Self); 3] = [(".log", Self::Candump), (".asc", Self::Asc), (".mf4", Self::Mf4)];
+    /// Ends of the names of logs, in lower case; all but MDF 4, which is not read from front to back, may be followed by `.gz`.
+    pub const ENDS: [(&'static str, Self); 4] = [
+        (".log", Self::Candump),
+        (".asc", Self::Asc),
+        (".blf", Self::Blf),
+        (".mf4", Self::Mf4),
+    ];
 
     /// The format that the end of a file's name stands for.
     #[must_use]
@@ -72,13 +80,12 @@ pub fn open(path: &Path) -> Result<Box<dyn FrameSource>, LogError> {
     if is_mdf(head) {
         return Ok(Box::new(Mf4::open(path)?));
     }
-    refuse_foreign(head).map_err(|what| LogError::new(path, what))?;
     let source: Box<dyn Read> = if head.starts_with(&[0x1F, 0x8B]) {
         Box::new(MultiGzDecoder::new(file))
     } else {
         Box::new(file)
     };
-    text(source, Format::of_name(path), path)
+    stream(source, Format::of_name(path), path)
 }
 
 /// Opens a log in memory.
@@ -90,22 +97,28 @@ pub fn in_memory(bytes: &[u8]) -> Result<Box<dyn FrameSource>, LogError> {
     if is_mdf(bytes) {
         return Ok(Box::new(Mf4::in_memory(bytes.to_vec(), path)?));
     }
-    refuse_foreign(bytes).map_err(|what| LogError::new(path, what))?;
-    text(Box::new(Cursor::new(bytes.to_vec())), None, path)
+    stream(Box::new(Cursor::new(bytes.to_vec())), None, path)
 }
 
-fn text(source: Box<dyn Read>, named: Option<Format>, path: &Path) -> Result<Box<dyn FrameSource>, LogError> {
+/// A log that is read from front to back.
+fn stream(source: Box<dyn Read>, named: Option<Format>, path: &Path) -> Result<Box<dyn FrameSource>, LogError> {
     let mut source = BufReader::with_capacity(READ_AHEAD, source);
     let mut head = Vec::new();
     let unreadable = |error| LogError::unreadable(path, &error);
     Read::take(&mut source, HEAD)
         .read_to_end(&mut head)
         .map_err(unreadable)?;
+    refuse_foreign(&head).map_err(|what| LogError::new(path, what))?;
+    let is_blf = head.starts_with(blf::SIGNATURE);
     let format = match Format::of_text(&head) {
         Format::Candump if named == Some(Format::Asc) => Format::Asc,
         format => format,
     };
-    let lines = Lines::new(Box::new(Cursor::new(head).chain(source)));
+    let whole = Cursor::new(head).chain(source);
+    if is_blf {
+        return Ok(Box::new(Blf::new(Box::new(whole), path.to_path_buf())));
+    }
+    let lines = Lines::new(Box::new(whole));
     Ok(match format {
         Format::Asc => Box::new(Asc::new(lines, path.to_path_buf())),
         _ => Box::new(Candump::new(lines, path.to_path_buf())),
@@ -118,10 +131,8 @@ fn is_mdf(head: &[u8]) -> bool {
 
 /// Formats that people have too, with the way to one that is read.
 fn refuse_foreign(head: &[u8]) -> Result<(), &'static str> {
-    if head.starts_with(b"LOGG") {
-        return Err(
-            "is a Vector BLF log, which is not read; convert it with `can_logconvert IN.blf OUT.asc` of python-can",
-        );
+    if is_mdf(head) {
+        return Err("is an MDF 4 log that is packed once more; unpack it with gunzip");
     }
     if head.starts_with(b"PK\x03\x04") {
         return Err("is a ZIP archive; unpack it and give the logs inside");

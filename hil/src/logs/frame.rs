@@ -77,6 +77,12 @@ pub fn fd_code(length: usize) -> u8 {
     FD_LENGTHS.iter().position(|code| *code >= length).unwrap_or(15) as u8
 }
 
+/// The number of data bytes that a code of CAN FD stands for.
+#[must_use]
+pub fn fd_length(code: u8) -> usize {
+    FD_LENGTHS.get(usize::from(code)).copied().unwrap_or(MOST_BYTES)
+}
+
 /// A frame of a log, without its time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LoggedFrame {
@@ -146,7 +152,7 @@ pub fn identifier(number: u32, is_extended: bool) -> Option<Id> {
 pub struct Entry<'a> {
     /// Time as the log says it, microseconds. Its zero is the log's own.
     pub time_us: u64,
-    /// The bus: the interface of candump, the number of the channel in ASC and MF4.
+    /// The bus: the interface of candump, the number of the channel in ASC, BLF and MF4.
     pub bus: &'a str,
     /// The frame.
     pub frame: LoggedFrame,

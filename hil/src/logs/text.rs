@@ -28,6 +28,10 @@ impl Lines {
         if part.read_until(b'\n', &mut self.line)? == 0 {
             return Ok(None);
         }
-        Ok(Some(String::from_utf8_lossy(&self.line)))
+        // Most lines are ASCII, which this sees eight bytes at a time.
+        Ok(Some(match std::str::from_utf8(&self.line) {
+            Ok(line) => Cow::Borrowed(line),
+            Err(_) => String::from_utf8_lossy(&self.line),
+        }))
     }
 }

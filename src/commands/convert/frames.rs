@@ -4,7 +4,7 @@ use std::io::{Seek, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use oleo_hil::logs::{self, Account, AscWriter, Entry, Format, LogError, Mf4Writer, candump};
+use oleo_hil::logs::{self, Account, AscWriter, BlfWriter, Entry, Format, LogError, Mf4Writer, candump};
 use oleo_report::OutputFile;
 
 use crate::failure::Failure;
@@ -47,7 +47,7 @@ fn some_frame(frames: u64, input: &Path) -> Result<(), LogError> {
     match frames {
         0 => Err(LogError::new(
             input,
-            "holds no frame; give a log of candump -L, Vector ASC or MDF 4",
+            "holds no frame; give a log of candump -L, Vector ASC or BLF, or MDF 4",
         )),
         _ => Ok(()),
     }
@@ -57,6 +57,7 @@ fn some_frame(frames: u64, input: &Path) -> Result<(), LogError> {
 enum FrameWriter<W: Write + Seek> {
     Candump(W),
     Asc(AscWriter<W>),
+    Blf(BlfWriter<W>),
     Mf4(Box<Mf4Writer<W>>),
 }
 
@@ -65,6 +66,7 @@ impl<W: Write + Seek> FrameWriter<W> {
         match format {
             Format::Candump => Self::Candump(out),
             Format::Asc => Self::Asc(AscWriter::new(out)),
+            Format::Blf => Self::Blf(BlfWriter::new(out)),
             Format::Mf4 => Self::Mf4(Box::new(Mf4Writer::new(out))),
         }
     }
@@ -77,6 +79,7 @@ impl<W: Write + Seek> FrameWriter<W> {
             }
             Self::Candump(out) => candump::write_line(out, entry.time_us, entry.bus, entry.frame),
             Self::Asc(writer) => writer.write(entry),
+            Self::Blf(writer) => writer.write(entry),
             Self::Mf4(writer) => writer.write(entry),
         }
     }
@@ -85,6 +88,7 @@ impl<W: Write + Seek> FrameWriter<W> {
         match self {
             Self::Candump(_) => Ok(()),
             Self::Asc(writer) => writer.finish().map(|_| ()),
+            Self::Blf(writer) => writer.finish().map(|_| ()),
             Self::Mf4(writer) => writer.finish().map(|_| ()),
         }
     }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# reads logs that python-can and asammdf write (candump, ASC, MDF 4, another CAN database); other programs read MDF 4, MCAP and Parquet and follow a live run
+# reads logs that python-can and asammdf write (candump, ASC, BLF, MDF 4, another CAN database); other programs read MDF 4, MCAP and Parquet and follow a live run
 . tests/harness/lib.sh
 
 python_packages 'asammdf, can, cantools, pyarrow' 'python-can>=4.4,<5' 'asammdf>=8,<9' 'cantools>=40,<46' 'pyarrow>=16,<25' || {

@@ -220,15 +220,19 @@ fn page(curves: &[MeasuredCurve], extent: &Extent, command: &str) -> Page {
     );
     page.fact("Cores", &resources::cores().to_string());
     page.fact("Repeats", &extent.repeats.to_string());
-    let odd: Vec<&str> = (curves.iter())
-        .filter(|curve| curve.kind() == Kind::FasterThanLinear)
-        .map(|curve| curve.curve.name())
-        .collect();
-    match odd[..] {
-        [] => page.verdict(Verdict::Pass, "No measured cost grows faster than the work."),
-        _ => page.verdict(
+    let named = |kind| -> Vec<&str> {
+        let of_kind = curves.iter().filter(|curve| curve.kind() == kind);
+        of_kind.map(|curve| curve.curve.name()).collect()
+    };
+    match (&named(Kind::FasterThanLinear)[..], &named(Kind::Undecided)[..]) {
+        ([], []) => page.verdict(Verdict::Pass, "No measured cost grows faster than the work."),
+        ([], undecided) => page.verdict(
             Verdict::Attention,
-            &format!("Grows faster than the work: {}.", odd.join(", ")),
+            &format!("Scatters too much to tell how it grows: {}.", undecided.join(", ")),
+        ),
+        (faster, _) => page.verdict(
+            Verdict::Attention,
+            &format!("Grows faster than the work: {}.", faster.join(", ")),
         ),
     };
     page.outcome(outcome(curves));

@@ -313,7 +313,7 @@ mod tests {
                 port.can_mut().incoming.push_back(Ok(frame));
             }
             mode = port.tick().mode;
-            if let Some(command) = port.can_mut().sent.iter().rfind(|frame| frame.id == command_id) {
+            if let Some(command) = port.can().sent.iter().rfind(|frame| frame.id == command_id) {
                 plant.receive(COMMAND.id, &command.data);
             }
         }

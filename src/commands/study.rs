@@ -4,6 +4,7 @@ mod control;
 mod drive;
 mod drives;
 mod fleet;
+mod mixed_drive;
 mod optimise;
 mod robust;
 mod sweep;

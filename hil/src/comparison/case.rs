@@ -38,6 +38,18 @@ impl DriveCase {
         Self::new(road, manoeuvre, driver, seed)
     }
 
+    /// Everything in one drive: straight ahead, the lane change of ISO 3888-2 at 60 km/h, and straight ahead again, on one road.
+    pub fn mixed(road: &str, seed: u64) -> Self {
+        let speed_m_s = 60.0 / 3.6;
+        let manoeuvre = Manoeuvre::LaneChange {
+            kind: LaneChange::ObstacleAvoidance,
+            speed_m_s,
+            entry_m: 10.0 * speed_m_s,
+            duration_s: Some(26.0),
+        };
+        Self::new(road, manoeuvre, DriverStyle::Eased, seed)
+    }
+
     /// A step of steer of ISO 7401 after the run-up, for `angle_rad` at the front wheels.
     pub fn step_steer(road: &str, speed_m_s: f64, angle_rad: f64, seed: u64) -> Self {
         let manoeuvre = Manoeuvre::StepSteer {

@@ -5,19 +5,19 @@ use std::sync::Arc;
 use oleo_controller::{Builder, ConfigurationError, Estimate, State, Strategy, ValveCommand, tick};
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Corners, StrutValves};
-use oleo_plant_sim::course::{Course, Drive, NotFinite};
+use oleo_plant_sim::course::{Course, Drive, Ending, NotFinite};
 use oleo_plant_sim::handling::HandlingModel;
-use oleo_plant_sim::measures::SeatMeter;
 use oleo_plant_sim::road::{self, RoadError};
 use oleo_plant_sim::strut::Strut;
+use oleo_plant_sim::vehicle::RideError;
 use oleo_plant_sim::vehicle::suspension::{CoilElement, StrutElement, SuspensionElement};
-use oleo_plant_sim::vehicle::{RideError, Seats};
 
 use super::bench::Bench;
 use super::case::DriveCase;
-use super::figures::{Figures, Instant, SCORED_FROM_S, Watch};
+use super::figures::{Figures, Scored};
 use super::sensors::Sensors;
 use super::setting::Setting;
+use super::witness::{Instant, Nobody, Witness};
 
 /// A drive that could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -47,15 +47,27 @@ const BEGUN_M_S2: f64 = 0.5;
 /// # Errors
 /// A road that is not there, or a vehicle that its springs do not carry.
 pub fn drive(bench: &Bench, case: &DriveCase, setting: &Setting) -> Result<Figures, ComparisonError> {
+    let mut scored = Scored::new(case, bench.vehicle.solver.step_s);
+    let ending = drive_seen_by(&mut scored, bench, case, setting)?;
+    Ok(scored.figures(ending))
+}
+
+/// Drives a case with a setting, and says how it ended.
+pub(super) fn drive_seen_by(
+    witness: &mut impl Witness,
+    bench: &Bench,
+    case: &DriveCase,
+    setting: &Setting,
+) -> Result<Ending, ComparisonError> {
     match setting {
         Setting::AsSold => {
             let drive = begin(bench, case, CoilElement::of_vehicle(&bench.vehicle))?;
-            follow(drive, case, |_| (Corners::default(), ValveCommand::SAFE, false))
+            follow(drive, witness, |_| (Corners::default(), ValveCommand::SAFE, false))
         }
         Setting::Fixed(open) => {
             let command = ValveCommand::from_corners(Corners::splat(*open));
             let drive = begin(bench, case, struts(bench, *open)?)?;
-            follow(drive, case, |_| (command.corners(), command, false))
+            follow(drive, witness, |_| (command.corners(), command, false))
         }
         Setting::Oracle { before, delay_s } => {
             let drive = begin(bench, case, struts(bench, *before)?)?;
@@ -63,7 +75,7 @@ pub fn drive(bench: &Bench, case: &DriveCase, setting: &Setting) -> Result<Figur
                 .begins_s
                 .map_or(u64::MAX, |begins| ((begins + delay_s) / TICK_S).round() as u64);
             let (before, mut ticks) = (ValveCommand::from_corners(Corners::splat(*before)), 0);
-            follow(drive, case, |_| {
+            follow(drive, witness, |_| {
                 let corners = ticks >= decided_tick;
                 ticks += 1;
                 let command = if corners { ValveCommand::SAFE } else { before };
@@ -73,7 +85,7 @@ pub fn drive(bench: &Bench, case: &DriveCase, setting: &Setting) -> Result<Figur
         Setting::Controlled(_, configuration) => {
             let drive = begin(bench, case, struts(bench, StrutValves::splat(false))?)?;
             let (mut state, mut sensors) = (State::new(), Sensors::new(bench, case.seed));
-            follow(drive, case, |model| {
+            follow(drive, witness, |model| {
                 let inputs = sensors.read(model.strut_displacement_m(), model.strut_output());
                 let outputs = tick(configuration, &mut state, &inputs);
                 (outputs.command.corners(), outputs.command, outputs.handling)
@@ -96,7 +108,7 @@ pub fn estimates(bench: &Bench, case: &DriveCase) -> Result<Vec<Estimate>, Compa
     let drive = begin(bench, case, struts(bench, StrutValves::splat(false))?)?;
     let (mut state, mut sensors) = (State::new(), Sensors::new(bench, case.seed));
     let mut estimates = Vec::new();
-    follow(drive, case, |model| {
+    follow(drive, &mut Nobody, |model| {
         let inputs = sensors.read(model.strut_displacement_m(), model.strut_output());
         let outputs = tick(&configuration, &mut state, &inputs);
         estimates.push(outputs.estimate);
@@ -125,32 +137,26 @@ fn begin<E: SuspensionElement>(
     Ok(Drive::begin(&course, &bench.vehicle, &bench.handling, elements)?)
 }
 
-/// Drives to the end and keeps the figures.
+/// Drives to the end.
 fn follow<E: SuspensionElement>(
     mut drive: Drive<E>,
-    case: &DriveCase,
+    witness: &mut impl Witness,
     mut decide: impl FnMut(&HandlingModel<E>) -> (Corners<E::Signal>, ValveCommand, bool),
-) -> Result<Figures, ComparisonError> {
-    let speed_m_s = case.manoeuvre.initial_speed_m_s();
-    let mut watch = Watch::new(case.begins_s);
-    let step_s = drive.model().step_s();
-    let mut meters = Seats::from_fn(|_| SeatMeter::new(step_s, SCORED_FROM_S));
+) -> Result<Ending, ComparisonError> {
     let places = drive.seat_places_m();
     loop {
         let (signals, command, handling) = decide(drive.model());
-        let motion = drive.model().motion();
-        watch.tick(&Instant {
-            roll_rad: motion.roll_rad,
+        witness.tick(&Instant {
+            roll_rad: drive.model().motion().roll_rad,
             command,
             handling,
+            phase: drive.phase(),
         });
         if let Some(ending) = drive.ending() {
-            let felt = meters.map(|meter| meter.measures().vertical.weighted_rms_m_s2);
-            return Ok(watch.figures(ending, 0.5 * (felt.driver + felt.passenger), speed_m_s));
+            return Ok(ending);
         }
         drive.tick(signals, |model| {
-            meters.driver.add(model.acceleration_at(places.driver));
-            meters.passenger.add(model.acceleration_at(places.passenger));
+            witness.step(places.map(|place_m| model.acceleration_at(place_m)))
         })?;
     }
 }

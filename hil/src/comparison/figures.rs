@@ -4,6 +4,11 @@ use oleo_controller::ValveCommand;
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Corner, Valve};
 use oleo_plant_sim::course::Ending;
+use oleo_plant_sim::measures::SeatMeter;
+use oleo_plant_sim::vehicle::{SeatAcceleration, Seats};
+
+use super::case::DriveCase;
+use super::witness::{Instant, Witness};
 
 /// Scores begin after this time, s: start-up of the controller and the smooth entry of the road are over.
 pub const SCORED_FROM_S: f64 = 3.0;
@@ -28,8 +33,10 @@ pub struct Figures {
     pub valve_changes: [u32; 3],
 }
 
-/// Follows a drive, tick by tick.
-pub(super) struct Watch {
+/// Makes the figures while a drive goes on.
+pub(super) struct Scored {
+    meters: Seats<SeatMeter>,
+    speed_m_s: f64,
     scored_from_tick: u32,
     begun_tick: Option<u32>,
     ticks: u32,
@@ -41,20 +48,15 @@ pub(super) struct Watch {
     changes: [u32; 3],
 }
 
-/// One tick as the watch sees it.
-pub(super) struct Instant {
-    pub roll_rad: f64,
-    pub command: ValveCommand,
-    pub handling: bool,
-}
-
-impl Watch {
-    /// `begun_s` is when the manoeuvre begins.
-    pub fn new(begun_s: Option<f64>) -> Self {
+impl Scored {
+    /// Of a drive with the model's step, s.
+    pub fn new(case: &DriveCase, step_s: f64) -> Self {
         let tick = |time_s: f64| (time_s / TICK_S).round() as u32;
         Self {
+            meters: Seats::from_fn(|_| SeatMeter::new(step_s, SCORED_FROM_S)),
+            speed_m_s: case.manoeuvre.initial_speed_m_s(),
             scored_from_tick: tick(SCORED_FROM_S),
-            begun_tick: begun_s.map(tick),
+            begun_tick: case.begins_s.map(tick),
             ticks: 0,
             peak_roll_rad: 0.0,
             decided: None,
@@ -65,7 +67,27 @@ impl Watch {
         }
     }
 
-    pub fn tick(&mut self, now: &Instant) {
+    /// The figures of a drive that has ended.
+    pub fn figures(self, ending: Ending) -> Figures {
+        let scored_s = f64::from(self.ticks.saturating_sub(self.scored_from_tick)) * TICK_S;
+        let felt = self.meters.map(|meter| meter.measures().vertical.weighted_rms_m_s2);
+        Figures {
+            ending,
+            weighted_rms_m_s2: 0.5 * (felt.driver + felt.passenger),
+            peak_roll_deg: match ending {
+                Ending::RolledOver(_) => 90.0,
+                _ => self.peak_roll_rad.to_degrees(),
+            },
+            decision_s: (self.begun_tick.zip(self.decided)).map(|(begun, decided)| f64::from(decided - begun) * TICK_S),
+            entries: self.entries,
+            distance_km: 1e-3 * scored_s * self.speed_m_s,
+            valve_changes: self.changes,
+        }
+    }
+}
+
+impl Witness for Scored {
+    fn tick(&mut self, now: &Instant) {
         let tick = self.ticks;
         self.ticks += 1;
         let begun = self.begun_tick.is_some_and(|begun| tick >= begun);
@@ -86,19 +108,9 @@ impl Watch {
         self.word = Some(now.command);
     }
 
-    pub fn figures(self, ending: Ending, weighted_rms_m_s2: f64, speed_m_s: f64) -> Figures {
-        let scored_s = f64::from(self.ticks.saturating_sub(self.scored_from_tick)) * TICK_S;
-        Figures {
-            ending,
-            weighted_rms_m_s2,
-            peak_roll_deg: match ending {
-                Ending::RolledOver(_) => 90.0,
-                _ => self.peak_roll_rad.to_degrees(),
-            },
-            decision_s: (self.begun_tick.zip(self.decided)).map(|(begun, decided)| f64::from(decided - begun) * TICK_S),
-            entries: self.entries,
-            distance_km: 1e-3 * scored_s * speed_m_s,
-            valve_changes: self.changes,
+    fn step(&mut self, felt: Seats<SeatAcceleration>) {
+        for (seat, meter) in self.meters.iter_mut() {
+            meter.add(felt[seat]);
         }
     }
 }

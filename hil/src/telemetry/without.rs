@@ -54,12 +54,12 @@ pub enum Live {}
 #[error("--live: this oleo was built without a server for viewers; {HOW_TO_BUILD}")]
 pub struct LiveError;
 
-/// What a server has done.
-pub enum Served {}
+/// What a server has done, where there was one.
+pub struct Served;
 
 impl std::fmt::Display for Served {
-    fn fmt(&self, _: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match *self {}
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        out.write_str("nothing")
     }
 }
 

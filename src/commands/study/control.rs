@@ -13,6 +13,7 @@ use oleo_report::{Axis, Cell, Column, Curves, OutputDirectory, Page, Style, Tabl
 use serde_json::json;
 
 use super::drives::{Drives, controlled, records};
+use super::mixed_drive::MixedDrive;
 use crate::failure::Failure;
 use crate::results::ResultsArgs;
 use crate::shard::{About, Kept, Request, Said, ShardArgs, Study, Work};
@@ -162,7 +163,9 @@ impl Study for Control {
         let met = own.goals.iter().all(|goal| goal.met);
         if let Some(out) = out {
             self.parameters.keep(out)?;
-            write(out, self.first_seed, &comparison, own, &tables, command)?;
+            let mixed = || MixedDrive::new(&self.bench, &self.settings, CONTROLLERS[0].0, self.first_seed);
+            let mixed = self.drives.on_threads(mixed)??;
+            write(out, self.first_seed, &comparison, own, &tables, &mixed, command)?;
         }
         let text: Vec<String> = tables.iter().map(ToString::to_string).collect();
         let failed = self.check && !met;
@@ -236,6 +239,7 @@ fn write(
     comparison: &Comparison,
     own: &Scores,
     tables: &[Table; 3],
+    mixed: &MixedDrive,
     command: &str,
 ) -> Result<(), Failure> {
     let Comparison {
@@ -267,14 +271,21 @@ fn write(
             "seeds": groups.iter().map(|group| group.cases.len()).max(),
             "settings": settings.iter().map(Setting::name).collect::<Vec<_>>(),
             "means": means,
+            "mixed_drive": mixed.summary(),
             "controllers": by_controller,
         }),
     )?;
-    out.page(&page(comparison, own, tables, command))?;
+    out.page(&page(comparison, own, tables, mixed, command))?;
     Ok(())
 }
 
-fn page(comparison: &Comparison, own: &Scores, [ride, roll, goals]: &[Table; 3], command: &str) -> Page {
+fn page(
+    comparison: &Comparison,
+    own: &Scores,
+    [ride, roll, goals]: &[Table; 3],
+    mixed: &MixedDrive,
+    command: &str,
+) -> Page {
     let Comparison { settings, means, .. } = comparison;
     let mut page = Page::new("Control study", command);
     let met = own.goals.iter().filter(|goal| goal.met).count();
@@ -328,6 +339,7 @@ fn page(comparison: &Comparison, own: &Scores, [ride, roll, goals]: &[Table; 3],
         }
         page.section("Ride against roll").figure(figure);
     }
+    mixed.show(&mut page);
     let section = page.section("Ride, straight ahead");
     section.text(
         "Vertical acceleration at the seats, BS 6841 weighting, mean of driver and passenger, from the third second.",

@@ -275,11 +275,16 @@ fn main() -> Result<(), Failure> {
             (None, Some(_)) => f64::INFINITY,
             _ => 0.0,
         };
+        // Also where the fault itself has closed the valves.
+        let later_s = match worst(&later) {
+            f64::INFINITY => "none".to_owned(),
+            later_s => format!("{later_s:.2}"),
+        };
         println!(
-            "| {name} | {:.2} | {:.1} | {:.2} | {} of {} | {} |",
+            "| {name} | {:.2} | {:.1} | {} | {} of {} | {} |",
             worst(&|seen, sound| seen.roll_deg / sound.roll_deg),
             worst(&|seen, _| seen.roll_deg),
-            worst(&later),
+            later_s,
             seen.iter().filter(|seen| seen.found).count(),
             seen.len(),
             seen.iter().filter(|seen| !seen.ended_well).count(),

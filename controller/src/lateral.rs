@@ -320,6 +320,7 @@ impl State {
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
     use super::*;
     use core::f32::consts::PI;
     use oleo_interface::tick::TICK_S_F32 as TICK_S;
@@ -433,5 +434,105 @@ mod tests {
             last = state.step(&c, 1.0, 0.0, 0.0, None);
         }
         assert!(last.acceleration_m_s2.quick.abs() < 0.05, "{last:?}");
+    }
+
+    /// With only the plain sum: no smoothing, no drag.
+    const PLAIN: Tuning = Tuning {
+        corner_hz: 1.8,
+        smoothed_share: 0.0,
+        dragged_share: 0.0,
+    };
+
+    #[test]
+    fn the_filters_begin_at_rest() {
+        let (c, mut state) = (Parameters::new(&Tuning::default(), 1.5), State::INITIAL);
+        for _ in 0..40 {
+            let Bands { quick, slow } = state.step(&c, 0.8, 0.02, 0.02, None).acceleration_m_s2;
+            assert!(
+                (quick - 0.8).abs() < 0.02 && (slow - 0.8).abs() < 0.02,
+                "{quick}, {slow} m/s2"
+            );
+        }
+    }
+
+    /// A body that rolls as a sine of 0.4 Hz: `i^2 / h` times the roll acceleration, at a quarter of the corner frequency.
+    #[test]
+    fn roll_acceleration_counts_by_the_gyration_over_the_arm() {
+        let (frequency_hz, roll_rad) = (0.4, 0.05);
+        let omega = 2.0 * PI * frequency_hz;
+        for inertia_per_arm_m in [1.5, 0.7] {
+            let (c, mut state) = (Parameters::new(&PLAIN, inertia_per_arm_m), State::INITIAL);
+            let mut largest = 0.0_f32;
+            for tick in 0..6_000 {
+                let roll = roll_rad * libm::sinf(omega * tick as f32 * TICK_S);
+                let lateral = state.step(&c, 0.0, roll, roll, None);
+                if tick > 4_000 {
+                    largest = largest.max(lateral.acceleration_m_s2.quick.abs());
+                }
+            }
+            let expected = inertia_per_arm_m * omega * omega * roll_rad;
+            assert!(
+                (largest / expected - 1.0).abs() < 0.05,
+                "{largest} m/s2, expected {expected}"
+            );
+        }
+    }
+
+    /// What stays is learnt in 15 s, and both outputs forget it alike.
+    #[test]
+    fn the_bias_is_taken_off_both_outputs() {
+        let (c, mut state) = (Parameters::new(&PLAIN, 1.5), State::INITIAL);
+        let mut last = Lateral::default();
+        for _ in 0..3_000 {
+            last = state.step(&c, 1.0, 0.0, 0.0, None);
+        }
+        for output in [last.acceleration_m_s2.quick, last.acceleration_m_s2.slow] {
+            assert!((output - libm::expf(-1.0)).abs() < 0.01, "{last:?}");
+        }
+    }
+
+    /// 1 s until the beginning is forgotten, 0.75 s in which it fades in, and 0.5 s for the slow output.
+    #[test]
+    fn the_estimate_counts_as_corrected_after_2_25_s() {
+        let (c, mut state) = (Parameters::new(&Tuning::default(), 1.5), State::INITIAL);
+        let mut corrected = |delay| state.step(&c, 0.0, 0.0, 0.0, delay).corrected;
+        for _ in 0..2 {
+            assert!((1..450).all(|_| !corrected(Some(33))));
+            assert!(corrected(Some(33)) && corrected(Some(33)));
+            assert!(!corrected(None), "the delay is not known any more");
+        }
+    }
+
+    /// The mean of the correction over 0.8 s enters the quick output with its share.
+    #[test]
+    fn the_drag_of_the_axles_is_the_mean_of_the_correction() {
+        let quick = |dragged_share: f32, delay: Option<u8>| {
+            let tuning = Tuning { dragged_share, ..PLAIN };
+            let (c, mut state) = (Parameters::new(&tuning, 1.5), State::INITIAL);
+            let axle = |tick: usize| 0.01 * libm::sinf(2.0 * PI * 0.7 * tick as f32 * TICK_S);
+            (0..2_000)
+                .map(|tick| {
+                    state
+                        .step(&c, 0.0, -axle(tick + 33), -axle(tick), delay)
+                        .acceleration_m_s2
+                        .quick
+                })
+                .collect::<std::vec::Vec<_>>()
+        };
+        let (without, plain) = (quick(0.0, Some(33)), quick(0.0, None));
+        let (mut mean, mut difference, mut size) = (0.0_f32, 0.0_f32, 0.0_f32);
+        for (tick, with) in quick(3.7, Some(33)).into_iter().enumerate() {
+            let correction = without[tick] - plain[tick];
+            mean += (correction - mean) * (1.0 - libm::expf(-TICK_S / 0.8));
+            // Biases are learnt from the sum without the drag, and the plain one has another.
+            if tick > 1_000 {
+                difference = difference.max((with - without[tick] - 3.7 * mean).abs());
+                size = size.max((3.7 * mean).abs());
+            }
+        }
+        assert!(
+            size > 0.05 && difference < 0.1 * size,
+            "off by {difference} of {size} m/s2"
+        );
     }
 }

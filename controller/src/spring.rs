@@ -380,3 +380,6 @@ impl SpringValve {
         (v2 - v2 * charge.pa() / p4) * c.per_piston_area
     }
 }
+
+#[cfg(test)]
+mod tests;

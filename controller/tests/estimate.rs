@@ -194,3 +194,44 @@ fn payload_needs_no_parameter() {
         1e-3,
     );
 }
+
+/// Running mean squares with a time constant of 1 s, of a motion that stays for a second.
+#[test]
+fn running_mean_squares() {
+    let (c, mut state) = at_rest();
+    let motion = Motion {
+        vertical: 0.5,
+        ..still()
+    };
+    let mut lateral_square = 0.0;
+    let mut last = Estimate::default();
+    for _ in 0..200 {
+        last = state.step(&c.estimate, &trusted(&motion));
+        let lateral = f64::from(last.lateral.acceleration_m_s2.quick);
+        lateral_square += (lateral * lateral - lateral_square) * (1.0 - (-0.005_f64).exp());
+    }
+    // The static load learns a twentieth of it meanwhile.
+    near(
+        "vertical",
+        last.vertical_mean_square,
+        0.25 * (1.0 - (-1.0_f64).exp()),
+        0.01,
+    );
+    near("lateral", last.lateral_mean_square, lateral_square, 1e-6);
+
+    let (c, mut state) = at_rest();
+    let motion = Motion { roll: 0.4, ..still() };
+    let mut lateral_square = 0.0;
+    for _ in 0..200 {
+        last = state.step(&c.estimate, &trusted(&motion));
+        let lateral = f64::from(last.lateral.acceleration_m_s2.quick);
+        lateral_square += (lateral * lateral - lateral_square) * (1.0 - (-0.005_f64).exp());
+    }
+    assert!(lateral_square > 1e-3, "{lateral_square}");
+    near(
+        "lateral",
+        last.lateral_mean_square,
+        lateral_square,
+        1e-3 * lateral_square,
+    );
+}

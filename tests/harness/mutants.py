@@ -187,8 +187,10 @@ def build(tree, sources, mutants):
     """Builds the test programs; returns the mutants that do not compile, and the programs."""
     skip = set()
     arms = {mutant["number"] for mutant in mutants if mutant["genre"] == "MatchArm"}
-    command = ["cargo", "test", "--no-run", "-p", PACKAGE, "--lib", "--tests", "--message-format=json"]
-    check = ["cargo", "check", "-p", PACKAGE, "--lib", "--message-format=json"]
+    # With every feature, or what they add would survive for want of a test that runs.
+    package = ["-p", PACKAGE, "--all-features"]
+    command = ["cargo", "test", "--no-run", *package, "--lib", "--tests", "--message-format=json"]
+    check = ["cargo", "check", *package, "--lib", "--message-format=json"]
     while True:
         for path, source in sources.items():
             source.write(tree / path, skip)

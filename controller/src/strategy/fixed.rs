@@ -58,3 +58,23 @@ impl Decide for AlwaysStiff {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_ends_of_the_scale() {
+        let (estimate, trusted) = (Estimate::default(), Trusted::default());
+        let soft = AlwaysSoft.step(&mut (), &estimate, &trusted);
+        assert_eq!(
+            (soft.valves, soft.urgency, soft.handling),
+            (ValveCommand::SOFT, Urgency::Comfort, false)
+        );
+        let stiff = AlwaysStiff.step(&mut (), &estimate, &trusted);
+        assert_eq!(
+            (stiff.valves, stiff.urgency, stiff.handling),
+            (ValveCommand::SAFE, Urgency::Handling, true)
+        );
+    }
+}

@@ -93,3 +93,44 @@ impl Decide for RideHandling {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lateral::{Bands, Lateral};
+
+    /// Running RMS of the lateral acceleration, and whether the body leans by 6 degrees to the outside of a bend of 4 m/s2.
+    fn demand(lateral_rms: f32, leans: bool) -> Demand {
+        let strategy = RideHandling::new(&VehicleDescription::default(), &Tuning::default());
+        let acceleration = if leans { 4.0 } else { 0.0 };
+        let estimate = Estimate {
+            lateral_mean_square: lateral_rms * lateral_rms,
+            roll_rad: if leans { 0.105 } else { 0.0 },
+            lateral: Lateral {
+                acceleration_m_s2: Bands {
+                    quick: acceleration,
+                    slow: acceleration,
+                },
+                ..Lateral::default()
+            },
+            ..Estimate::default()
+        };
+        strategy.step(&mut { RideHandling::INITIAL }, &estimate, &Trusted::default())
+    }
+
+    #[test]
+    fn either_handling_or_the_guard_closes_and_the_guard_at_once() {
+        let closes = |demand: Demand| {
+            (
+                demand.valves == ValveCommand::SAFE,
+                demand.urgency,
+                demand.handling,
+                demand.rollover_guard,
+            )
+        };
+        assert_eq!(closes(demand(0.0, false)), (false, Urgency::Comfort, false, false));
+        assert_eq!(closes(demand(2.0, false)), (true, Urgency::Handling, true, false));
+        assert_eq!(closes(demand(0.0, true)), (true, Urgency::Emergency, false, true));
+        assert_eq!(closes(demand(2.0, true)), (true, Urgency::Emergency, true, true));
+    }
+}

@@ -174,6 +174,7 @@ impl RoadAndCornering {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::lateral::Bands;
 
     fn opens(vertical_rms: f32, lateral_rms: f32) -> bool {
         let strategy = RoadAndCornering::new(&VehicleDescription::default(), &Tuning::default());
@@ -207,6 +208,82 @@ mod tests {
         for _ in 0..2 * ROAD_DWELL_TICKS {
             let demand = strategy.step(&mut state, &rough, &Trusted::default());
             assert_ne!(demand.valves, ValveCommand::SAFE);
+        }
+    }
+
+    /// A strategy that has known a road of this vertical RMS for ten seconds, m/s2, and what it then wants with a lateral acceleration and
+    /// a lean, m/s2 and rad.
+    fn on(vertical_rms: f32, lateral_m_s2: f32, roll_rad: f32) -> Demand {
+        let strategy = RoadAndCornering::new(&VehicleDescription::default(), &Tuning::default());
+        let mut state = RoadAndCornering::INITIAL;
+        let mut estimate = Estimate {
+            vertical_mean_square: vertical_rms * vertical_rms,
+            ..Estimate::default()
+        };
+        for _ in 0..2_000 {
+            strategy.step(&mut state, &estimate, &Trusted::default());
+        }
+        estimate.roll_rad = roll_rad;
+        estimate.lateral.acceleration_m_s2 = Bands {
+            quick: lateral_m_s2,
+            slow: lateral_m_s2,
+        };
+        strategy.step(&mut state, &estimate, &Trusted::default())
+    }
+
+    #[test]
+    fn what_each_road_gets() {
+        let soft = ValveCommand::SOFT;
+        let firm = ValveCommand::from_corners(Corners::splat(StrutValves::new(false, true, true)));
+        for (vertical_rms, valves) in [(0.1, ValveCommand::SAFE), (0.5, soft), (1.2, soft), (1.4, firm)] {
+            let demand = on(vertical_rms, 0.0, 0.0);
+            assert_eq!(
+                (demand.valves, demand.urgency, demand.handling),
+                (valves, Urgency::Comfort, false),
+                "{vertical_rms} m/s2"
+            );
+            // A bend closes all valves at once on every road.
+            let demand = on(vertical_rms, 3.5, 0.0);
+            assert_eq!(
+                (demand.valves, demand.urgency, demand.handling, demand.rollover_guard),
+                (ValveCommand::SAFE, Urgency::Emergency, true, false)
+            );
+            // And so does the guard, in the same bend.
+            let demand = on(vertical_rms, 3.5, 0.1);
+            assert_eq!(
+                (demand.valves, demand.urgency, demand.rollover_guard),
+                (ValveCommand::SAFE, Urgency::Emergency, true)
+            );
+        }
+    }
+
+    /// With hysteresis: rough from 0.25 and smooth below 0.06 m/s2; very rough from 1.3 and no longer below 1.0 m/s2.
+    #[test]
+    fn a_road_stays_what_it_is_between_the_thresholds() {
+        let strategy = RoadAndCornering::new(&VehicleDescription::default(), &Tuning::default());
+        let mut state = RoadAndCornering::INITIAL;
+        for (vertical_rms, rough, very_rough) in [
+            (0.2, false, false),
+            (0.3, true, false),
+            (0.07, true, false),
+            (1.2, true, false),
+            (1.4, true, true),
+            (1.1, true, true),
+            (0.9, true, false),
+            (0.05, false, false),
+        ] {
+            let estimate = Estimate {
+                vertical_mean_square: vertical_rms * vertical_rms,
+                ..Estimate::default()
+            };
+            for _ in 0..=2 * ROAD_DWELL_TICKS {
+                strategy.step(&mut state, &estimate, &Trusted::default());
+            }
+            assert_eq!(
+                (state.rough, state.very_rough),
+                (rough, very_rough),
+                "{vertical_rms} m/s2"
+            );
         }
     }
 }

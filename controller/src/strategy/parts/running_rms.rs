@@ -142,4 +142,26 @@ mod tests {
             assert!(mode.step(&parameters, &estimate(0.9, 1.0)));
         }
     }
+
+    /// Either threshold ends the mode by itself: 0.8 of the vertical RMS, and 0.6 m/s2.
+    #[test]
+    fn either_threshold_ends_the_mode() {
+        let parameters = Parameters::new(&Tuning::default());
+        for (lateral, vertical, stays) in [
+            (2.0, 2.4, true),
+            (2.0, 2.6, false),
+            (0.65, 0.1, true),
+            (0.55, 0.1, false),
+        ] {
+            let mut mode = State {
+                handling: true,
+                dwell: 0,
+            };
+            assert_eq!(
+                mode.step(&parameters, &estimate(lateral, vertical)),
+                stays,
+                "{lateral}, {vertical} m/s2"
+            );
+        }
+    }
 }

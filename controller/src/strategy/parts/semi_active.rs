@@ -345,4 +345,60 @@ mod tests {
             Err("tuning.strategy.ride_handling.dampers.body_acceleration_share")
         );
     }
+
+    #[test]
+    fn near_resonance_the_velocity_decides_and_above_it_the_acceleration() {
+        // 11.9 rad/s: 15 m/s2 of 2 m/s is nearer to the resonance, 30 m/s2 is above it.
+        assert!(settled(DamperPolicy::ShAdd, 0.3, 2.0, -15.0, 0.0));
+        assert!(!settled(DamperPolicy::ShAdd, 0.3, 2.0, -30.0, 0.0));
+    }
+
+    #[test]
+    fn near_each_stop_the_damping_is_high_while_the_strut_moves_on_towards_it() {
+        for (x_m, extension_m_s, high) in [
+            (0.07, -0.3, true),
+            (0.07, 0.3, false),
+            (0.05, -0.3, false),
+            (-0.12, 0.3, true),
+            (-0.12, -0.3, false),
+            (-0.10, 0.3, false),
+        ] {
+            assert_eq!(
+                settled(DamperPolicy::Karnopp, extension_m_s, 0.0, 0.0, x_m),
+                high,
+                "{x_m} m, {extension_m_s} m/s"
+            );
+        }
+    }
+
+    /// Within 0.02 m/s nothing changes, and beyond it on the other side the damping is low again.
+    #[test]
+    fn the_relative_speed_has_a_dead_band() {
+        let parameters = parameters(DamperPolicy::Karnopp);
+        let mut state = State::INITIAL;
+        let mut low = |extension_m_s: f32| {
+            let mut last = Corners::splat(false);
+            for _ in 0..100 {
+                for corner in state.corners.values_mut() {
+                    corner.velocity_m_s = 0.4;
+                }
+                let estimate = Estimate {
+                    strut_speed_m_s: Corners::splat(-extension_m_s),
+                    ..Estimate::default()
+                };
+                last = state.step(&parameters, &estimate, &Corners::default());
+            }
+            last
+        };
+        for (extension_m_s, is_low) in [
+            (0.01, true),
+            (0.03, false),
+            (0.01, false),
+            (-0.01, false),
+            (-0.03, true),
+            (-0.01, true),
+        ] {
+            assert_eq!(low(extension_m_s), Corners::splat(is_low), "{extension_m_s} m/s");
+        }
+    }
 }

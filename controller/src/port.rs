@@ -382,4 +382,27 @@ mod tests {
         let board = Id::Standard(StandardId::new(crate::can::BOARD.id).unwrap());
         assert!(third.can.sent.iter().any(|frame| frame.id == board));
     }
+
+    #[cfg(all(feature = "serde", feature = "comparison"))]
+    #[test]
+    fn a_saved_port_goes_on_under_another_configuration() {
+        let soft = Configuration::defender110().with_strategy(crate::Strategy::AlwaysSoft);
+        let (mut port, mut plant) = (port().under(soft), PlantEnd::new());
+        let inputs = Inputs::from_values(Corners::splat(0.0), Corners::splat(StrutPressures::splat(Gauge(2.0e6))));
+        let mut command = crate::ValveCommand::SAFE;
+        for n in 0..200 {
+            for frame in plant.encode(n, &inputs) {
+                let frame = TestFrame::new(StandardId::new(frame.id).unwrap(), &frame.data).unwrap();
+                port.can_mut().incoming.push_back(Ok(frame));
+            }
+            command = port.tick().command;
+            assert_eq!(port.node().plant_tick(), n as u8);
+            let command_id = Id::Standard(StandardId::new(COMMAND.id).unwrap());
+            if let Some(command) = port.can().sent.iter().rfind(|frame| frame.id == command_id) {
+                plant.receive(COMMAND.id, &command.data);
+            }
+            plant.end_of_tick();
+        }
+        assert_eq!(command, crate::ValveCommand::SOFT);
+    }
 }

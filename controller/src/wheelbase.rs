@@ -235,6 +235,7 @@ fn wait(places: &mut [Place; PLACES], place: usize, turn: u16, carry: u128) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oleo_interface::Corner;
 
     /// A road without memory, from -1 to 1: the fractional part of a chirp.
     fn road(place: usize, side: usize) -> f32 {
@@ -336,5 +337,23 @@ mod tests {
         drain(&mut all);
         assert!(all.iter().rev().skip(1).all(|place| place.sum == 0));
         assert_eq!(all[PLACES - 1].sum, u128::MAX, "512 agreements are bit 9 alone");
+    }
+
+    /// Struts that stand still agree at every delay in each of the 256 ticks of the window and in no other. Where the rear one is upward
+    /// all the time, they never do.
+    #[test]
+    fn a_window_counts_its_own_ticks_and_all_of_them() {
+        for (rear_right_is_upward, expected) in [(false, 512), (true, 256)] {
+            let (c, mut state) = (Parameters::new(), State::INITIAL);
+            for tick in 0..HISTORY as u16 + WINDOW_TICKS + DRAINING_TICKS + JUDGING_TICKS {
+                let mut speeds = Corners::splat(0.0);
+                if rear_right_is_upward {
+                    speeds[Corner::RearRight] = f32::from(tick + 1);
+                }
+                state.step(&c, speeds);
+            }
+            let Judgement { best, agreements } = state.judgement;
+            assert_eq!((best, agreements), (DELAYS, expected));
+        }
     }
 }

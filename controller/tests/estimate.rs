@@ -208,13 +208,13 @@ fn running_mean_squares() {
     for _ in 0..200 {
         last = state.step(&c.estimate, &trusted(&motion));
         let lateral = f64::from(last.lateral.acceleration_m_s2.quick);
-        lateral_square += (lateral * lateral - lateral_square) * (1.0 - (-0.005_f64).exp());
+        lateral_square += (lateral * lateral - lateral_square) * (1.0 - libm::exp(-0.005));
     }
     // The static load learns a twentieth of it meanwhile.
     near(
         "vertical",
         last.vertical_mean_square,
-        0.25 * (1.0 - (-1.0_f64).exp()),
+        0.25 * (1.0 - libm::exp(-1.0)),
         0.01,
     );
     near("lateral", last.lateral_mean_square, lateral_square, 1e-6);
@@ -225,7 +225,7 @@ fn running_mean_squares() {
     for _ in 0..200 {
         last = state.step(&c.estimate, &trusted(&motion));
         let lateral = f64::from(last.lateral.acceleration_m_s2.quick);
-        lateral_square += (lateral * lateral - lateral_square) * (1.0 - (-0.005_f64).exp());
+        lateral_square += (lateral * lateral - lateral_square) * (1.0 - libm::exp(-0.005));
     }
     assert!(lateral_square > 1e-3, "{lateral_square}");
     near(

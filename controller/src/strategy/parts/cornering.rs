@@ -453,7 +453,7 @@ mod tests {
             let [w_q, w_s] = self.witness.map(|square| f64::from(square).sqrt());
             let [s_q, s_s] = self.own.map(|square| f64::from(square).sqrt());
             let k_w = if self.corrected { 0.6 } else { 3.9 };
-            let l = (w_q / 0.5).powi(2);
+            let l = w_q * w_q / 0.25;
             let quick = f64::max(k_w * w_q * (1.0 + l).sqrt(), 3.6 * s_q * (1.0 + 0.01 * l * l).sqrt());
             let slow = f64::max(
                 k_w * w_s * (1.0 + 0.5 * l).sqrt(),

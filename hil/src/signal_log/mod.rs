@@ -70,7 +70,7 @@ pub fn survey(path: &Path, selection: &Selection) -> Result<Survey, LogError> {
     survey_of(&|| logs::open(path), selection, path)
 }
 
-/// Gives the drives of a log file to `sink` piece by piece, after its [`survey`].
+/// Gives the drives of a log file to `sink` piece by piece, after its [`survey()`].
 ///
 /// # Errors
 /// The file cannot be read.

@@ -105,6 +105,53 @@ fn by_map_it_has_the_same_columns(folder: &Path, log: &Path, expected: &str) {
     }
 }
 
+/// What needs to be read more than once is copied, and the copy does not stay.
+#[cfg(unix)]
+#[test]
+fn a_pipe_with_two_drives_gives_what_a_file_gives() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = |name: &str| folder.path().join(name);
+    succeeds(&["hil", "--duration-s", "2", "--out", path(&file("run"))]);
+    let drive = std::fs::read(file("run/candump.log")).expect("a log");
+    std::fs::write(file("two.log"), [&drive[..], &drive].concat()).expect("written");
+    std::fs::write(file("map.toml"), map_of_our_database()).expect("written");
+    let database = Path::new(env!("CARGO_MANIFEST_DIR")).join("controller/oleo.dbc");
+    let map = file("map.toml");
+    let by_map = ["--dbc", path(&database), "--signals", path(&map)];
+    let mut ways = vec![("csv", &[][..])];
+    if cfg!(feature = "mcap") {
+        ways.push(("mcap", &[]));
+    }
+    if cfg!(feature = "parquet") {
+        ways.push(("parquet", &[]));
+    }
+    if cfg!(feature = "logs") {
+        ways.push(("csv", &by_map));
+    }
+    for (end, options) in ways {
+        let (of_file, of_pipe) = (file(&format!("file.{end}")), file(&format!("pipe.{end}")));
+        succeeds(&[&["convert", path(&file("two.log")), path(&of_file)], options].concat());
+        let mut convert = support::oleo(&[&["convert", "/dev/stdin", path(&of_pipe)], options].concat());
+        let mut running = (convert
+            .stdin(std::process::Stdio::piped())
+            .stdout(std::process::Stdio::piped()))
+        .spawn()
+        .expect("the binary runs");
+        let mut pipe = running.stdin.take().expect("a pipe");
+        std::io::Write::write_all(&mut pipe, &std::fs::read(file("two.log")).expect("a log")).expect("it reads");
+        drop(pipe);
+        let ran = running.wait_with_output().expect("it ends");
+        let said = String::from_utf8_lossy(&ran.stdout);
+        assert!(ran.status.success() && said.starts_with("2 drives"), "{end}: {said}");
+        let read = |path: &Path| std::fs::read(path).expect("a file");
+        assert!(read(&of_file) == read(&of_pipe), "{end}");
+        std::fs::remove_file(of_file).expect("there");
+        std::fs::remove_file(of_pipe).expect("there");
+    }
+    let left = std::fs::read_dir(folder.path()).expect("a folder").count();
+    assert_eq!(left, 3, "only what this test made");
+}
+
 #[test]
 fn what_cannot_be_converted_is_refused_in_one_line() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -59,7 +59,7 @@ pub use dots::Dots;
 pub use field::{Field, FieldStyle};
 pub use figure::Figure;
 pub use lanes::{Lanes, Tint};
-pub use output::{Origin, OutputDirectory, OutputError, OutputFile, digest, rounded};
+pub use output::{CsvRows, Origin, OutputDirectory, OutputError, OutputFile, digest, rounded};
 pub use page::{Page, Verdict};
 pub use progress::Progress;
 pub use scene::Scene;

@@ -7,6 +7,7 @@ mod parquet;
 #[cfg(not(feature = "parquet"))]
 #[path = "convert/without_parquet.rs"]
 mod parquet;
+mod rereadable;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -15,6 +16,7 @@ use oleo_hil::logs::Format;
 use oleo_report::OutputFile;
 
 use self::columns::{ColumnFormat, has_end};
+use self::rereadable::Rereadable;
 use super::vehicle_log::DatabaseArgs;
 use crate::failure::Failure;
 use crate::results::say;
@@ -32,8 +34,8 @@ use crate::results::say;
     oleo convert drive.log drive.mcap                                 the same for Foxglove and PlotJuggler\n  \
     oleo convert drive.log drive.parquet                              the same for pandas and DuckDB\n  \
     oleo convert drive.mf4 drive.csv --dbc car.dbc --signals map.toml   the same of messages of another database\n\n\
-    Read are candump -L (.log), Vector ASC (.asc) and BLF (.blf), all three also with .gz, and ASAM MDF 4 (.mf4), CAN FD included. Frames pass through \
-    one at a time, so that a log of any length needs no more memory than a short one; columns need the memory of the drives. \
+    Read are candump -L (.log), Vector ASC (.asc) and BLF (.blf), all three also with .gz, and ASAM MDF 4 (.mf4), CAN FD included. A log of any \
+    length needs no more memory than a short one. For .mcap, and with --dbc, a log is read twice or more, so that one from a pipe is copied first. \
     Error frames, statistics and unreadable entries are counted and left out. In columns, what is missing is NaN; in .mcap it is left out. .mcap and .parquet need features of their own."
 )]
 pub struct Args {
@@ -81,9 +83,16 @@ pub fn convert(args: &Args) -> Result<String, Failure> {
     let stage = || OutputFile::stage(&args.output, &inputs, args.force);
     if let Some(format) = ColumnFormat::of_name(&args.output) {
         format.is_built(&args.output)?;
-        let log = args.database.reader()?.read(&args.input)?;
-        let written = format.write(stage()?, &log.drives)?;
-        return Ok(format!("{}\n{written}\n", log.in_words));
+        let (reader, staged) = (args.database.reader()?, stage()?);
+        let log = match reader.reads_again(format.names_drives()) {
+            true => Rereadable::of(&args.input, &staged)?,
+            false => Rereadable::as_it_is(&args.input),
+        };
+        let (path, said) = format.write(staged, |sink| {
+            let read = reader.stream(log.path(), format.names_drives(), sink);
+            read.map_err(|failure| log.named(&failure))
+        })?;
+        return Ok(format!("{said}\n{}\n", path.display()));
     }
     let format = match Format::of_name(&args.output) {
         Some(format) if !has_end(&args.output, "gz") => format,

@@ -6,18 +6,20 @@ mod content;
 #[cfg(not(feature = "logs"))]
 mod without_map;
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use oleo_controller::Reading;
 use oleo_controller::can::{DISPLACEMENT_STEP_M, PRESSURE_STEP_PA};
-use oleo_diagnose::vehicle::{Drive, Resolution, StrutSamples};
-use oleo_hil::drive_log::{self, LogAccount, LoggedDrive};
+use oleo_diagnose::vehicle::Resolution;
+use oleo_hil::drive_log::{self, DrivePart, LogAccount, LoggedSample};
 use oleo_interface::tick::{TICK_MS, TICK_S};
-use oleo_interface::{Corner, Corners, PressurePoint, StrutPressures};
+use oleo_interface::{Corner, Corners, StrutPressures};
 
 #[cfg(feature = "logs")]
 use by_map::ByMap;
-use content::{VehicleLog, others, plural};
+use content::{Collected, VehicleLog, others, plural};
+pub use content::{Part, PartSink, StrutSample};
 #[cfg(not(feature = "logs"))]
 use without_map::ByMap;
 
@@ -58,26 +60,31 @@ impl DatabaseArgs {
 pub struct Reader(Option<ByMap>);
 
 impl Reader {
-    /// Reads a log. Its first drive is named as the log is.
+    /// Reads a log whole. Its first drive is named as the log is.
     pub fn read(&self, path: &Path) -> Result<VehicleLog, Failure> {
-        let failed = |error: oleo_hil::logs::LogError| Failure::new(error.to_string());
-        let name = name_of(path);
-        let named = |k: usize| match k {
-            0 => name.clone(),
-            _ => format!("{name}, drive {}", k + 1),
-        };
-        Ok(match &self.0 {
-            None => {
-                let log = drive_log::read(path).map_err(failed)?;
-                VehicleLog {
-                    in_words: in_words(&log.account, log.drives.len()),
-                    drives: (log.drives.iter().enumerate())
-                        .map(|(k, d)| of_our_database(named(k), k == 0, d))
-                        .collect(),
-                }
-            }
-            Some(by_map) => by_map.read(path, named)?,
+        let mut drives = Collected::new(name_of(path));
+        let in_words = self.stream(path, false, &mut |part| {
+            drives.take(part);
+            ControlFlow::Continue(())
+        })?;
+        Ok(VehicleLog {
+            drives: drives.into_drives(),
+            in_words,
         })
+    }
+
+    /// Gives the drives of a log to `sink` piece by piece, and says in one sentence what was read. With `names_drives` each drive comes with
+    /// whether there are several.
+    pub fn stream(&self, path: &Path, names_drives: bool, sink: &mut PartSink) -> Result<String, Failure> {
+        match &self.0 {
+            None => of_our_database(path, names_drives, sink),
+            Some(by_map) => by_map.stream(path, sink),
+        }
+    }
+
+    /// Whether a log is read more than once, so that it cannot be a pipe.
+    pub fn reads_again(&self, names_drives: bool) -> bool {
+        names_drives || self.0.is_some()
     }
 
     /// Steps to which the readings are rounded.
@@ -123,21 +130,39 @@ fn in_words(account: &LogAccount, drives: usize) -> String {
     )
 }
 
-/// A drive read with our own database as series, strut by strut.
-fn of_our_database(name: String, is_first: bool, logged: &LoggedDrive) -> Drive {
+/// Gives the drives of a log with our own database to `sink`.
+fn of_our_database(path: &Path, names_drives: bool, sink: &mut PartSink) -> Result<String, Failure> {
+    let of_several = names_drives && number_of_drives(path)? > 1;
+    let mut drives = 0;
+    let account = drive_log::stream(path, &mut |part| match part {
+        DrivePart::Begins(_) => {
+            drives += 1;
+            sink(Part::Begins {
+                period_s: TICK_S,
+                of_several,
+            })
+        }
+        DrivePart::Sample(sample) => sink(Part::Sample(&Corners::from_fn(|corner| strut_sample(sample, corner)))),
+    })?;
+    Ok(in_words(&account, drives))
+}
+
+/// Counts the drives of a log with our own database.
+fn number_of_drives(path: &Path) -> Result<usize, Failure> {
+    let mut drives = 0;
+    drive_log::stream(path, &mut |part| {
+        drives += usize::from(matches!(part, DrivePart::Begins(_)));
+        ControlFlow::Continue(())
+    })?;
+    Ok(drives)
+}
+
+/// A sample of one strut.
+fn strut_sample(sample: &LoggedSample, corner: Corner) -> StrutSample {
     let number = |reading: Reading| reading.value().map_or(f64::NAN, f64::from);
-    let samples = || logged.samples.iter();
-    let strut = |corner: Corner| StrutSamples {
-        displacement_m: samples().map(|s| number(s.displacement_m[corner])).collect(),
-        pressure_pa: PressurePoint::ALL.map(|point| samples().map(|s| number(s.pressure_pa[corner][point])).collect()),
-        valves: samples()
-            .map(|s| s.command.map(|command| command.strut(corner)))
-            .collect(),
-    };
-    Drive {
-        name,
-        is_first,
-        period_s: TICK_S,
-        struts: Corners::from_fn(strut),
+    StrutSample {
+        displacement_m: number(sample.displacement_m[corner]),
+        pressure_pa: sample.pressure_pa[corner].into_array().map(number),
+        valves: sample.command.map(|command| command.strut(corner)),
     }
 }

@@ -1,9 +1,23 @@
 //! What a log holds: drives with their samples, and an account of what was read.
 
+use std::ops::ControlFlow;
+
 use oleo_controller::{Reading, ValveCommand};
 use oleo_interface::{Corners, StrutPressures};
 
 use crate::logs::Account;
+
+/// A piece of the drives of a log, in the order of the log.
+#[derive(Clone, Copy, Debug)]
+pub enum DrivePart<'a> {
+    /// A drive begins, and the one before has ended. Time of its first displacement message as the log says it, s.
+    Begins(f64),
+    /// The next sample of the drive, one tick (5 ms) after the last.
+    Sample(&'a LoggedSample),
+}
+
+/// Takes the drives of a log piece by piece, and may end the reading.
+pub type DriveSink<'a> = dyn FnMut(DrivePart) -> ControlFlow<()> + 'a;
 
 /// What a log holds.
 #[derive(Clone, Debug)]

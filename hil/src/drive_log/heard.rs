@@ -1,11 +1,9 @@
 //! The frames of the database in a log, and an account of all other frames.
 
-use std::ops::ControlFlow;
-
 use oleo_controller::can::{BOARD, COMMAND, CheckStatus, Checker, FRAME_BYTES, MESSAGES, STATUS};
 
 use super::content::{LogAccount, MessageAccount};
-use crate::logs::{FrameSource, LogError};
+use crate::logs::Entry;
 
 /// The low half of byte 1 is the counter of the end-to-end protection.
 const COUNTER_BYTE: usize = 1;
@@ -23,7 +21,7 @@ pub const MESSAGES_OF_A_SAMPLE: usize = 7;
 #[derive(Clone, Copy, Debug)]
 pub struct HeardFrame {
     /// Time of its entry in the log, microseconds.
-    pub time_us: u64,
+    pub time_us: i64,
     /// Position of its message in [`MESSAGES`].
     pub message: usize,
     /// Content of the frame.
@@ -37,49 +35,41 @@ impl HeardFrame {
     }
 }
 
-/// All frames that can be used, in the order of the log.
-pub type Heard = Vec<HeardFrame>;
-
-/// Reads a whole log.
-pub fn hear(log: &mut dyn FrameSource) -> Result<(Heard, LogAccount), LogError> {
-    let of_sample = &MESSAGES[..MESSAGES_OF_A_SAMPLE];
-    debug_assert_eq!(of_sample[COMMAND_AT].id, COMMAND.id);
-    let mut messages: Vec<MessageAccount> = (of_sample.iter())
-        .map(|contract| MessageAccount {
-            name: contract.name,
-            ..MessageAccount::default()
-        })
-        .collect();
-    let (mut heard, mut foreign_frames) = (Vec::new(), 0);
-    let log = log.read(&mut |entry| {
-        let id = entry.frame.standard_id();
-        if id == Some(STATUS.id) || id == Some(BOARD.id) {
-            return ControlFlow::Continue(());
-        }
-        let Some(message) = of_sample.iter().position(|contract| Some(contract.id) == id) else {
-            foreign_frames += 1;
-            return ControlFlow::Continue(());
-        };
-        let intact = <[u8; FRAME_BYTES]>::try_from(entry.frame.data())
-            .ok()
-            .filter(|data| Checker::new(&of_sample[message]).check(data) != CheckStatus::WrongCrc);
-        match intact {
-            Some(data) => {
-                messages[message].received += 1;
-                heard.push(HeardFrame {
-                    time_us: entry.time_us,
-                    message,
-                    data,
-                });
-            }
-            None => messages[message].corrupted += 1,
-        }
-        ControlFlow::Continue(())
-    })?;
-    let account = LogAccount {
-        log,
-        foreign_frames,
-        messages,
+/// An account of nothing.
+pub fn empty_account() -> LogAccount {
+    debug_assert_eq!(MESSAGES[COMMAND_AT].id, COMMAND.id);
+    let of_message = |contract: &oleo_controller::can::Contract| MessageAccount {
+        name: contract.name,
+        ..MessageAccount::default()
     };
-    Ok((heard, account))
+    LogAccount {
+        messages: MESSAGES.iter().take(MESSAGES_OF_A_SAMPLE).map(of_message).collect(),
+        ..LogAccount::default()
+    }
+}
+
+/// The frame of an entry, if it can be used; all others are counted.
+pub fn hear(entry: &Entry, account: &mut LogAccount) -> Option<HeardFrame> {
+    let id = entry.frame.standard_id();
+    if id == Some(STATUS.id) || id == Some(BOARD.id) {
+        return None;
+    }
+    let of_sample = &MESSAGES[..MESSAGES_OF_A_SAMPLE];
+    let Some(message) = of_sample.iter().position(|contract| Some(contract.id) == id) else {
+        account.foreign_frames += 1;
+        return None;
+    };
+    let intact = <[u8; FRAME_BYTES]>::try_from(entry.frame.data())
+        .ok()
+        .filter(|data| Checker::new(&of_sample[message]).check(data) != CheckStatus::WrongCrc);
+    let Some(data) = intact else {
+        account.messages[message].corrupted += 1;
+        return None;
+    };
+    account.messages[message].received += 1;
+    Some(HeardFrame {
+        time_us: entry.time_us.min(i64::MAX as u64) as i64,
+        message,
+        data,
+    })
 }

@@ -5,8 +5,10 @@
 //! only if its CRC is right, puts it at the tick that it was measured in, and counts everything else.
 //!
 //! ```text
-//!   frame of a log --CRC--> heard frame --tick--> its place in a drive
+//!   frame of a log --CRC--> heard frame --drive--> sorted frame --tick--> window of samples --> sample of a drive
 //! ```
+//!
+//! A sample is given on when nothing can come for it any more, so that a log of any length needs the memory of 22 s of driving.
 //!
 //! * `PlantTick` has eight bits and wraps every 1.28 s. Together with the time of the frame it gives the tick, which also finds a
 //!   frame that was logged late. (The first edition of the database had sixteen bits; only their lower half is used, so that its
@@ -15,31 +17,40 @@
 //!   advances by one in every tick, corrects this where frames are missing or late.
 //! * A command is entered at the tick that it echoes, which is the tick at whose end it acts.
 //! * A drive ends where the bus is silent for a second, or where the tick starts again.
+//! * Frames may come out of order: displacement messages by a second, others within the 20 s in which their neighbours settle their
+//!   tick. What cannot be placed by then, or waits behind 65,000 others for a displacement message, is counted as out of sequence.
 //!
 //! | file | what it holds |
 //! |---|---|
 //! | `content` | what a log holds |
 //! | `heard` | the frames of the database in a log, and an account of all others |
 //! | `ticks` | the tick of every displacement message, and the drives |
-//! | `place` | the tick of every other message, and the samples of a drive |
+//! | `place` | the tick of every other message, from its neighbours |
+//! | `queue` | the same, from its counter |
+//! | `window` | the samples that are not complete yet |
 
 mod content;
 mod heard;
 mod place;
+mod queue;
 mod ticks;
+mod window;
 
+use std::ops::ControlFlow;
 use std::path::Path;
 
-use crate::logs::{self, FrameSource, LogError};
+use crate::logs::{self, Entry, FrameSource, LogError};
 
-pub use content::{DriveLog, LogAccount, LoggedDrive, LoggedSample, MessageAccount};
+pub use content::{DriveLog, DrivePart, DriveSink, LogAccount, LoggedDrive, LoggedSample, MessageAccount};
+use place::Places;
+use ticks::{Sorted, Ticks};
 
-/// Reads a log file of any format that [`logs`] reads.
+/// Gives the drives of a log file, of any format that [`logs`] reads, to `sink` piece by piece.
 ///
 /// # Errors
 /// The file cannot be read, or holds no drive.
-pub fn read(path: &Path) -> Result<DriveLog, LogError> {
-    of(&mut *logs::open(path)?, path)
+pub fn stream(path: &Path, sink: &mut DriveSink) -> Result<LogAccount, LogError> {
+    of(&mut *logs::open(path)?, path, sink)
 }
 
 /// Reads a log from memory. The error says in one sentence what the log holds instead of a drive.
@@ -52,22 +63,93 @@ pub fn read(path: &Path) -> Result<DriveLog, LogError> {
 /// # Errors
 /// The bytes hold no drive.
 pub fn parse(log: &[u8]) -> Result<DriveLog, String> {
-    let read = logs::in_memory(log).and_then(|mut log| of(&mut *log, Path::new("log")));
-    read.map_err(|error| error.what)
-}
-
-fn of(log: &mut dyn FrameSource, path: &Path) -> Result<DriveLog, LogError> {
-    let (heard, account) = heard::hear(log)?;
-    drives(&heard, account).map_err(|what| LogError::new(path, what))
-}
-
-fn drives(heard: &heard::Heard, mut account: LogAccount) -> Result<DriveLog, String> {
-    let runs = ticks::runs(heard, &mut account);
-    if runs.is_empty() {
-        return Err(nothing_of_ours(&account));
-    }
-    let drives = place::drives(heard, &runs, &mut account);
+    let mut drives: Vec<LoggedDrive> = Vec::new();
+    let mut collect = |part: DrivePart| {
+        match (part, drives.last_mut()) {
+            (DrivePart::Begins(begins_s), _) => drives.push(LoggedDrive {
+                begins_s,
+                samples: Vec::new(),
+            }),
+            (DrivePart::Sample(sample), Some(drive)) => drive.samples.push(*sample),
+            (DrivePart::Sample(_), None) => {}
+        }
+        ControlFlow::Continue(())
+    };
+    let read = logs::in_memory(log).and_then(|mut log| of(&mut *log, Path::new("log"), &mut collect));
+    let account = read.map_err(|error| error.what)?;
     Ok(DriveLog { drives, account })
+}
+
+fn of(log: &mut dyn FrameSource, path: &Path, sink: &mut DriveSink) -> Result<LogAccount, LogError> {
+    let mut drives = Drives::new();
+    let mut flow = ControlFlow::Continue(());
+    let read = log.read(&mut |entry| {
+        flow = drives.take(&entry, sink);
+        flow
+    })?;
+    let (mut account, is_empty) = match flow {
+        ControlFlow::Continue(()) => drives.end(sink),
+        // The sink has had enough, and knows why.
+        ControlFlow::Break(()) => (drives.account, false),
+    };
+    account.log = read;
+    if is_empty {
+        return Err(LogError::new(path, nothing_of_ours(&account)));
+    }
+    Ok(account)
+}
+
+/// The drives of a log that is being read.
+struct Drives {
+    ticks: Ticks,
+    places: Places,
+    account: LogAccount,
+    /// Frames on their way from `ticks` to `places`.
+    sorted: Vec<Sorted>,
+    is_empty: bool,
+}
+
+impl Drives {
+    fn new() -> Self {
+        Self {
+            ticks: Ticks::default(),
+            places: Places::default(),
+            account: heard::empty_account(),
+            sorted: Vec::new(),
+            is_empty: true,
+        }
+    }
+
+    fn take(&mut self, entry: &Entry, sink: &mut DriveSink) -> ControlFlow<()> {
+        if let Some(frame) = heard::hear(entry, &mut self.account) {
+            self.ticks.take(frame, &mut self.account, &mut self.sorted);
+        }
+        self.place(sink)
+    }
+
+    fn place(&mut self, sink: &mut DriveSink) -> ControlFlow<()> {
+        for frame in self.sorted.drain(..) {
+            self.is_empty &= !matches!(frame, Sorted::Begins);
+            self.places.take(frame, &mut self.account, sink)?;
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// The end of the log. Returns the account, and whether there was no drive.
+    fn end(mut self, sink: &mut DriveSink) -> (LogAccount, bool) {
+        self.ticks.end(&mut self.account, &mut self.sorted);
+        if self.place(sink).is_continue() {
+            // Nothing comes after it that a sink could refuse.
+            let _ = self.places.end(&mut self.account, sink);
+        }
+        (self.account, self.is_empty)
+    }
+
+    /// Number of frames and samples that are held.
+    #[cfg(test)]
+    fn held(&self) -> usize {
+        self.ticks.held() + self.places.held()
+    }
 }
 
 fn nothing_of_ours(account: &LogAccount) -> String {

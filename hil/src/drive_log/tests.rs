@@ -5,10 +5,13 @@ use oleo_controller::{Inputs, PlantEnd, Reading, ValveCommand};
 use oleo_interface::{Corner, Corners, Gauge, StrutPressures};
 use proptest::prelude::*;
 
-use super::{DriveLog, LoggedDrive, parse};
+use std::ops::ControlFlow;
+
+use super::{DriveLog, DrivePart, Drives, LoggedDrive, parse};
 use crate::Frame;
 use crate::frame::standard;
 use crate::logs::candump::write_line;
+use crate::logs::{Entry, LoggedFrame};
 
 /// A line of a log before it is written.
 #[derive(Clone, Debug)]
@@ -227,6 +230,62 @@ fn a_log_without_a_drive_is_refused_in_one_line() {
     );
     assert!(!error.contains('\n'));
     assert!(parse(b"").expect_err("empty").contains("0 entries"));
+}
+
+/// Reads the lines one by one. Returns the number of samples, and the most frames and samples that were held at once.
+fn held(lines: impl IntoIterator<Item = Line>) -> (usize, usize) {
+    let (mut drives, mut samples, mut most) = (Drives::new(), 0, 0);
+    let mut count = |part: DrivePart| {
+        samples += usize::from(matches!(part, DrivePart::Sample(_)));
+        ControlFlow::Continue(())
+    };
+    for line in lines {
+        let frame = LoggedFrame::from(&line.frame);
+        let entry = Entry {
+            time_us: line.time_us,
+            bus: "can0",
+            frame,
+        };
+        assert!(drives.take(&entry, &mut count).is_continue());
+        most = most.max(drives.held());
+    }
+    let _ = drives.end(&mut count);
+    (samples, most)
+}
+
+/// Lines of a drive, one second after the other.
+fn long_drive(seconds: u32, keep: fn(u32, &Line) -> bool) -> impl Iterator<Item = Line> {
+    // All counters have run round after 1024 ticks.
+    (0..seconds).flat_map(move |k| {
+        let mut lines = drive(0, 1024, 1_000_000 + u64::from(k) * 1024 * 5000);
+        lines.retain(|line| keep(k, line));
+        lines
+    })
+}
+
+#[test]
+fn a_long_drive_needs_no_more_memory_than_a_short_one() {
+    fn is(line: &Line, message: usize) -> bool {
+        line.frame.standard_id() == Some(MESSAGES[message].id)
+    }
+    let (samples, usual) = held(long_drive(12, |_, _| true));
+    assert_eq!(samples, 12 * 1024);
+    assert!(usual < 30_000, "{usual}");
+    assert_eq!(held(long_drive(60, |_, _| true)), (60 * 1024, usual));
+    // A message that falls silent for good holds nothing back.
+    let (samples, most) = held(long_drive(40, |k, line| k < 5 || !(is(line, 6) || is(line, 2))));
+    assert_eq!(samples, 40 * 1024);
+    assert!(most < usual + 100, "{most}");
+    // What goes on after the displacements waits, but not without end; and so after a displacement message that begins no drive.
+    let (samples, most) = held(long_drive(80, |k, line| k < 10 || !(is(line, 4) || is(line, 5))));
+    assert_eq!(samples, 10 * 1024);
+    assert!(most < usual + (1 << 16) + 5 * (1 << 14), "{most}");
+    let (samples, most) = held(long_drive(80, |k, line| {
+        let is_first = line.time_us == 1_000_000 + u64::from(k) * 5_120_000 + 270 * 5;
+        k < 10 || !(is(line, 4) || is(line, 5)) || k == 20 && is_first
+    }));
+    assert_eq!(samples, 10 * 1024);
+    assert!(most < usual + 2 * (1 << 16) + 5 * (1 << 14), "{most}");
 }
 
 /// What a logger does to a frame.

@@ -1,9 +1,34 @@
 //! What a log holds by a map: drives with their samples, and an account of what was read.
 
+use std::ops::ControlFlow;
+
 use oleo_interface::{Corners, StrutPressures, StrutValves};
 
 use super::selection::Steps;
 use crate::logs::Account;
+
+/// A piece of the drives of a log, in the order of the log.
+#[derive(Clone, Copy, Debug)]
+pub enum SignalPart<'a> {
+    /// A drive begins, and the one before has ended. Time of its first displacement as the log says it, s.
+    Begins(f64),
+    /// The next sample of the drive.
+    Sample(&'a Corners<StrutSample>),
+}
+
+/// Takes the drives of a log piece by piece, and may end the reading.
+pub type SignalSink<'a> = dyn FnMut(SignalPart) -> ControlFlow<()> + 'a;
+
+/// A sample of one strut.
+#[derive(Clone, Copy, Debug)]
+pub struct StrutSample {
+    /// Displacement, m, compression positive; NaN where it is missing.
+    pub displacement_m: f64,
+    /// Gauge pressures, Pa; NaN where one is missing.
+    pub pressure_pa: StrutPressures<f64>,
+    /// Switching signals from this sample to the next; `None` where one is missing.
+    pub valves: Option<StrutValves<bool>>,
+}
 
 /// What a log holds.
 #[derive(Clone, Debug)]
@@ -23,19 +48,8 @@ pub struct SignalDrive {
     pub begins_s: f64,
     /// Time between two samples, s.
     pub period_s: f64,
-    /// The samples of every strut.
-    pub struts: Corners<StrutSeries>,
-}
-
-/// The samples of one strut; all series have the same length.
-#[derive(Clone, Debug, Default)]
-pub struct StrutSeries {
-    /// Displacement, m, compression positive; NaN where it is missing.
-    pub displacement_m: Vec<f64>,
-    /// Gauge pressures, Pa; NaN where one is missing.
-    pub pressure_pa: StrutPressures<Vec<f64>>,
-    /// Switching signals from this sample to the next; `None` where one is missing.
-    pub valves: Vec<Option<StrutValves<bool>>>,
+    /// The samples.
+    pub samples: Vec<Corners<StrutSample>>,
 }
 
 /// What was read of a log, and what could not be used.
@@ -67,7 +81,7 @@ pub struct SignalMessage {
     pub without_reading: u64,
     /// Number of frames that came once more for the same sample; the one nearest to its time is used.
     pub repeated: u64,
-    /// Number of frames outside all drives.
+    /// Number of frames outside all drives, or too late to be put in order.
     pub outside: u64,
 }
 

@@ -1,11 +1,17 @@
 //! Logs of an invented car whose every reading is known, in its own database and units.
 
+use std::cell::Cell;
+use std::ops::ControlFlow;
+use std::path::Path;
+
 use oleo_interface::{Corner, PressurePoint};
 use proptest::prelude::*;
 
-use super::{Database, Selection, SignalLog, SignalMap, parse};
+use super::samples::Samples;
+use super::stretches::Stretches;
+use super::{Database, Selection, SignalLog, SignalMap, SignalPart, parse, readings, survey_of};
 use crate::logs::candump::write_line;
-use crate::logs::{FrameKind, LoggedFrame, Payload, identifier};
+use crate::logs::{Account, Entry, FrameKind, FrameSource, LogError, LoggedFrame, Payload, Sink, identifier};
 
 /// Heights in 0.1 mm above 250 mm, falling in compression, big-endian; pressures in bar absolute, a multiplexed frame for each corner;
 /// valves in one frame, and a sensor of each axle that says whether it works.
@@ -66,17 +72,92 @@ fn drive(from: u64, to: u64, begins_us: u64) -> Vec<Line> {
 
 fn written(lines: &[Line]) -> Vec<u8> {
     let mut log = Vec::new();
-    for (time_us, number, data) in lines {
-        let kind = if data.len() > 8 {
-            FrameKind::Fd(1)
-        } else {
-            FrameKind::Classic
-        };
-        let id = identifier(*number, *number > 0x7FF).expect("an identifier");
-        let frame = LoggedFrame::new(id, kind, Payload::new(data).expect("short")).expect("a frame");
-        write_line(&mut log, *time_us, "can2", frame).expect("memory takes it");
+    for line in lines {
+        write_line(&mut log, line.0, "can2", frame(line)).expect("memory takes it");
     }
     log
+}
+
+fn frame((_, number, data): &Line) -> LoggedFrame {
+    let kind = if data.len() > 8 {
+        FrameKind::Fd(1)
+    } else {
+        FrameKind::Classic
+    };
+    let id = identifier(*number, *number > 0x7FF).expect("an identifier");
+    LoggedFrame::new(id, kind, Payload::new(data).expect("short")).expect("a frame")
+}
+
+/// A drive of 5 s that is logged again and again.
+struct Repeated {
+    lines: Vec<Line>,
+    times: u64,
+    /// Number of frames that were read.
+    read: std::rc::Rc<Cell<usize>>,
+}
+
+impl FrameSource for Repeated {
+    fn read(&mut self, sink: &mut Sink) -> Result<Account, LogError> {
+        for k in 0..self.times {
+            for line in &self.lines {
+                self.read.set(self.read.get() + 1);
+                let entry = Entry {
+                    time_us: line.0 + k * 5_000_000,
+                    bus: "can2",
+                    frame: frame(line),
+                };
+                if sink(entry).is_break() {
+                    break;
+                }
+            }
+        }
+        Ok(Account::default())
+    }
+}
+
+/// The number of samples in so many times 5 s, and the most frames and samples that were held at once.
+fn held(times: u64, keep: fn(&Line) -> bool) -> (usize, usize) {
+    let (selection, path, read) = (selection(), Path::new("log"), std::rc::Rc::new(Cell::new(0)));
+    let mut lines = drive(0, 500, 0);
+    lines.retain(keep);
+    let source = || Repeated {
+        lines: lines.clone(),
+        times,
+        read: read.clone(),
+    };
+    let survey = survey_of(&|| Ok(Box::new(source())), &selection, path).expect("a drive");
+    let (mut samples, mut stretches) = (
+        Samples::new(&selection, &survey),
+        Stretches::new(&selection, survey.beat),
+    );
+    let (mut count, mut most, mut given) = (0, 0, 0);
+    let mut sink = |part: SignalPart| {
+        count += usize::from(matches!(part, SignalPart::Sample(_)));
+        ControlFlow::Continue(())
+    };
+    read.set(0);
+    let account = readings::read(&mut source(), &selection, path, &mut |frame| {
+        given += 1;
+        let flow = stretches.take(frame, &mut |step| samples.take(&step, &mut sink));
+        most = most.max(read.get() - given + stretches.held() + samples.held());
+        flow
+    });
+    account.expect("one bus");
+    let _ = stretches.end(&mut |step| samples.take(&step, &mut sink));
+    (count, most)
+}
+
+#[test]
+fn a_long_log_needs_no_more_memory_than_a_short_one() {
+    let (samples, usual) = held(4, |_| true);
+    assert_eq!(samples, 4 * 500);
+    // Seven frames come in a sample, and a second is held.
+    assert!(usual < 1000, "{usual}");
+    assert_eq!(held(40, |_| true), (40 * 500, usual));
+    // Messages that are missing hold nothing back.
+    let (samples, most) = held(40, |line| line.1 != 0x220 && line.1 != 0x210);
+    assert_eq!(samples, 40 * 500);
+    assert!(most < usual, "{most}");
 }
 
 fn read(lines: &[Line]) -> SignalLog {
@@ -88,9 +169,10 @@ fn all_true(log: &SignalLog, drive: usize, first: u64) -> usize {
     let mut there = 0;
     let drive = &log.drives[drive];
     for corner in Corner::ALL {
-        let (strut, k) = (&drive.struts[corner], corner.index());
-        for (at, sample) in (first..).take(strut.displacement_m.len()).enumerate() {
-            let x = strut.displacement_m[at];
+        let k = corner.index();
+        for (struts, sample) in drive.samples.iter().zip(first..) {
+            let strut = &struts[corner];
+            let x = strut.displacement_m;
             if x.is_finite() {
                 // Our zero is 62 mm above the sensor's.
                 let expected = -(1e-4 * f64::from(height_steps(sample, k)) + 0.25 - 0.312);
@@ -101,7 +183,7 @@ fn all_true(log: &SignalLog, drive: usize, first: u64) -> usize {
                 there += 1;
             }
             for point in PressurePoint::ALL {
-                let p = strut.pressure_pa[point][at];
+                let p = strut.pressure_pa[point];
                 if p.is_finite() {
                     let expected = 25_000.0 * f64::from(pressure_steps(sample, k, point.index())) - 101_325.0;
                     assert!(
@@ -111,7 +193,7 @@ fn all_true(log: &SignalLog, drive: usize, first: u64) -> usize {
                     there += 1;
                 }
             }
-            if let Some(valves) = strut.valves[at] {
+            if let Some(valves) = strut.valves {
                 let expected = [0, 1, 2].map(|valve| valve_is_open(sample, k, valve));
                 // The third valve of the rear left strut has no signal.
                 let third = expected[2] && corner != Corner::RearLeft;
@@ -135,11 +217,7 @@ fn every_reading_arrives_in_its_sample_and_unit() {
     // The vehicle stands, the bus sleeps for a minute, and another drive begins.
     lines.extend(drive(500, 700, 90_000_000));
     let log = read(&lines);
-    let found: Vec<(usize, f64)> = log
-        .drives
-        .iter()
-        .map(|d| (d.struts[Corner::FrontLeft].valves.len(), d.period_s))
-        .collect();
+    let found: Vec<(usize, f64)> = log.drives.iter().map(|d| (d.samples.len(), d.period_s)).collect();
     assert_eq!(found, [(500, 0.01), (200, 0.01)]);
     assert_eq!(all_true(&log, 0, 0), 500 * READINGS_OF_A_SAMPLE);
     assert_eq!(all_true(&log, 1, 500), 200 * READINGS_OF_A_SAMPLE);
@@ -190,10 +268,8 @@ fn what_a_sensor_calls_invalid_is_missing() {
         line.2[5] = 0;
     }
     let log = read(&lines);
-    let missing = log.drives[0].struts[Corner::RearRight]
-        .displacement_m
-        .iter()
-        .filter(|x| x.is_nan())
+    let missing = (log.drives[0].samples.iter())
+        .filter(|struts| struts[Corner::RearRight].displacement_m.is_nan())
         .count();
     assert_eq!((missing, all_true(&log, 0, 0)), (3, 50 * READINGS_OF_A_SAMPLE - 6));
 }

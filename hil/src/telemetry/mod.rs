@@ -31,7 +31,7 @@ pub use live::{Live, LiveError, Served};
 #[cfg(feature = "mcap")]
 pub use mcap_file::McapFile;
 pub use rows::Rows;
-pub use series::{Series, write_series};
+pub use series::{Series, nanoseconds, write_series};
 pub use topic::{Column, Kind, Topic, Value};
 #[cfg(not(feature = "mcap"))]
 pub use without::{Live, LiveError, McapFile, Served};

@@ -39,6 +39,7 @@ pub fn write_series<W: Write + Seek>(out: W, program: &str, series: &[Series]) -
 }
 
 /// Nanoseconds, rounded; a time before the start is the start.
-fn nanoseconds(time_s: f64) -> u64 {
+#[must_use]
+pub fn nanoseconds(time_s: f64) -> u64 {
     libm::round(time_s * 1e9) as u64
 }

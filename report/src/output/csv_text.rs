@@ -10,6 +10,34 @@ pub type Numbers<'a> = (&'a str, &'a [f64]);
 /// A column of words: its name and its values.
 pub type Words<'a> = (&'a str, &'a [&'a str]);
 
+/// A table of numbers that is written row by row, so that one of any length needs no memory.
+pub struct CsvRows<W>(W);
+
+impl<W: Write> CsvRows<W> {
+    /// Writes the header: names with units.
+    ///
+    /// # Errors
+    /// The file cannot be written; here and below.
+    pub fn begin(mut out: W, names: &[String]) -> io::Result<Self> {
+        writeln!(out, "{}", names.join(","))?;
+        Ok(Self(out))
+    }
+
+    /// Writes a row, with a value for each column.
+    ///
+    /// # Errors
+    /// As [`Self::begin`].
+    pub fn row(&mut self, values: &[f64]) -> io::Result<()> {
+        let mut comma = "";
+        for value in values {
+            self.0.write_all(comma.as_bytes())?;
+            number(&mut self.0, *value)?;
+            comma = ",";
+        }
+        writeln!(self.0)
+    }
+}
+
 /// Refuses columns of different lengths. `name` is the file.
 pub(super) fn check(name: &str, numbers: &[Numbers], words: &[Words]) -> Result<usize, OutputError> {
     let mut lengths = (numbers.iter().map(|column| (column.0, column.1.len())))
@@ -74,6 +102,10 @@ mod tests {
         write(&mut text, rows, &numbers, &words).expect("written");
         let expected = "x_m,mode\n0.666666667,a\n1e-81,b\n-123456789000,c\n0.005,d\nNaN,\n";
         assert_eq!(String::from_utf8_lossy(&text), expected);
+        let mut rows = Vec::new();
+        let mut table = CsvRows::begin(&mut rows, &["a".to_owned(), "b".to_owned()]).expect("memory");
+        table.row(&[2.0 / 3.0, f64::NAN]).expect("memory");
+        assert_eq!(String::from_utf8_lossy(&rows), "a,b\n0.666666667,NaN\n");
         assert!(check("b.csv", &[("x_m", &[1.0])], &[("mode", &[])]).is_err());
     }
 }

@@ -57,6 +57,12 @@ impl OutputFile {
         Ok(Self { target: path, staging })
     }
 
+    /// A path for another file that is needed until this one is written, on the same file system. It is removed in any case.
+    #[must_use]
+    pub fn scratch(&self, name: &str) -> PathBuf {
+        self.staging.path().join(format!("scratch-{name}"))
+    }
+
     /// Writes columns of numbers and moves the file into place.
     ///
     /// # Errors

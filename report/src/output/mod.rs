@@ -24,7 +24,7 @@ use serde::Serialize;
 use tempfile::TempDir;
 
 use crate::{Page, interrupt};
-pub use csv_text::rounded;
+pub use csv_text::{CsvRows, rounded};
 use csv_text::{Numbers, Words};
 use digest::of_file as digest;
 pub use error::OutputError;

@@ -80,7 +80,7 @@ impl Curve {
                 "A candump log of the default scenario, repeated up to the size. Frames pass through one at a time. One thread."
             }
             Self::LogColumns => {
-                "The same log, from which the displacements, pressures and valves of its drive are written. The columns are held in memory. One thread."
+                "The same log, from which the displacements, pressures and valves of its drive are written. One thread."
             }
         }
     }

@@ -1,18 +1,21 @@
-//! Columns of the drives of a log, in SI units.
+//! Columns of the drives of a log, in SI units, written as the samples come.
 
-use std::path::Path;
+use std::fs::File;
+use std::io::{self, BufWriter};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 
-use oleo_diagnose::vehicle::Drive;
-use oleo_hil::telemetry::{Series, write_series};
-use oleo_interface::Corner;
-use oleo_report::OutputFile;
+use oleo_hil::telemetry::{Column, McapFile, Value, nanoseconds};
+use oleo_interface::{Corner, Corners};
+use oleo_report::{CsvRows, OutputFile};
 
-use super::parquet;
+use super::parquet::{self, ParquetRows};
 use crate::commands::mcap::{self, program};
+use crate::commands::vehicle_log::{Part, PartSink, StrutSample};
 use crate::failure::Failure;
 
 /// Formats of columns.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub enum ColumnFormat {
     /// Text, one row for each sample.
     Csv,
@@ -39,67 +42,137 @@ impl ColumnFormat {
         }
     }
 
-    /// Writes the columns of drives, and gives the path as words.
-    pub fn write(self, staged: OutputFile, drives: &[Drive]) -> Result<String, Failure> {
-        let path = match self {
-            Self::Csv => {
-                let columns = columns(drives);
-                let borrowed: Vec<(&str, &[f64])> = (columns.iter())
-                    .map(|(name, values)| (name.as_str(), values.as_slice()))
-                    .collect();
-                staged.csv(&borrowed)?
+    /// Whether the writer must know beforehand if there are several drives: the topics of viewers are named by it.
+    pub fn names_drives(self) -> bool {
+        self == Self::Mcap
+    }
+
+    /// Writes the columns of the drives that `read` gives, and moves the file into place. Returns its path, and what `read` says.
+    pub fn write(
+        self,
+        staged: OutputFile,
+        read: impl FnOnce(&mut PartSink) -> Result<String, Failure>,
+    ) -> Result<(PathBuf, String), Failure> {
+        let mut said = String::new();
+        let path = staged.stream(|out| {
+            let mut columns = Columns::begin(self, out)?;
+            let mut refused = None;
+            let read = read(&mut |part| match columns.take(part) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(error) => {
+                    refused = Some(error);
+                    ControlFlow::Break(())
+                }
+            });
+            match refused {
+                Some(error) => Err(error),
+                None => columns.finish().map(|()| read.map(|words| said = words)),
             }
-            Self::Mcap => mcap::stream(staged, |out| write_series(out, &program(), &series(drives)))?,
-            Self::Parquet => mcap::stream(staged, |out| parquet::write(out, &program(), &columns(drives)))?,
-        };
-        Ok(path.display().to_string())
+        })??;
+        Ok((path, said))
     }
 }
 
-/// The drives for viewers. Each begins at zero and has topics of its own where there are several.
-fn series(drives: &[Drive]) -> Vec<Series> {
-    let of_drive = |(k, drive): (usize, &Drive)| {
-        let mut columns = columns(std::slice::from_ref(drive));
-        let time = columns.iter_mut().find(|(name, _)| name == TIME);
-        Series {
-            run: (drives.len() > 1).then(|| format!("drive_{}", k + 1)),
-            time_s: time.map(|(_, values)| std::mem::take(values)).unwrap_or_default(),
-            columns,
-        }
-    };
-    drives.iter().enumerate().map(of_drive).collect()
+/// A file of columns that is being written.
+struct Columns<'f> {
+    file: RowFile<'f>,
+    names: Vec<String>,
+    /// Number of the drive, from 1 on.
+    drive: u32,
+    /// Number of samples of this drive.
+    samples: u64,
+    period_s: f64,
+    row: Vec<f64>,
 }
 
-/// Time in the drive.
-const TIME: &str = "time_s";
+/// A file in one of the formats.
+enum RowFile<'f> {
+    Csv(CsvRows<&'f mut BufWriter<File>>),
+    Mcap(Box<McapFile<&'f mut BufWriter<File>>>, Vec<Value>),
+    Parquet(ParquetRows<&'f mut BufWriter<File>>),
+}
 
-/// The columns of all drives, one below the other: number of the drive, time in it, and everything of every corner.
-fn columns(drives: &[Drive]) -> Vec<(String, Vec<f64>)> {
-    let rows = || {
-        drives
-            .iter()
-            .enumerate()
-            .flat_map(|(k, drive)| (0..drive.len()).map(move |row| (k, drive, row)))
-    };
-    let number: Vec<f64> = rows().map(|(k, _, _)| k as f64 + 1.0).collect();
-    let time_s = rows().map(|(_, drive, row)| row as f64 * drive.period_s).collect();
-    let mut columns = vec![("drive".to_owned(), number), (TIME.to_owned(), time_s)];
-    for corner in Corner::ALL {
-        let displacement = rows().map(|(_, drive, row)| drive.struts[corner].displacement_m[row]);
-        columns.push((format!("displacement_{}_m", corner.key()), displacement.collect()));
-        for point in 0..4 {
-            let pressure = rows().map(|(_, drive, row)| drive.struts[corner].pressure_pa[point][row]);
-            columns.push((format!("p{}_{}_Pa", point + 1, corner.key()), pressure.collect()));
-        }
-        for (number, valve) in (1..).zip(oleo_interface::Valve::ALL) {
-            let signal = |drive: &Drive, row: usize| {
-                drive.struts[corner].valves[row].map_or(f64::NAN, |signals| f64::from(u8::from(signals[valve])))
-            };
-            let signals = rows().map(|(_, drive, row)| signal(drive, row));
-            columns.push((format!("valve{number}_{}", corner.key()), signals.collect()));
+impl<'f> Columns<'f> {
+    fn begin(format: ColumnFormat, out: &'f mut BufWriter<File>) -> io::Result<Self> {
+        let names = names();
+        Ok(Self {
+            file: match format {
+                ColumnFormat::Csv => RowFile::Csv(CsvRows::begin(out, &names)?),
+                ColumnFormat::Mcap => RowFile::Mcap(Box::new(McapFile::new(out, &program())?), Vec::new()),
+                ColumnFormat::Parquet => RowFile::Parquet(ParquetRows::begin(out, &program(), &names)?),
+            },
+            names,
+            drive: 0,
+            samples: 0,
+            period_s: 0.0,
+            row: Vec::new(),
+        })
+    }
+
+    fn take(&mut self, part: Part) -> io::Result<()> {
+        match part {
+            Part::Begins { period_s, of_several } => {
+                self.drive += 1;
+                self.samples = 0;
+                self.period_s = period_s;
+                match &mut self.file {
+                    RowFile::Mcap(file, _) => {
+                        let columns: Vec<Column> = self.names.iter().map(Column::number).collect();
+                        let run = (of_several || self.drive > 1).then(|| format!("drive_{}", self.drive));
+                        file.add(run.as_deref(), &columns)
+                    }
+                    RowFile::Csv(_) | RowFile::Parquet(_) => Ok(()),
+                }
+            }
+            Part::Sample(struts) => self.sample(struts),
         }
     }
-    columns
+
+    fn sample(&mut self, struts: &Corners<StrutSample>) -> io::Result<()> {
+        let time_s = self.samples as f64 * self.period_s;
+        self.samples += 1;
+        self.row.clear();
+        self.row.extend([f64::from(self.drive), time_s]);
+        for strut in struts.values() {
+            self.row.push(strut.displacement_m);
+            self.row.extend(strut.pressure_pa);
+            match strut.valves {
+                Some(signals) => self
+                    .row
+                    .extend(signals.into_array().map(|open| f64::from(u8::from(open)))),
+                None => self.row.extend([f64::NAN; 3]),
+            }
+        }
+        match &mut self.file {
+            RowFile::Csv(file) => file.row(&self.row),
+            RowFile::Parquet(file) => file.row(&self.row),
+            RowFile::Mcap(file, values) => {
+                values.clear();
+                values.extend(self.row.iter().map(|value| Value::Number(*value)));
+                // Runs are numbered from 0.
+                file.row(self.drive as usize - 1, nanoseconds(time_s), values)
+            }
+        }
+    }
+
+    fn finish(self) -> io::Result<()> {
+        match self.file {
+            RowFile::Csv(_) => Ok(()),
+            RowFile::Mcap(file, _) => file.finish(),
+            RowFile::Parquet(file) => file.finish(),
+        }
+    }
+}
+
+/// The names of the columns: number of the drive, time in it, and everything of every corner.
+fn names() -> Vec<String> {
+    let mut names = vec!["drive".to_owned(), "time_s".to_owned()];
+    for corner in Corner::ALL.map(Corner::key) {
+        names.push(format!("displacement_{corner}_m"));
+        names.extend((1..=4).map(|point| format!("p{point}_{corner}_Pa")));
+        names.extend((1..=3).map(|valve| format!("valve{valve}_{corner}")));
+    }
+    names
 }
 
 /// Whether a file's name has this end, in small or in capital letters.

@@ -1,6 +1,7 @@
 //! Stands for the writer of Parquet in a program that was built without it.
 
 use std::io::{self, Write};
+use std::marker::PhantomData;
 use std::path::Path;
 
 use crate::failure::Failure;
@@ -14,7 +15,22 @@ pub fn is_built(path: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// Is never called.
-pub fn write<W: Write + Send>(_: W, _: &str, _: &[(String, Vec<f64>)]) -> io::Result<()> {
-    Err(io::ErrorKind::Unsupported.into())
+/// A file, of which there are none.
+pub struct ParquetRows<W>(std::convert::Infallible, PhantomData<W>);
+
+impl<W: Write + Send> ParquetRows<W> {
+    /// Is never called.
+    pub fn begin(_: W, _: &str, _: &[String]) -> io::Result<Self> {
+        Err(io::ErrorKind::Unsupported.into())
+    }
+
+    /// Is never called.
+    pub fn row(&mut self, _: &[f64]) -> io::Result<()> {
+        match self.0 {}
+    }
+
+    /// Is never called.
+    pub fn finish(self) -> io::Result<()> {
+        match self.0 {}
+    }
 }

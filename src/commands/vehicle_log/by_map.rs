@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use oleo_diagnose::vehicle::{Drive, Resolution, StrutSamples};
-use oleo_hil::signal_log::{self, Database, Selection, SignalAccount, SignalDrive, SignalMap};
+use oleo_diagnose::vehicle::Resolution;
+use oleo_hil::signal_log::{self, Database, Selection, SignalAccount, SignalMap, SignalPart, Survey};
 use oleo_interface::Corners;
 
-use super::content::{VehicleLog, others, plural};
+use super::content::{Part, PartSink, StrutSample, others, plural};
 use crate::failure::Failure;
 
 /// The signals that are taken of a log.
@@ -33,15 +33,22 @@ impl ByMap {
         Ok(Self(Selection::of(&map, &database, &map_file).map_err(Failure::new)?))
     }
 
-    /// Reads a log. `named` names its drives.
-    pub fn read(&self, path: &Path, named: impl Fn(usize) -> String) -> Result<VehicleLog, Failure> {
-        let log = signal_log::read(path, &self.0)?;
-        Ok(VehicleLog {
-            in_words: in_words(&log.account, &log.drives),
-            drives: (log.drives.into_iter().enumerate())
-                .map(|(k, d)| drive(named(k), k == 0, d))
-                .collect(),
-        })
+    /// Gives the drives of a log to `sink`.
+    pub fn stream(&self, path: &Path, sink: &mut PartSink) -> Result<String, Failure> {
+        let survey = signal_log::survey(path, &self.0)?;
+        let begins = Part::Begins {
+            period_s: survey.period_s(),
+            of_several: survey.number_of_drives() > 1,
+        };
+        let account = signal_log::stream(path, &self.0, &survey, &mut |part| match part {
+            SignalPart::Begins(_) => sink(begins),
+            SignalPart::Sample(struts) => sink(Part::Sample(&struts.map(|strut| StrutSample {
+                displacement_m: strut.displacement_m,
+                pressure_pa: strut.pressure_pa.into_array(),
+                valves: strut.valves,
+            }))),
+        })?;
+        Ok(in_words(&account, &survey))
     }
 
     /// Steps to which the readings are rounded.
@@ -54,30 +61,16 @@ impl ByMap {
 }
 
 /// What was read of a log, in one sentence.
-fn in_words(account: &SignalAccount, drives: &[SignalDrive]) -> String {
+fn in_words(account: &SignalAccount, survey: &Survey) -> String {
     format!(
         "{} drive{} with a sample every {:.1} ms, {} frames of the map; {} without a reading, {} repeated, {} outside the drives; {}.",
-        drives.len(),
-        plural(drives.len()),
-        drives.first().map_or(0.0, |drive| 1e3 * drive.period_s),
+        survey.number_of_drives(),
+        plural(survey.number_of_drives()),
+        1e3 * survey.period_s(),
         account.total(|m| m.received),
         account.total(|m| m.without_reading),
         account.total(|m| m.repeated),
         account.total(|m| m.outside),
         others(account.foreign_frames, &account.log),
     )
-}
-
-/// A drive read by a map.
-fn drive(name: String, is_first: bool, drive: SignalDrive) -> Drive {
-    Drive {
-        name,
-        is_first,
-        period_s: drive.period_s,
-        struts: drive.struts.map(|strut| StrutSamples {
-            displacement_m: strut.displacement_m,
-            pressure_pa: strut.pressure_pa.into_array(),
-            valves: strut.valves,
-        }),
-    }
 }

@@ -6,7 +6,7 @@ use oleo_diagnose::vehicle::Resolution;
 use oleo_hil::logs::HOW_TO_BUILD;
 use oleo_interface::Corners;
 
-use super::content::VehicleLog;
+use super::content::PartSink;
 use crate::failure::Failure;
 
 /// The signals that are taken of a log, of which there are none.
@@ -21,7 +21,7 @@ impl ByMap {
         )))
     }
 
-    pub fn read(&self, _: &Path, _: impl Fn(usize) -> String) -> Result<VehicleLog, Failure> {
+    pub fn stream(&self, _: &Path, _: &mut PartSink) -> Result<String, Failure> {
         match *self {}
     }
 

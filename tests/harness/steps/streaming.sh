@@ -8,7 +8,7 @@ python_packages 'numpy, can, cantools' 'numpy>=1.26' 'python-can>=4.4,<5' 'canto
 }
 check "release build" cargo build "${FEATURES[@]}" --locked --quiet --release || exit 0
 folder=$(mktemp -d -p "$CARGO_TARGET_DIR")
-# Millions of frames; 200 million take five minutes and 4.2 GB of disk more.
+# Millions of frames; 200 million take a quarter of an hour and 6 GB of disk more.
 millions=${OLEO_MILLIONS:-2,20}
 PYTHONPATH=$PYTHON_PACKAGES check "streaming" python3 tests/streaming.py "$CARGO_TARGET_DIR/release/oleo" "$folder" --millions "$millions"
 sed 's/^/   /' "$log"

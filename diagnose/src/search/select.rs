@@ -30,11 +30,11 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
     let calibrated = selector.fitted(Point::nominal(problem.specimen()))?;
     let mut grown = grow(&mut selector, &calibrated, calibrated.clone(), Open::Names, progress)?;
     let mut best = reduced(&mut selector, grown.best.clone(), progress)?;
-    if selector.is_worth_growing_again(&best, &grown) {
-        // The effects that came before the law had a part of what a second law explains, so that none was accepted beside them.
+    if let Some(open) = selector.open_once_more(&best, &grown) {
         let first = grown;
-        grown = grow(&mut selector, &calibrated, best, Open::TwoLaws, progress)?;
-        (grown.scores, grown.law_pairs) = (first.scores, first.law_pairs);
+        grown = grow(&mut selector, &calibrated, best, open, progress)?;
+        grown.scores = first.scores;
+        grown.law_pairs = grown.law_pairs.max(first.law_pairs);
         best = reduced(&mut selector, grown.best.clone(), progress)?;
     }
     let effects_grown = grown.best.point.effects.len();
@@ -52,7 +52,12 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
     let mut exchanged = false;
     for _ in 0..problem.criteria.rivalry.exchanges {
         let Some(better) = comparison.better.take() else { break };
-        best = selector.eliminate(better, acceptance.least_fraction)?;
+        let after = selector.eliminate(better, acceptance.least_fraction)?;
+        // A rival that gains more, but in a few blocks only, is not accepted and leaves with what it took the place of.
+        if selector.improves(&after, &best, acceptance.least_fraction_incomplete) {
+            break;
+        }
+        best = after;
         exchanged = true;
         comparison = selector.compare_with_rivals(&best, open)?;
     }
@@ -88,11 +93,18 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
 }
 
 impl Selector<'_, '_> {
-    /// True if a model with one law is not complete, and has lost effects beside which no second law was accepted.
-    fn is_worth_growing_again(&self, reduced: &Fit, grown: &Grown) -> bool {
-        reduced.point.effects.len() < grown.best.point.effects.len()
-            && self.laws_of(&reduced.point) == 1
-            && self.held_out_ratio(reduced) > self.complete_up_to(reduced)
+    /// What may join a model that is not complete, and has lost effects that came before laws were tried: they had a part of what a
+    /// law explains, so that it was not accepted beside them, or they were so many that none was tried. `None` if there is no reason to
+    /// go on.
+    fn open_once_more(&self, reduced: &Fit, grown: &Grown) -> Option<Open> {
+        let has_lost = reduced.point.effects.len() < grown.best.point.effects.len();
+        let incomplete = self.held_out_ratio(reduced) > self.complete_up_to(reduced);
+        let worth_it = has_lost && incomplete && self.can_have_two_laws();
+        match self.laws_of(&reduced.point) {
+            0 if worth_it => Some(Open::Laws),
+            1 if worth_it => Some(Open::TwoLaws),
+            _ => None,
+        }
     }
 }
 

@@ -33,7 +33,7 @@ pub struct Selection {
 }
 
 /// Whether laws without a name were tried in pairs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LawPairs {
     /// There was no need.

@@ -103,6 +103,12 @@ impl Analytic {
         self.candidates[candidate].starts = starts;
     }
 
+    /// Makes a candidate a law without a name at a place.
+    pub fn take_name(&mut self, candidate: usize, site: Site) {
+        let candidate = &mut self.candidates[candidate];
+        (candidate.id, candidate.place, candidate.one_of_several) = (EffectId::Unlisted, site.into(), true);
+    }
+
     /// Another start of a candidate's first parameter.
     pub fn move_start(&mut self, candidate: usize, start: f64) {
         self.candidates[candidate].parameters[0].start = start;
@@ -240,6 +246,7 @@ fn candidate(index: usize) -> Candidate {
         starts: vec![],
         takes_from: None,
         becomes: None,
+        one_of_several: id == EffectId::Unlisted,
         oscillates: index == SWING,
         untestable: None,
         id,

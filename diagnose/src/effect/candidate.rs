@@ -22,6 +22,8 @@ pub struct Candidate {
     pub becomes: Option<EffectId>,
     /// Candidates of the same group exclude each other.
     pub group: Option<ExclusionGroup>,
+    /// Whether it is a law without a name that excludes others only where their places overlap, so that a model can have two.
+    pub one_of_several: bool,
     /// Whether it swings in time at a frequency that is looked for in the residual. Its parameters are then amplitude, phase, rad, and
     /// frequency, Hz.
     pub oscillates: bool,
@@ -46,6 +48,7 @@ impl Candidate {
             takes_from: None,
             becomes: None,
             group: None,
+            one_of_several: false,
             oscillates: false,
             untestable: None,
         }
@@ -93,6 +96,15 @@ impl Candidate {
         }
     }
 
+    /// The candidate as a law beside which a model can have another one at another place.
+    #[must_use]
+    pub fn beside_others(self) -> Self {
+        Self {
+            one_of_several: true,
+            ..self
+        }
+    }
+
     /// The candidate as one that swings in time.
     #[must_use]
     pub fn oscillating(self, oscillates: bool) -> Self {
@@ -120,12 +132,13 @@ impl Candidate {
         self.id.is_instrument_fault()
     }
 
-    /// Whether the two cannot be in one model. This holds for members of one group, and for two faults of one sensor, which can
-    /// replace each other (a short lag is nearly a skew).
+    /// Whether the two cannot be in one model. This holds for members of one group, for two faults of one sensor, which can
+    /// replace each other (a short lag is nearly a skew), and for two laws without a name at one place, where two tables take the shape of a third.
     #[must_use]
     pub fn excludes(&self, other: &Self) -> bool {
         (self.group.is_some() && self.group == other.group)
             || (self.is_instrument_fault() && other.is_instrument_fault() && self.place == other.place)
+            || (self.one_of_several && other.one_of_several && self.place.overlaps(&other.place))
     }
 
     /// True if these values leave the model as it is: the candidate has a size, and each number that is one is zero.

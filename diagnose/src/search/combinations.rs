@@ -10,7 +10,7 @@
 use std::collections::BTreeSet;
 
 use super::screen::Screen;
-use super::selector::{Screened, Selector, ranked, reached};
+use super::selector::{Open, Screened, Selector, ranked, reached};
 use crate::error::DiagnoseError;
 use crate::estimation::covariance::covariance;
 use crate::estimation::{Fit, fit};
@@ -42,12 +42,12 @@ impl Selector<'_, '_> {
         begin: Screening<'_>,
     ) -> Result<Option<Fit>, DiagnoseError> {
         let fraction = self.criteria().acceptance.least_fraction_incomplete;
-        let beside_end = self.combination_beside(end)?;
+        let beside_end = self.combination_beside(end, Open::Names)?;
         if end.model.point.effects.is_empty() {
             return Ok(beside_end);
         }
         let anew = self
-            .combination_beside(begin)?
+            .combination_beside(begin, Open::Names)?
             .filter(|anew| self.improves(end.model, anew, fraction));
         Ok(match (beside_end, anew) {
             (Some(more), Some(anew)) => {
@@ -63,8 +63,8 @@ impl Selector<'_, '_> {
         })
     }
 
-    /// The strongest combination beside a model.
-    fn combination_beside(&mut self, base: Screening<'_>) -> Result<Option<Fit>, DiagnoseError> {
+    /// The strongest combination beside a model, of what may join it.
+    pub fn combination_beside(&mut self, base: Screening<'_>, open: Open) -> Result<Option<Fit>, DiagnoseError> {
         let criteria = &self.criteria().combinations;
         let (seeds, largest) = if self.specimen().simulates_in_milliseconds() {
             (criteria.seeds, criteria.largest)
@@ -79,7 +79,7 @@ impl Selector<'_, '_> {
             .map(|(_, fit)| fit)
             .collect();
         for size in 2..=largest.min(room) {
-            let grown = self.grown(beam)?;
+            let grown = self.grown(beam, open)?;
             if let Some(found) = self.confirmed(&grown, base.model, size)? {
                 return Ok(Some(found));
             }
@@ -89,7 +89,7 @@ impl Selector<'_, '_> {
     }
 
     /// Each model with each further candidate screened beside it, the lowest cost first and each set of effects once.
-    fn grown(&self, beam: Vec<Fit>) -> Result<Vec<Fit>, DiagnoseError> {
+    fn grown(&self, beam: Vec<Fit>, open: Open) -> Result<Vec<Fit>, DiagnoseError> {
         let mut known = BTreeSet::new();
         let mut all = Vec::new();
         for start in beam {
@@ -99,7 +99,7 @@ impl Selector<'_, '_> {
                 Err(other) => return Err(other),
             };
             let new = |c: &usize| !known.contains(&sorted(&seed.point.effects, Some(*c)));
-            let open: Vec<usize> = self.open(&seed.point, false).into_iter().filter(new).collect();
+            let open: Vec<usize> = self.open(&seed.point, open).into_iter().filter(new).collect();
             known.extend(open.iter().map(|c| sorted(&seed.point.effects, Some(*c))));
             let fits = Screen::new(self.problem, &seed)?.all(&open)?;
             let screened: Vec<Screened> = open.into_iter().zip(fits).collect();

@@ -5,6 +5,27 @@ use crate::error::DiagnoseError;
 use crate::estimation::Fit;
 
 impl Selector<'_, '_> {
+    /// The same where names and laws without one compete: a name is preferred to a law that gains little more.
+    pub fn strongest_name_or_law(&mut self, screened: &[Screened], best: &Fit) -> Result<Option<Fit>, DiagnoseError> {
+        let Some(any) = self.strongest(screened, best)? else {
+            return Ok(None);
+        };
+        if self.laws_of(&any.point) == self.laws_of(&best.point) {
+            return Ok(Some(any));
+        }
+        let names: Vec<Screened> = (screened.iter())
+            .filter(|(candidate, _)| !self.candidate(*candidate).is_unlisted())
+            .cloned()
+            .collect();
+        let Some(named) = self.strongest(&names, best)? else {
+            return Ok(Some(any));
+        };
+        let gain_of = |fit: &Fit| self.gain(self.held_out(best), self.held_out(fit)).total;
+        let (by_law, by_name) = (gain_of(&any), gain_of(&named));
+        let leads = by_law - by_name > self.criteria().rivalry.lead_over_named * by_name;
+        Ok(Some(if leads { any } else { named }))
+    }
+
     /// The model with the strongest screened candidate added and everything fitted again; `None` if none is accepted.
     pub fn strongest(&mut self, screened: &[Screened], best: &Fit) -> Result<Option<Fit>, DiagnoseError> {
         let criteria = self.criteria();
@@ -74,6 +95,7 @@ mod tests {
     use crate::criteria::Criteria;
     use crate::estimation::{LeastSquares, Point};
     use crate::specimen::Specimen;
+    use crate::vocabulary::Site;
 
     /// Laws that are true and not believed, with their numbers.
     fn lacking(truth: &[(usize, f64)]) -> Analytic {
@@ -123,6 +145,25 @@ mod tests {
         assert_eq!(found(&[(CUBIC, 0.3)], &candidates), [CUBIC]);
         // At these sizes the friction is the larger part of the misfit.
         assert_eq!(found(&[(CUBIC, 0.05), (FRICTION, 0.1)], &candidates), [FRICTION]);
+    }
+
+    #[test]
+    fn a_law_joins_before_a_name_only_if_it_gains_clearly_more() {
+        // A cubic law without a name, and nearly the same law with one; then one with a name that is nothing like it.
+        let joined = |named: usize| {
+            let mut specimen = lacking(&[(CUBIC, 0.4)]);
+            specimen.take_name(CUBIC, Site::EndStop);
+            let problem = LeastSquares::new(&specimen, &RUN);
+            let mut selector = Selector::new(&problem);
+            let calibrated = selector.fitted(Point::nominal(&specimen)).expect("a fit");
+            let screened = selector.screen(&calibrated, vec![CUBIC, named]).expect("screened");
+            let either = selector.strongest(&screened, &calibrated).expect("a round");
+            assert_eq!(either.map(|fit| fit.point.effects), Some(vec![CUBIC]));
+            let best = selector.strongest_name_or_law(&screened, &calibrated).expect("a round");
+            best.map(|fit| fit.point.effects)
+        };
+        assert_eq!(joined(NEARLY_CUBIC), Some(vec![NEARLY_CUBIC]));
+        assert_eq!(joined(FRICTION), Some(vec![CUBIC]));
     }
 
     #[test]

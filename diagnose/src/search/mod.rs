@@ -3,10 +3,10 @@
 //! ```text
 //! calibrate within tolerance
 //!     |
-//!     v                                   (until no candidate is accepted; then once more with laws without a name)
-//! screen all candidates --> fit the finalists --> accept the best that held-out blocks confirm --+
-//!     ^                         (none, and far above the noise: pairs and triples)              |
-//!     +-----------------------------------------------------------------------------------------+
+//!     v            (until no candidate is accepted; then with laws without a name; then with a second law at another place)
+//! screen all candidates --> fit the finalists --> accept the best that held-out blocks confirm -----+
+//!     ^       (none, and far above the noise: pairs and triples of names; at last pairs with laws)  |
+//!     +---------------------------------------------------------------------------------------------+
 //!     |
 //!     v
 //! eliminate what the others made superfluous --> compare each effect with its strongest rival --> Selection
@@ -35,4 +35,4 @@ mod sizes;
 pub use evidence::HeldOutGain;
 pub use screen::Screen;
 pub use select::select;
-pub use selection::{CandidateScore, Progress, Rival, SelectedEffect, Selection};
+pub use selection::{CandidateScore, LawPairs, Progress, Rival, SelectedEffect, Selection};

@@ -1,7 +1,7 @@
 //! Rivals: for each effect of a model, what does best in its place.
 
 use super::selection::{Rival, SelectedEffect};
-use super::selector::{Selector, ranked};
+use super::selector::{Open, Selector, ranked};
 use super::simplification::is_form_of;
 use crate::criteria::Criteria;
 use crate::effect::Candidate;
@@ -18,7 +18,7 @@ pub struct Comparison {
 
 impl Selector<'_, '_> {
     /// Takes each effect out of the model in turn and fits the strongest other candidate in its place.
-    pub fn compare_with_rivals(&mut self, best: &Fit, with_laws: bool) -> Result<Comparison, DiagnoseError> {
+    pub fn compare_with_rivals(&mut self, best: &Fit, open: Open) -> Result<Comparison, DiagnoseError> {
         let costs = self.held_out(best);
         let mut effects = Vec::new();
         let mut better: Option<(f64, Fit)> = None;
@@ -27,7 +27,7 @@ impl Selector<'_, '_> {
             let without = self.held_out(&less);
             let gain = self.gain(without, costs);
             let mut rival = None;
-            if let Some((other, full)) = self.strongest_rival(&less, candidate, best, gain.total, with_laws)? {
+            if let Some((other, full)) = self.strongest_rival(&less, candidate, best, gain.total, open)? {
                 let found = self.rival(other, &full, best, gain.total);
                 let lead = found.lead.total;
                 if self.takes_the_place(&found, &full, candidate, best, gain.total)
@@ -58,9 +58,9 @@ impl Selector<'_, '_> {
         candidate: usize,
         best: &Fit,
         gain: f64,
-        with_laws: bool,
+        open: Open,
     ) -> Result<Option<(usize, Fit)>, DiagnoseError> {
-        let mut candidates = self.open(&less.point, with_laws);
+        let mut candidates = self.open(&less.point, open);
         candidates.retain(|&c| c != candidate && !includes(self.candidate(c), self.candidate(candidate)));
         let screened = self.screen(less, candidates)?;
         let Some((cost, start)) = ranked(&screened).into_iter().next() else {
@@ -144,7 +144,7 @@ mod tests {
         let mut selector = Selector::new(&problem);
         let start = (model.iter()).fold(Point::nominal(specimen), |p, (e, v)| p.with_effect(specimen, *e, v));
         let best = selector.fitted(start).expect("a fit");
-        selector.compare_with_rivals(&best, true).expect("a comparison")
+        selector.compare_with_rivals(&best, Open::Laws).expect("a comparison")
     }
 
     fn usual(specimen: &Analytic, model: &[(usize, &[f64])]) -> Comparison {

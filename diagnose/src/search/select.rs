@@ -2,8 +2,8 @@
 
 use super::combinations::Screening;
 use super::oscillation::Oscillations;
-use super::selection::{CandidateScore, Progress, Selection};
-use super::selector::{Screened, Selector};
+use super::selection::{CandidateScore, LawPairs, Progress, Selection};
+use super::selector::{Open, Screened, Selector};
 use crate::error::DiagnoseError;
 use crate::estimation::{Fit, LeastSquares, Point};
 use crate::specimen::Series;
@@ -28,35 +28,41 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
     let mut selector = Selector::new(problem);
     progress("calibrating within tolerance", done::CALIBRATION);
     let calibrated = selector.fitted(Point::nominal(problem.specimen()))?;
+    let mut grown = grow(&mut selector, &calibrated, calibrated.clone(), Open::Names, progress)?;
+    let mut best = reduced(&mut selector, grown.best.clone(), progress)?;
+    if let Some(open) = selector.open_once_more(&best, &grown) {
+        let first = grown;
+        grown = grow(&mut selector, &calibrated, best, open, progress)?;
+        grown.scores = first.scores;
+        grown.law_pairs = grown.law_pairs.max(first.law_pairs);
+        best = reduced(&mut selector, grown.best.clone(), progress)?;
+    }
+    let effects_grown = grown.best.point.effects.len();
     let Grown {
-        mut best,
         mut screened,
         mut scores,
-        with_laws,
-    } = grow(&mut selector, &calibrated, progress)?;
-
-    progress("dropping what the others explain", done::ELIMINATION);
-    let grown = best.point.effects.len();
+        open,
+        law_pairs,
+        ..
+    } = grown;
     let acceptance = &problem.criteria.acceptance;
-    best = selector.eliminate(best, acceptance.least_fraction)?;
-    let mut fraction = acceptance.least_fraction;
-    if selector.held_out_ratio(&best) > selector.complete_up_to(&best) {
-        fraction = fraction_of_incomplete(problem);
-        best = selector.eliminate(best, fraction)?;
-    }
-    best = selector.simplify(best, fraction)?;
 
     progress("testing rivals in the place of each effect", done::RIVALS);
-    let mut comparison = selector.compare_with_rivals(&best, with_laws)?;
+    let mut comparison = selector.compare_with_rivals(&best, open)?;
     let mut exchanged = false;
     for _ in 0..problem.criteria.rivalry.exchanges {
         let Some(better) = comparison.better.take() else { break };
-        best = selector.eliminate(better, acceptance.least_fraction)?;
+        let after = selector.eliminate(better, acceptance.least_fraction)?;
+        // A rival that gains more, but in a few blocks only, is not accepted and leaves with what it took the place of.
+        if selector.improves(&after, &best, acceptance.least_fraction_incomplete) {
+            break;
+        }
+        best = after;
         exchanged = true;
-        comparison = selector.compare_with_rivals(&best, with_laws)?;
+        comparison = selector.compare_with_rivals(&best, open)?;
     }
-    if exchanged || best.point.effects.len() != grown {
-        let open = selector.open(&best.point, with_laws);
+    if exchanged || best.point.effects.len() != effects_grown {
+        let open = selector.open(&best.point, open);
         screened = selector.screen(&best, open)?;
     }
     for (candidate, fit) in &screened {
@@ -66,7 +72,7 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
     }
     let improved_ratio = selector.held_out_ratio(&best);
     let incomplete = improved_ratio > selector.complete_up_to(&best);
-    let of_excitation_hz = if incomplete && with_laws {
+    let of_excitation_hz = if incomplete && open != Open::Names {
         let left = problem.evaluation.residuals_at(&best.point)?;
         let left: Vec<&Series> = left.iter().collect();
         Oscillations::of(problem.specimen()).of_excitation(&left)
@@ -79,10 +85,27 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
         incomplete,
         effects: comparison.effects,
         of_excitation_hz,
+        law_pairs,
         calibrated,
         best,
         scores,
     })
+}
+
+impl Selector<'_, '_> {
+    /// What may join a model that is not complete, and has lost effects that came before laws were tried: they had a part of what a
+    /// law explains, so that it was not accepted beside them, or they were so many that none was tried. `None` if there is no reason to
+    /// go on.
+    fn open_once_more(&self, reduced: &Fit, grown: &Grown) -> Option<Open> {
+        let has_lost = reduced.point.effects.len() < grown.best.point.effects.len();
+        let incomplete = self.held_out_ratio(reduced) > self.complete_up_to(reduced);
+        let worth_it = has_lost && incomplete && self.can_have_two_laws();
+        match self.laws_of(&reduced.point) {
+            0 if worth_it => Some(Open::Laws),
+            1 if worth_it => Some(Open::TwoLaws),
+            _ => None,
+        }
+    }
 }
 
 /// A model to which nothing more can be added.
@@ -92,22 +115,43 @@ struct Grown {
     screened: Vec<Screened>,
     /// Candidates screened beside the calibrated model.
     scores: Vec<CandidateScore>,
-    /// True if laws without a name were tried.
-    with_laws: bool,
+    /// What might join it in the place of one of its effects.
+    open: Open,
+    /// Whether laws were tried in pairs.
+    law_pairs: LawPairs,
 }
 
-/// Adds effects until none is accepted. Laws without a name are tried when no name is left and the noise is not reached.
-fn grow(selector: &mut Selector<'_, '_>, calibrated: &Fit, progress: Progress<'_>) -> Result<Grown, DiagnoseError> {
+/// A model without what its other effects explain, each effect in its simplest form.
+fn reduced(selector: &mut Selector<'_, '_>, grown: Fit, progress: Progress<'_>) -> Result<Fit, DiagnoseError> {
+    progress("dropping what the others explain", done::ELIMINATION);
+    let mut fraction = selector.criteria().acceptance.least_fraction;
+    let mut best = selector.eliminate(grown, fraction)?;
+    if selector.held_out_ratio(&best) > selector.complete_up_to(&best) {
+        fraction = fraction_of_incomplete(selector.problem);
+        best = selector.eliminate(best, fraction)?;
+    }
+    selector.simplify(best, fraction)
+}
+
+/// Adds effects to a model until none is accepted. Laws without a name are tried when no name is left and the noise is not reached; a second one, beside
+/// the first, while the model is not complete. Where no law is accepted alone and the model is far from complete, laws are tried in pairs.
+fn grow(
+    selector: &mut Selector<'_, '_>,
+    calibrated: &Fit,
+    from: Fit,
+    mut open: Open,
+    progress: Progress<'_>,
+) -> Result<Grown, DiagnoseError> {
     let criteria = selector.criteria();
-    let mut best = calibrated.clone();
-    let mut with_laws = false;
+    let mut best = from;
+    let mut law_pairs = LawPairs::NotTried;
+    let mut restarted_in_vain: Option<Point> = None;
     let mut scores: Vec<CandidateScore> = Vec::new();
     let mut screened_alone: Vec<Screened> = Vec::new();
     loop {
         let screening = done::SCREENING + done::EFFECT * best.point.effects.len() as f64;
         progress("screening every candidate", screening);
-        let open = selector.open(&best.point, with_laws);
-        let screened = selector.screen(&best, open)?;
+        let screened = selector.screen(&best, selector.open(&best.point, open))?;
         if best.point.effects.is_empty() {
             score_alone(selector, &screened, &mut scores);
             if screened_alone.is_empty() {
@@ -119,22 +163,24 @@ fn grow(selector: &mut Selector<'_, '_>, calibrated: &Fit, progress: Progress<'_
             screening + done::FITTING_AFTER_SCREENING,
         );
         let full = best.point.effects.len() >= criteria.acceptance.most_effects;
-        let next = if full {
-            None
-        } else {
-            selector.strongest(&screened, &best)?
+        let next = match open {
+            _ if full => None,
+            Open::Names | Open::Laws => selector.strongest(&screened, &best)?,
+            Open::TwoLaws => selector.strongest_name_or_law(&screened, &best)?,
         };
         if let Some(next) = next {
             best = next;
             continue;
         }
-        if selector.held_out_ratio(&best) > selector.complete_up_to(&best)
-            && let Some(better) = selector.restarted(&best)?
-        {
-            best = better;
-            continue;
+        let incomplete = selector.held_out_ratio(&best) > selector.complete_up_to(&best);
+        if incomplete && restarted_in_vain.as_ref() != Some(&best.point) {
+            if let Some(better) = selector.restarted(&best)? {
+                best = better;
+                continue;
+            }
+            restarted_in_vain = Some(best.point.clone());
         }
-        if !full && !with_laws && selector.is_far_from_complete(&best, calibrated) {
+        if !full && open == Open::Names && selector.is_far_from_complete(&best, calibrated) {
             progress("trying combinations", screening + done::FITTING_AFTER_SCREENING);
             let end = Screening {
                 model: &best,
@@ -153,15 +199,41 @@ fn grow(selector: &mut Selector<'_, '_>, calibrated: &Fit, progress: Progress<'_
             let limit = criteria.completeness.law_noise_ratio.max(selector.floor(&best));
             selector.held_out_ratio(&best) <= limit
         };
-        if with_laws || full || reaches_noise() {
-            return Ok(Grown {
-                best,
-                screened,
-                scores,
-                with_laws,
-            });
+        let laws = selector.laws_of(&best.point);
+        let next = match open {
+            Open::Names if !full && !reaches_noise() => Some(Open::Laws),
+            Open::Laws if !full && incomplete && selector.can_have_two_laws() => Some(Open::TwoLaws),
+            _ => None,
+        };
+        if next == Some(Open::TwoLaws) && laws == 0 {
+            if selector.is_far_from_complete(&best, calibrated) {
+                progress("trying pairs of laws", screening + done::FITTING_AFTER_SCREENING);
+                let end = Screening {
+                    model: &best,
+                    screened: &screened,
+                };
+                if let Some(pair) = selector.combination_beside(end, Open::TwoLaws)? {
+                    (best, open, law_pairs) = (pair, Open::TwoLaws, LawPairs::Found);
+                    continue;
+                }
+                law_pairs = LawPairs::NoneAccepted;
+            }
+        } else if let Some(next) = next {
+            open = next;
+            continue;
         }
-        with_laws = true;
+        return Ok(Grown {
+            best,
+            screened,
+            scores,
+            // A second law takes no effect's place.
+            open: if open == Open::TwoLaws && laws < 2 {
+                Open::Laws
+            } else {
+                open
+            },
+            law_pairs,
+        });
     }
 }
 
@@ -195,10 +267,12 @@ fn score_alone(selector: &Selector<'_, '_>, screened: &[Screened], scores: &mut 
 mod tests {
     use super::*;
     use crate::analytic::{
-        CUBIC, FORTY_SINES, FREQUENCY, FRICTION, FRICTION_OF_BOTH, GAIN, NEARLY_CUBIC, RUN, Recipe, TABLE, VIBRATION,
+        CUBIC, FIRST_OF_PAIR, FORTY_SINES, FREQUENCY, FRICTION, FRICTION_OF_BOTH, GAIN, NEARLY_CUBIC, RUN, Recipe,
+        SECOND_OF_PAIR, TABLE, VIBRATION,
     };
     use crate::criteria::Criteria;
     use crate::estimation::covariance::deviations;
+    use crate::vocabulary::Site;
     use std::sync::atomic::AtomicBool;
 
     fn selected(recipe: &Recipe) -> Selection {
@@ -319,6 +393,49 @@ mod tests {
         let nameless = selected(&recipe(vec![FRICTION, TABLE]));
         assert_eq!(found(&nameless), [TABLE]);
         assert!(nameless.improved_ratio < 0.7 * nameless.calibrated_ratio);
+    }
+
+    /// What the search finds where these are laws without a name, at places of their own.
+    fn found_of_laws(laws: &[(usize, Site)], truth: &[(usize, f64)], one_place: bool) -> (Vec<usize>, LawPairs) {
+        let mut specimen = Recipe {
+            truth: truth.iter().map(|&(law, size)| (law, vec![size])).collect(),
+            candidates: [&[FRICTION][..], &laws.iter().map(|law| law.0).collect::<Vec<_>>()].concat(),
+            ..Recipe::default()
+        }
+        .make();
+        for (law, site) in laws {
+            specimen.take_name(*law, if one_place { Site::Chamber } else { site.clone() });
+        }
+        let s = select(&LeastSquares::new(&specimen, &RUN), &|_, _| {}).expect("a selection");
+        (found(&s), s.law_pairs)
+    }
+
+    #[test]
+    fn a_second_law_is_found_beside_the_first_if_it_acts_elsewhere() {
+        let laws = [(CUBIC, Site::Mount), (FIRST_OF_PAIR, Site::EndStop)];
+        let truth = [(CUBIC, 0.4), (FIRST_OF_PAIR, 0.2)];
+        assert_eq!(
+            found_of_laws(&laws, &truth, false),
+            (vec![CUBIC, FIRST_OF_PAIR], LawPairs::NotTried)
+        );
+        assert_eq!(found_of_laws(&laws, &truth, true).0.len(), 1);
+        // One law that suffices gets no company.
+        assert_eq!(found_of_laws(&laws, &truth[..1], false).0, [CUBIC]);
+    }
+
+    #[test]
+    fn laws_of_which_none_helps_alone_are_found_as_a_pair() {
+        let laws = [
+            (CUBIC, Site::Mount),
+            (FIRST_OF_PAIR, Site::EndStop),
+            (SECOND_OF_PAIR, Site::MainChamber),
+        ];
+        let truth = [(FIRST_OF_PAIR, 1.5), (SECOND_OF_PAIR, 1.5)];
+        assert_eq!(
+            found_of_laws(&laws, &truth, false),
+            (vec![FIRST_OF_PAIR, SECOND_OF_PAIR], LawPairs::Found)
+        );
+        assert_eq!(found_of_laws(&laws, &truth, true), (vec![], LawPairs::NoneAccepted));
     }
 
     #[test]

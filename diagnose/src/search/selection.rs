@@ -1,5 +1,7 @@
 //! The outcome of the search.
 
+use serde::{Deserialize, Serialize};
+
 use super::evidence::HeldOutGain;
 use crate::estimation::Fit;
 
@@ -24,8 +26,23 @@ pub struct Selection {
     /// Frequencies, Hz, at which what is left swings and at which an input of the recording repeats too: whether time or motion makes it
     /// cannot be told. Asked only of a model that stays incomplete with laws without a name.
     pub of_excitation_hz: Vec<f64>,
+    /// Whether laws without a name were tried in pairs, because none was accepted alone.
+    pub law_pairs: LawPairs,
     /// True if the improved model is not complete: something predictable or large remains.
     pub incomplete: bool,
+}
+
+/// Whether laws without a name were tried in pairs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LawPairs {
+    /// There was no need.
+    #[default]
+    NotTried,
+    /// They were tried, and none was accepted.
+    NoneAccepted,
+    /// One was accepted.
+    Found,
 }
 
 /// An effect of the improved model, and how sure it is.

@@ -11,6 +11,17 @@ use crate::error::DiagnoseError;
 use crate::estimation::{Fit, LeastSquares, Point, cost_of_whole_recordings, fit, held_out};
 use crate::specimen::{Folding, Specimen};
 
+/// What may join a model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Open {
+    /// Effects of the vocabulary.
+    Names,
+    /// Laws without a name too. Of those that exclude each other at their place only, a model has one.
+    Laws,
+    /// The same, and a model has two of them.
+    TwoLaws,
+}
+
 /// A candidate and its screened fit; `None` where it cannot be simulated at all.
 pub type Screened = (usize, Option<Fit>);
 
@@ -139,13 +150,30 @@ impl<'p, 'a> Selector<'p, 'a> {
 
     /// Candidates that may be added to a model: not in it and excluded by none of its effects. Laws without a name only
     /// where they are asked for.
-    pub fn open(&self, point: &Point, with_laws: bool) -> Vec<usize> {
+    pub fn open(&self, point: &Point, open: Open) -> Vec<usize> {
+        let laws = self.laws_of(point);
         let excluded = |c: usize| {
             let candidate = self.candidate(c);
-            (candidate.is_unlisted() && !with_laws)
-                || (point.effects.iter()).any(|&e| e == c || self.candidate(e).excludes(candidate))
+            let closed = match open {
+                Open::Names => candidate.is_unlisted(),
+                Open::Laws => candidate.one_of_several && laws >= 1,
+                Open::TwoLaws => candidate.one_of_several && laws >= 2,
+            };
+            closed || (point.effects.iter()).any(|&e| e == c || self.candidate(e).excludes(candidate))
         };
         self.testable.iter().copied().filter(|&c| !excluded(c)).collect()
+    }
+
+    /// How many laws without a name a model has of those of which it can have two.
+    pub fn laws_of(&self, point: &Point) -> usize {
+        (point.effects.iter())
+            .filter(|&&e| self.candidate(e).one_of_several)
+            .count()
+    }
+
+    /// Whether there are laws without a name of which a model can have two.
+    pub fn can_have_two_laws(&self) -> bool {
+        self.testable.iter().any(|&c| self.candidate(c).one_of_several)
     }
 
     /// Screens candidates beside a fitted model, each once.

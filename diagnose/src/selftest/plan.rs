@@ -8,7 +8,7 @@ use oleo_plant_sim::model_file::names::suggestion;
 use super::draw::Draw;
 use super::flaw::Flaw;
 use crate::effect::in_struts;
-use crate::effect::unlisted::periodic_variants;
+use crate::effect::unlisted::{pairs_of_variants, periodic_variants};
 use crate::vocabulary::EffectId;
 
 /// Sizes asked for, in units of noise (RMS over all channels and samples, after recalibration).
@@ -28,6 +28,13 @@ pub const PAIR: &str = "pair";
 pub const PERIODIC: &str = "periodic";
 /// Its sizes: faint, middling, gross.
 const PERIODIC_SIZES: [f64; 3] = [1.0, 5.0, 30.0];
+
+/// Name of a campaign in which two laws without a name are, at different places.
+pub const TWO_LAWS: &str = "two_laws";
+/// Sizes of each: large enough that something must be said.
+const TWO_LAWS_SIZES: [f64; 3] = [3.0, 10.0, 30.0];
+/// Campaigns with two laws in a round.
+const TWO_LAWS_PER_ROUND: usize = 6;
 
 /// What a self-test is to do.
 #[derive(Debug, Clone)]
@@ -70,6 +77,8 @@ pub enum Subject {
     Pair,
     /// A law without a name that swings in time.
     Periodic,
+    /// Two laws without a name at different places.
+    TwoLaws,
 }
 
 /// A text that names no subject of a self-test.
@@ -80,7 +89,7 @@ pub struct UnknownTerm(String);
 /// The terms, and which was probably meant.
 fn suggested(text: &str) -> String {
     let effects = in_struts().into_iter().map(EffectId::as_str);
-    let known: Vec<&str> = effects.chain([COMPLETE, PAIR, PERIODIC]).collect();
+    let known: Vec<&str> = effects.chain([COMPLETE, PAIR, PERIODIC, TWO_LAWS]).collect();
     suggestion(text, &known, "terms")
 }
 
@@ -92,6 +101,7 @@ impl FromStr for Subject {
             COMPLETE => Ok(Self::Complete),
             PAIR => Ok(Self::Pair),
             PERIODIC => Ok(Self::Periodic),
+            TWO_LAWS => Ok(Self::TwoLaws),
             _ => (in_struts().into_iter().find(|term| term.as_str() == text))
                 .map(Self::Effect)
                 .ok_or_else(|| UnknownTerm(text.to_owned())),
@@ -157,6 +167,9 @@ impl Plan {
         if self.subjects.contains(&Subject::Periodic) {
             self.periodic(round, cases);
         }
+        if self.subjects.contains(&Subject::TwoLaws) {
+            self.two_laws(round, cases);
+        }
         if wanted(Subject::Pair) {
             for k in 0..PAIRS_PER_ROUND {
                 let name = format!("{seed}:{PAIR}:{round}.{k}");
@@ -188,6 +201,25 @@ impl Plan {
                     flaw: None,
                 });
             }
+        }
+    }
+
+    /// Two laws without a name, which and of which sizes is drawn. They are concealed only where they are asked for.
+    fn two_laws(&self, round: usize, cases: &mut Vec<Case>) {
+        let pairs = pairs_of_variants();
+        for k in 0..TWO_LAWS_PER_ROUND {
+            let name = format!("{}:{TWO_LAWS}:{round}.{k}", self.seed);
+            let mut draw = Draw::named(&name);
+            let variants = pairs[draw.index(pairs.len())].to_vec();
+            let mut size = || TWO_LAWS_SIZES[draw.index(TWO_LAWS_SIZES.len())];
+            let hidden = vec![(EffectId::Unlisted, size()), (EffectId::Unlisted, size())];
+            cases.push(Case {
+                name,
+                hidden,
+                variants,
+                left_out: None,
+                flaw: None,
+            });
         }
     }
 
@@ -241,6 +273,24 @@ mod tests {
                 assert!(all.iter().any(|c| c.hidden == [(term, size)]), "{term} {size}");
             }
         }
+    }
+
+    #[test]
+    fn two_laws_are_two_and_act_at_different_places() {
+        let cases = plan(24, &["two_laws"]).cases();
+        assert!(
+            cases
+                .iter()
+                .all(|case| case.hidden.len() == 2 && case.variants.len() == 2)
+        );
+        let mut pairs: Vec<&[usize]> = cases.iter().map(|case| case.variants.as_slice()).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        assert!(pairs.len() > 12, "{pairs:?}");
+        // A groove beside damper 1 and a line of path 1 are both in path 1; a valve is one of all valves.
+        let all = pairs_of_variants();
+        assert!(all.contains(&[0, 5]) && !all.contains(&[0, 4]) && !all.contains(&[6, 15]));
+        assert!(all.len() > 100, "{}", all.len());
     }
 
     #[test]

@@ -198,14 +198,9 @@ impl Summary {
                 0 => false_alarms.count(!t.reported.is_empty()),
                 1 => {}
                 _ => {
-                    let mut ids = t.hidden_ids();
-                    let mut reported: Vec<EffectId> = t.reported.iter().map(|r| r.id).collect();
-                    for list in [&mut ids, &mut reported] {
-                        list.sort_unstable();
-                        list.dedup();
-                    }
-                    pairs_exact.count(ids == reported);
-                    ids.iter().for_each(|id| pairs_found.count(t.found(*id)));
+                    let [hidden, reported] = t.concealed_and_reported();
+                    pairs_exact.count(hidden == reported);
+                    hidden.iter().for_each(|one| pairs_found.count(reported.contains(one)));
                 }
             }
             if t.reported.iter().any(|r| r.gain.is_some()) {
@@ -417,6 +412,7 @@ mod tests {
     use super::super::hidden::Truth;
     use super::super::trial::{Number, Reported};
     use super::*;
+    use crate::search::LawPairs;
     use crate::vocabulary::Site;
 
     fn trial(hidden: EffectId, value: f64, reported: EffectId, interval: (f64, f64)) -> Trial {
@@ -435,6 +431,7 @@ mod tests {
             reported: vec![Reported {
                 id: reported,
                 place: Site::MainSeal.into(),
+                label: String::new(),
                 confidence: 0.95,
                 gain: Some((100.0, 10.0)),
                 lead: Some((50.0, 10.0)),
@@ -451,6 +448,8 @@ mod tests {
             residuals: 1000,
             noise_ratio: (1.2, 1.0),
             unseen: (1.2, 1.0),
+            law_pairs: LawPairs::NotTried,
+            simulated: 0,
             incomplete: false,
             failed: None,
         }

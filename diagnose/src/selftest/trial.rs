@@ -15,6 +15,7 @@ use crate::error::DiagnoseError;
 use crate::estimation::LeastSquares;
 use crate::instrument::Finding;
 use crate::recording::Recording;
+use crate::search::LawPairs;
 use crate::specimen::strut::TwoStageStrut;
 use crate::specimen::{Hypothesis, Specimen};
 use crate::vocabulary::{EffectId, Place};
@@ -39,6 +40,9 @@ pub struct Reported {
     pub id: EffectId,
     /// Where it is said to act.
     pub place: Place,
+    /// What tells laws without a name apart; empty for everything else.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub label: String,
     /// Reported confidence, 0.05 to 0.99.
     pub confidence: f64,
     /// Held-out gain in cost and its standard error; `None` for what is seen but not modelled.
@@ -76,6 +80,12 @@ pub struct Trial {
     pub noise_ratio: (f64, f64),
     /// The same on recordings that the diagnosis never saw.
     pub unseen: (f64, f64),
+    /// Whether laws without a name were tried in pairs.
+    #[serde(default)]
+    pub law_pairs: LawPairs,
+    /// Number of recordings that were simulated during the search.
+    #[serde(default)]
+    pub simulated: usize,
     /// True if the report says that something remains.
     pub incomplete: bool,
     /// Why there is no diagnosis, where there is none.
@@ -98,6 +108,8 @@ pub fn run(case: &Case, stop: &AtomicBool) -> Result<Trial, DiagnoseError> {
         residuals: 0,
         noise_ratio: (0.0, 0.0),
         unseen: (0.0, 0.0),
+        law_pairs: LawPairs::NotTried,
+        simulated: 0,
         incomplete: false,
         failed: None,
     };
@@ -130,6 +142,8 @@ fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), Dia
     let diagnosis = Diagnosis::of(&problem, &|_, _| {})?;
     trial.residuals = problem.residuals();
     trial.noise_ratio = (diagnosis.selection.calibrated_ratio, diagnosis.selection.improved_ratio);
+    trial.law_pairs = diagnosis.selection.law_pairs;
+    trial.simulated = diagnosis.simulated;
     trial.incomplete = diagnosis.selection.incomplete;
     trial.reported = diagnosis.effects.iter().map(|e| reported(&campaign, e)).collect();
     let calibrated = diagnosis.selection.calibrated.point.hypothesis(problem.specimen());
@@ -159,6 +173,7 @@ fn reported(campaign: &Campaign, effect: &Effect) -> Reported {
     Reported {
         id: effect.id,
         place: effect.place.clone(),
+        label: effect.label.clone(),
         confidence: effect.confidence,
         gain: selected.map(|s| (s.gain.total, s.gain.standard_error)),
         lead: rival.map(|r| (r.lead.total, r.lead.standard_error)),
@@ -205,6 +220,19 @@ impl Trial {
     /// Ids of the concealed effects.
     pub fn hidden_ids(&self) -> Vec<EffectId> {
         self.hidden.iter().map(|(id, ..)| *id).collect()
+    }
+
+    /// What is concealed and what is reported, each in order and once: the id, and the place of a law where more than one is concealed.
+    pub fn concealed_and_reported(&self) -> [Vec<(EffectId, Option<&Place>)>; 2] {
+        let laws = self.hidden.iter().filter(|(id, ..)| *id == EffectId::Unlisted).count();
+        let known = |id: EffectId, place| (id, (id == EffectId::Unlisted && laws > 1).then_some(place));
+        let hidden = self.truth.iter().map(|t| known(t.id, &t.place)).collect();
+        let reported = self.reported.iter().map(|r| known(r.id, &r.place)).collect();
+        [hidden, reported].map(|mut list: Vec<_>| {
+            list.sort_unstable();
+            list.dedup();
+            list
+        })
     }
 
     /// Whether an id is reported.

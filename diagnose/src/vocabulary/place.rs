@@ -152,6 +152,12 @@ impl Place {
         self.part == other.part && (self.site == other.site || self.site.parts().contains(&other.site))
     }
 
+    /// True if one of the two places is the other one or a part of it.
+    #[must_use]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.contains(other) || other.contains(self)
+    }
+
     /// The text where a found effect is reported: `both accumulators` is what the vocabulary calls them there.
     #[must_use]
     pub fn as_reported(&self) -> String {

@@ -41,8 +41,9 @@ pub struct Args {
         help_heading = "Self-test"
     )]
     seed: u64,
-    /// Conceal only these, separated by commas: ids of effects, none (the model is complete), pair (two effects) or
-    /// periodic (a law without a name that swings in time, in six places and three sizes) [default: all but periodic]
+    /// Conceal only these, separated by commas: ids of effects, none (the model is complete), pair (two effects),
+    /// periodic (a law without a name that swings in time, in six places and three sizes) or two_laws (two laws without a name
+    /// at different places) [default: all but the last two]
     #[arg(
         long,
         value_name = "A,B",
@@ -136,7 +137,7 @@ impl Args {
         };
         if plan.without_names && plan.subjects.iter().any(|s| !matches!(s, Subject::Effect(_))) {
             return Err(Failure::new(
-                "--terms: none and pair cannot be combined with --without-names; give ids of effects",
+                "--terms: none, pair, periodic and two_laws cannot be combined with --without-names; give ids of effects",
             ));
         }
         let cases = plan.cases();

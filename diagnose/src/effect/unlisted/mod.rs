@@ -31,7 +31,7 @@ mod words;
 pub use forms::is_of_free_table;
 pub use nameless::Unlisted;
 pub use strut_laws::{equation, table};
-pub use textbook::periodic_variants;
+pub use textbook::{pairs_of_variants, periodic_variants};
 
 #[cfg(test)]
 pub use strut_laws::candidates as candidates_of_struts;

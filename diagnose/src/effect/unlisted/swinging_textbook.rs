@@ -30,7 +30,7 @@ struct Swing {
 /// How many there are.
 pub const COUNT: usize = 6;
 
-const SWINGS: [Swing; COUNT] = [
+static SWINGS: [Swing; COUNT] = [
     // A seal that is lubricated unevenly by a rod that turns.
     Swing {
         site: Site::MainSeal,
@@ -86,6 +86,11 @@ const SWINGS: [Swing; COUNT] = [
         middle: 0.0,
     },
 ];
+
+/// Where a law acts.
+pub fn site(variant: usize) -> &'static Site {
+    &SWINGS[variant].site
+}
 
 /// The law of an amount, 1e-5 to 1, and its numbers: its frequency and its phase at the start of a recording are drawn.
 pub fn law(drawn: &Drawn, variant: usize, amount: f64) -> (UnlistedLaw, Vec<TrueNumber>) {

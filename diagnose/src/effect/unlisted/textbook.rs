@@ -6,7 +6,7 @@ use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
 
 use super::swinging_textbook;
 use crate::effect::drawn::{Drawn, TrueNumber};
-use crate::vocabulary::{Branch, Site};
+use crate::vocabulary::{Branch, Place, Site};
 
 /// Points of a concealed table: many, and not those that the search uses.
 const POINTS: usize = 61;
@@ -25,7 +25,7 @@ struct Law {
     value: fn(f64, f64, &Drawn, f64) -> f64,
 }
 
-const LAWS: [Law; 12] = [
+static LAWS: [Law; 12] = [
     Law {
         site: Site::Path(Branch::First),
         place: LawPlace::Path1,
@@ -167,6 +167,22 @@ pub const COUNT: usize = LAWS.len();
 #[must_use]
 pub fn periodic_variants() -> Range<usize> {
     COUNT..COUNT + swinging_textbook::COUNT
+}
+
+/// Pairs of variants, also of those that swing, whose laws act at places of which none holds the other.
+#[must_use]
+pub fn pairs_of_variants() -> Vec<[usize; 2]> {
+    let place_of = |variant: usize| -> Place {
+        let site = LAWS.get(variant).map(|law| &law.site);
+        site.unwrap_or_else(|| swinging_textbook::site(variant - COUNT))
+            .clone()
+            .into()
+    };
+    let all = 0..periodic_variants().end;
+    (all.clone()
+        .flat_map(|first| all.clone().map(move |second| [first, second])))
+    .filter(|&[first, second]| first < second && !place_of(first).overlaps(&place_of(second)))
+    .collect()
 }
 
 /// The drawn law of an amount, and the numbers that should be reported of it, where.

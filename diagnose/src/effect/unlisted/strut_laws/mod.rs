@@ -43,7 +43,7 @@ pub fn candidates(longest_s: f64) -> Vec<Candidate> {
         Candidate::new(EffectId::Unlisted, law.site.clone(), parameters)
             .labelled(law.label)
             .starting_at(law.form.starts(&grid))
-            .in_place_of(EffectId::Unlisted)
+            .beside_others()
             .oscillating(law.depends_on == LawArgument::Phase)
     };
     laws().map(candidate).collect()

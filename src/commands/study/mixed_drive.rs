@@ -5,6 +5,9 @@ use oleo_report::{Axis, Column, Curves, Page, Table};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+/// A quantity over time.
+type Values = fn(&History) -> &[f64];
+
 /// The road of the drive.
 const ROAD: &str = "belgian";
 
@@ -65,7 +68,7 @@ impl MixedDrive {
             "Roll of the body; running RMS (1 s) of the vertical acceleration that the driver feels, weighted as in BS 6841; number of valves that are \
              commanded open. The manoeuvre is shaded. In it, little roll is better; before and after, little acceleration.",
         );
-        let panels: [(Axis, fn(&History) -> &[f64]); 3] = [
+        let panels: [(Axis, Values); 3] = [
             (Axis::new("Roll", "degrees"), |history| &history.roll_deg),
             (Axis::new("Felt by the driver", "m/s2"), |history| &history.felt_m_s2),
             (Axis::new("Open valves", ""), |history| &history.open_valves),

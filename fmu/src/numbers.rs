@@ -1,6 +1,8 @@
 //! The numbers of a model file as parameters: each is found by its path, and the file's own checks judge them together.
 
-use oleo_plant_sim::model_file::{Quantity, Range};
+use oleo_plant_sim::model_file::Quantity;
+#[cfg(feature = "pack")]
+use oleo_plant_sim::model_file::Range;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::Value;

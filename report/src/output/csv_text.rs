@@ -28,12 +28,7 @@ impl<W: Write> CsvRows<W> {
     /// # Errors
     /// As [`Self::begin`].
     pub fn row(&mut self, values: &[f64]) -> io::Result<()> {
-        let mut comma = "";
-        for value in values {
-            self.0.write_all(comma.as_bytes())?;
-            number(&mut self.0, *value)?;
-            comma = ",";
-        }
+        numbers_of_a_row(&mut self.0, values.iter().copied())?;
         writeln!(self.0)
     }
 }
@@ -59,12 +54,7 @@ pub(super) fn write(file: &mut impl Write, rows: usize, numbers: &[Numbers], wor
         .collect();
     writeln!(file, "{}", header.join(","))?;
     for row in 0..rows {
-        let mut comma = "";
-        for (_, values) in numbers {
-            file.write_all(comma.as_bytes())?;
-            number(file, values[row])?;
-            comma = ",";
-        }
+        let mut comma = numbers_of_a_row(file, numbers.iter().map(|(_, values)| values[row]))?;
         for (_, values) in words {
             write!(file, "{comma}{}", values[row])?;
             comma = ",";
@@ -72,6 +62,17 @@ pub(super) fn write(file: &mut impl Write, rows: usize, numbers: &[Numbers], wor
         writeln!(file)?;
     }
     file.flush()
+}
+
+/// Writes numbers with commas between them; returns what stands between them and the next.
+fn numbers_of_a_row(file: &mut impl Write, values: impl Iterator<Item = f64>) -> io::Result<&'static str> {
+    let mut comma = "";
+    for value in values {
+        file.write_all(comma.as_bytes())?;
+        number(file, value)?;
+        comma = ",";
+    }
+    Ok(comma)
 }
 
 /// A number as files of results have it: with nine significant digits, which is more than any sensor has.

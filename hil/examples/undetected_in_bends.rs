@@ -12,8 +12,8 @@ use oleo_hil::metrics::Metrics;
 use oleo_hil::run;
 use oleo_hil::scenario::check::{Figure, Metric};
 use oleo_hil::scenario::file::parse;
-use oleo_interface::Corner;
 use oleo_interface::tick::TICK_S;
+use oleo_interface::{Corner, Side};
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -42,166 +42,173 @@ const BEFORE_THE_BEND_S: f64 = 8.0;
 /// When the faults begin that are not there from power-on, s.
 const BEGIN_S: f64 = 4.0;
 
-/// What is wrong: a row of the table, and parts of a scenario. The place `all` is every corner.
-const FAULTS: [(&str, &[&str]); 26] = [
+/// When a fault begins.
+#[derive(Clone, Copy, PartialEq)]
+enum From {
+    Drive,
+    PowerOn,
+    /// A row for each.
+    Either,
+}
+
+/// What is wrong: a row of the table; kind of the fault, corners (`left` is both left ones) and parts, value; and when it begins.
+const FAULTS: [(&str, &str, From); 27] = [
     (
         "displacement front left off by 35 mm",
-        &["sensor-offset front-left.displacement 0.035"],
+        "sensor-offset front-left displacement 0.035",
+        From::Either,
     ),
     (
         "displacement front left off by -35 mm",
-        &["sensor-offset front-left.displacement -0.035"],
+        "sensor-offset front-left displacement -0.035",
+        From::Either,
     ),
     (
         "both left displacements off by 35 mm",
-        &[
-            "sensor-offset front-left.displacement 0.035",
-            "sensor-offset rear-left.displacement 0.035",
-        ],
+        "sensor-offset left displacement 0.035",
+        From::Either,
     ),
     (
         "both left displacements off by -35 mm",
-        &[
-            "sensor-offset front-left.displacement -0.035",
-            "sensor-offset rear-left.displacement -0.035",
-        ],
+        "sensor-offset left displacement -0.035",
+        From::Drive,
     ),
     (
         "displacement front left drifts by 2 mm/s",
-        &["sensor-drift front-left.displacement 0.002"],
+        "sensor-drift front-left displacement 0.002",
+        From::Drive,
     ),
     (
         "displacement front left with gain 0.5",
-        &["sensor-gain front-left.displacement 0.5"],
+        "sensor-gain front-left displacement 0.5",
+        From::Drive,
     ),
     (
         "displacement front left with gain 1.5",
-        &["sensor-gain front-left.displacement 1.5"],
+        "sensor-gain front-left displacement 1.5",
+        From::Drive,
     ),
-    ("all displacements with gain 0.5", &["sensor-gain all.displacement 0.5"]),
-    ("p1 front left off by 0.9 MPa", &["sensor-offset front-left.p1 0.9e6"]),
-    ("p1 front left off by -0.9 MPa", &["sensor-offset front-left.p1 -0.9e6"]),
-    ("p1 rear left off by 0.9 MPa", &["sensor-offset rear-left.p1 0.9e6"]),
+    (
+        "all displacements with gain 0.5",
+        "sensor-gain all displacement 0.5",
+        From::Drive,
+    ),
+    (
+        "all displacements off by 35 mm",
+        "sensor-offset all displacement 0.035",
+        From::Either,
+    ),
+    (
+        "all displacements off by -35 mm",
+        "sensor-offset all displacement -0.035",
+        From::Either,
+    ),
+    (
+        "p1 front left off by 0.9 MPa",
+        "sensor-offset front-left p1 0.9e6",
+        From::Either,
+    ),
+    (
+        "p1 front left off by -0.9 MPa",
+        "sensor-offset front-left p1 -0.9e6",
+        From::Drive,
+    ),
+    (
+        "p1 rear left off by 0.9 MPa",
+        "sensor-offset rear-left p1 0.9e6",
+        From::Drive,
+    ),
     (
         "p1 of both left struts off by -0.9 MPa",
-        &[
-            "sensor-offset front-left.p1 -0.9e6",
-            "sensor-offset rear-left.p1 -0.9e6",
-        ],
+        "sensor-offset left p1 -0.9e6",
+        From::Drive,
     ),
     (
         "p1 of both left struts off by 0.9 MPa",
-        &["sensor-offset front-left.p1 0.9e6", "sensor-offset rear-left.p1 0.9e6"],
+        "sensor-offset left p1 0.9e6",
+        From::Either,
     ),
     (
         "p1 front left drifts by 0.1 MPa/s",
-        &["sensor-drift front-left.p1 0.1e6"],
+        "sensor-drift front-left p1 0.1e6",
+        From::Drive,
     ),
     (
         "p2 and p3 front left off by 0.9 MPa",
-        &["sensor-offset front-left.p2 0.9e6", "sensor-offset front-left.p3 0.9e6"],
+        "sensor-offset front-left p2,p3 0.9e6",
+        From::Drive,
     ),
     (
         "p1, p2 and p3 front left off by 0.9 MPa",
-        &[
-            "sensor-offset front-left.p1 0.9e6",
-            "sensor-offset front-left.p2 0.9e6",
-            "sensor-offset front-left.p3 0.9e6",
-        ],
+        "sensor-offset front-left p1,p2,p3 0.9e6",
+        From::Drive,
     ),
     (
         "all four pressures front left off by 0.9 MPa",
-        &[
-            "sensor-offset front-left.p1 0.9e6",
-            "sensor-offset front-left.p2 0.9e6",
-            "sensor-offset front-left.p3 0.9e6",
-            "sensor-offset front-left.p4 0.9e6",
-        ],
+        "sensor-offset front-left p1,p2,p3,p4 0.9e6",
+        From::Either,
     ),
-    ("valve 1 front left stuck open", &["solenoid-stuck front-left.1 open"]),
-    ("valve 2 front left stuck open", &["solenoid-stuck front-left.2 open"]),
+    (
+        "all pressures off by 0.9 MPa",
+        "sensor-offset all p1,p2,p3,p4 0.9e6",
+        From::Either,
+    ),
+    (
+        "all pressures off by -0.9 MPa",
+        "sensor-offset all p1,p2,p3,p4 -0.9e6",
+        From::Either,
+    ),
+    (
+        "all pressures off by 5 MPa",
+        "sensor-offset all p1,p2,p3,p4 5e6",
+        From::PowerOn,
+    ),
+    (
+        "valve 1 front left stuck open",
+        "solenoid-stuck front-left 1 open",
+        From::Drive,
+    ),
+    (
+        "valve 2 front left stuck open",
+        "solenoid-stuck front-left 2 open",
+        From::Drive,
+    ),
     (
         "valves 1 and 2 of all struts stuck open",
-        &["solenoid-stuck all.1 open", "solenoid-stuck all.2 open"],
+        "solenoid-stuck all 1,2 open",
+        From::Drive,
     ),
-    ("valve 3 front left stuck open", &["solenoid-stuck front-left.3 open"]),
+    (
+        "valve 3 front left stuck open",
+        "solenoid-stuck front-left 3 open",
+        From::Drive,
+    ),
     (
         "valve 3 front left stuck closed",
-        &["solenoid-stuck front-left.3 closed"],
+        "solenoid-stuck front-left 3 closed",
+        From::Drive,
     ),
-    (
-        "all displacements off by 35 mm",
-        &["sensor-offset all.displacement 0.035"],
-    ),
-    (
-        "all displacements off by -35 mm",
-        &["sensor-offset all.displacement -0.035"],
-    ),
-    ("all pressures off by 0.9 MPa", &ALL_PRESSURES_HIGH),
-    ("all pressures off by -0.9 MPa", &ALL_PRESSURES_LOW),
 ];
 
-/// Faults that are there when the controller starts, so that it learns its references with them.
-const FROM_POWER_ON: [(&str, &[&str]); 11] = [
-    (
-        "displacement front left off by 35 mm",
-        &["sensor-offset front-left.displacement 0.035"],
-    ),
-    (
-        "displacement front left off by -35 mm",
-        &["sensor-offset front-left.displacement -0.035"],
-    ),
-    (
-        "both left displacements off by 35 mm",
-        &[
-            "sensor-offset front-left.displacement 0.035",
-            "sensor-offset rear-left.displacement 0.035",
-        ],
-    ),
-    (
-        "all displacements off by 35 mm",
-        &["sensor-offset all.displacement 0.035"],
-    ),
-    (
-        "all displacements off by -35 mm",
-        &["sensor-offset all.displacement -0.035"],
-    ),
-    ("p1 front left off by 0.9 MPa", &["sensor-offset front-left.p1 0.9e6"]),
-    (
-        "p1 of both left struts off by 0.9 MPa",
-        &["sensor-offset front-left.p1 0.9e6", "sensor-offset rear-left.p1 0.9e6"],
-    ),
-    (
-        "all four pressures front left off by 0.9 MPa",
-        &[
-            "sensor-offset front-left.p1 0.9e6",
-            "sensor-offset front-left.p2 0.9e6",
-            "sensor-offset front-left.p3 0.9e6",
-            "sensor-offset front-left.p4 0.9e6",
-        ],
-    ),
-    ("all pressures off by 0.9 MPa", &ALL_PRESSURES_HIGH),
-    ("all pressures off by -0.9 MPa", &ALL_PRESSURES_LOW),
-    ("all pressures off by 5 MPa", &ALL_PRESSURES_FAR),
-];
-const ALL_PRESSURES_HIGH: [&str; 4] = [
-    "sensor-offset all.p1 0.9e6",
-    "sensor-offset all.p2 0.9e6",
-    "sensor-offset all.p3 0.9e6",
-    "sensor-offset all.p4 0.9e6",
-];
-const ALL_PRESSURES_LOW: [&str; 4] = [
-    "sensor-offset all.p1 -0.9e6",
-    "sensor-offset all.p2 -0.9e6",
-    "sensor-offset all.p3 -0.9e6",
-    "sensor-offset all.p4 -0.9e6",
-];
-const ALL_PRESSURES_FAR: [&str; 4] = [
-    "sensor-offset all.p1 5e6",
-    "sensor-offset all.p2 5e6",
-    "sensor-offset all.p3 5e6",
-    "sensor-offset all.p4 5e6",
-];
+/// A fault as parts of a scenario, one for each corner and part.
+fn parts_of_scenario(fault: &str, at_s: f64) -> String {
+    let mut words = fault.split(' ');
+    let mut next = || words.next().unwrap_or_default();
+    let (kind, place, parts, value) = (next(), next(), next(), next());
+    let mut text = String::new();
+    for corner in Corner::ALL {
+        let name = corner.name();
+        let is_meant = place == "all" || place == name || (place == "left" && corner.side() == Side::Left);
+        for part in parts.split(',').filter(|_| is_meant) {
+            text += &format!("[[fault]]\nkind = \"{kind}\"\nat_s = {at_s}\n");
+            text += &match kind {
+                "solenoid-stuck" => format!("valve = \"{name}.{part}\"\nposition = \"{value}\"\n"),
+                _ => format!("sensor = \"{name}.{part}\"\nvalue = {value}\n"),
+            };
+        }
+    }
+    text
+}
 
 /// What one drive showed.
 struct Seen {
@@ -211,26 +218,10 @@ struct Seen {
     ended_well: bool,
 }
 
-fn drive((manoeuvre, road, seed): (&str, &str, u64), at_s: f64, faults: &[&str]) -> Result<Seen, Failure> {
-    let mut text =
-        format!("name = \"bend\"\nroad = \"{road}\"\nspeed_km_h = 60\nscore_from_s = 3\nseed = {seed}\n{manoeuvre}\n");
-    for fault in faults {
-        let mut words = fault.split(' ');
-        let mut next = || words.next().unwrap_or_default();
-        let (kind, place, value) = (next(), next(), next());
-        let (corner, part) = place.split_once('.').unwrap_or_default();
-        for corner in Corner::ALL
-            .map(Corner::name)
-            .iter()
-            .filter(|name| [**name, "all"].contains(&corner))
-        {
-            text += &format!("[[fault]]\nkind = \"{kind}\"\nat_s = {at_s}\n");
-            text += &match kind {
-                "solenoid-stuck" => format!("valve = \"{corner}.{part}\"\nposition = \"{value}\"\n"),
-                _ => format!("sensor = \"{corner}.{part}\"\nvalue = {value}\n"),
-            };
-        }
-    }
+fn drive((manoeuvre, road, seed): (&str, &str, u64), faults: &str) -> Result<Seen, Failure> {
+    let text = format!(
+        "name = \"bend\"\nroad = \"{road}\"\nspeed_km_h = 60\nscore_from_s = 3\nseed = {seed}\n{manoeuvre}\n{faults}"
+    );
     let scenario = parse(&text, "bend.toml", Path::new(""))?;
     let outcome = run::both(&scenario, run::vehicle(&scenario)?, 1, &mut |_| true)?;
     let metrics = Metrics::of(&scenario, &outcome);
@@ -250,21 +241,24 @@ fn drive((manoeuvre, road, seed): (&str, &str, u64), at_s: f64, faults: &[&str])
 }
 
 fn main() -> Result<(), Failure> {
-    let all = |at_s, faults: &[&str]| {
+    let all = |faults: &str| {
         DRIVES
             .into_iter()
-            .map(|case| drive(case, at_s, faults))
+            .map(|case| drive(case, faults))
             .collect::<Result<Vec<_>, Failure>>()
     };
-    let sound = all(BEGIN_S, &[])?;
+    let sound = all("")?;
     println!(
         "| fault | peak roll over that without the fault | peak roll, degrees | decision later by, s | found before the bend | not completed |"
     );
     println!("|---|---|---|---|---|---|");
-    let later = FAULTS.map(|(name, faults)| (name.to_owned(), BEGIN_S, faults));
-    let at_once = FROM_POWER_ON.map(|(name, faults)| (format!("from power-on: {name}"), 0.0, faults));
-    for (name, at_s, faults) in later.into_iter().chain(at_once) {
-        let seen = all(at_s, faults)?;
+    let in_a_drive = FAULTS.iter().filter(|(.., from)| *from != From::PowerOn);
+    let from_power_on = FAULTS.iter().filter(|(.., from)| *from != From::Drive);
+    let rows = in_a_drive
+        .map(|(name, fault, _)| ((*name).to_owned(), parts_of_scenario(fault, BEGIN_S)))
+        .chain(from_power_on.map(|(name, fault, _)| (format!("from power-on: {name}"), parts_of_scenario(fault, 0.0))));
+    for (name, faults) in rows {
+        let seen = all(&faults)?;
         let worst = |of: &dyn Fn(&Seen, &Seen) -> f64| {
             (seen.iter().zip(&sound))
                 .map(|(seen, sound)| of(seen, sound))

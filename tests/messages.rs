@@ -22,9 +22,9 @@ fn a_file_of_messages_is_whole_or_absent() {
     let same = file("same.mcap");
     std::os::unix::fs::symlink(&log, &same).expect("a link");
     assert!(complaint(&run(&["convert", &log, &same])).contains("is an input"));
-    let missing = file("none/run.mcap");
-    let refused = complaint(&run(&["hil", "--duration-s", "1", "--no-out", "--mcap", &missing]));
-    assert!(refused.contains("none"), "{refused}");
+    let below_a_file = file("run.mcap/run.mcap");
+    let refused = complaint(&run(&["hil", "--duration-s", "1", "--no-out", "--mcap", &below_a_file]));
+    assert!(refused.contains("run.mcap: "), "{refused}");
     let words = file("words.log");
     std::fs::write(&words, "words\n").expect("written");
     let absent = file("absent.mcap");

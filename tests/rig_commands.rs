@@ -140,7 +140,7 @@ fn bad_input_is_one_line_exit_status_2_and_nothing_written() {
             &["rig", "damping", "--speed-m-s", "nan", "--out", "out"],
             "--speed-m-s NaN: give",
         ),
-        (&["rig", "limits", "--out", "no/such/out"], "create it first"),
+        (&["rig", "limits", "--out", "bad.toml/such/out"], "not a folder"),
         (&["rig", "limits", "--out", "bad.toml"], "not a folder"),
         (
             &["rig", "replay", "no.csv", "--out", "out"],

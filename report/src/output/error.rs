@@ -24,14 +24,6 @@ pub enum OutputError {
         /// The path as the user gave it.
         path: PathBuf,
     },
-    /// The folder that would hold the destination is missing.
-    #[error("{}: the folder {} does not exist; create it first", path.display(), parent.display())]
-    NoParent {
-        /// The output folder as the user gave it.
-        path: PathBuf,
-        /// The parent folder that does not exist.
-        parent: PathBuf,
-    },
     /// The destination holds files, and nothing says that they are results.
     #[error(
         "{}: has files that oleo did not write, such as {found}; name another output folder, or add --force to write among them",

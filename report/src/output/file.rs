@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 use super::csv_text::{self, Numbers};
 use super::marker::Marker;
-use super::{OutputError, PARTIAL, open_to_others, parent_of};
+use super::{OutputError, PARTIAL, folder_above, move_into_place, open_to_others};
 use crate::interrupt;
 
 /// What makes a folder of recordings a campaign; recordings there are not replaced.
@@ -26,7 +26,7 @@ impl OutputFile {
     /// `force` only.
     ///
     /// # Errors
-    /// Folder missing, `target` a folder or an input, no permission.
+    /// `target` a folder or an input, no permission.
     pub fn stage(target: &Path, inputs: &[PathBuf], force: bool) -> Result<Self, OutputError> {
         interrupt::install();
         let path = target.to_path_buf();
@@ -40,7 +40,7 @@ impl OutputFile {
         if inputs.iter().any(same) {
             return Err(OutputError::Input { path });
         }
-        let folder = parent_of(target)?;
+        let folder = folder_above(target)?;
         let recordings = folder.join(CAMPAIGN).exists() && Marker::read(&folder).is_none();
         if recordings && target.exists() && !force {
             return Err(OutputError::NotOurs { path });
@@ -114,7 +114,7 @@ impl OutputFile {
         open_to_others(&staged).map_err(refused)?;
         // Held to the end: a signal waits for the file.
         let mut folders = interrupt::staged();
-        fs::rename(&staged, &self.target).map_err(refused)?;
+        move_into_place(&staged, &self.target).map_err(refused)?;
         interrupt::forget(&mut folders, self.staging.path());
         Ok(self.target)
     }
@@ -157,6 +157,9 @@ mod tests {
         };
         assert_eq!(stream("half.log", Err("no")), Err("no".to_owned()));
         assert!(!path("half.log").exists());
+        assert_eq!(stream("new/half.log", Err("no")), Err("no".to_owned()));
+        assert!(!path("new").exists());
+        assert_eq!(stream("new/whole.log", Ok(())), Ok(path("new/whole.log")));
         assert_eq!(stream("whole.log", Ok(())), Ok(path("whole.log")));
     }
 }

@@ -1,7 +1,8 @@
 //! A folder of results is whole or absent. Files are staged in a hidden folder on the same file system and renamed
 //! into place at [`OutputDirectory::commit`]; an error, a panic or Ctrl-C before that leaves the destination as it was.
 //!
-//! A destination that does not exist is staged beside itself and appears with one rename. One that exists is staged inside
+//! A destination that does not exist is staged beside itself, or in the nearest folder above it that exists, and appears with one
+//! rename; the folders between are made just before. One that exists is staged inside
 //! itself (its parent may be another file system, or read-only) and its files are replaced one by one, each by one rename.
 //!
 //! The file `.oleo` in the folder lists what was written. The next command replaces and removes just these files, so that no
@@ -61,7 +62,7 @@ impl OutputDirectory {
     /// files that this program did not write.
     ///
     /// # Errors
-    /// Parent missing, destination not a folder, or with files that may not be replaced; no permission.
+    /// Destination not a folder, or with files that may not be replaced; no permission.
     pub fn stage(destination: impl AsRef<Path>, origin: Origin, force: bool) -> Result<Self, OutputError> {
         interrupt::install();
         let destination = destination.as_ref().to_path_buf();
@@ -74,7 +75,7 @@ impl OutputDirectory {
             Ok(found) if !found.is_dir() => return Err(OutputError::NotAFolder { path: destination }),
             Ok(_) => true,
             // A link to nothing is in the way of the folder.
-            Err(error) if error.kind() == io::ErrorKind::NotFound && !destination.is_symlink() => false,
+            Err(error) if is_absent(&error) && !destination.is_symlink() => false,
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 return Err(OutputError::NotAFolder { path: destination });
             }
@@ -88,7 +89,7 @@ impl OutputDirectory {
         if existed && whole.parent().is_none() {
             return Err(OutputError::Root { path: destination });
         }
-        let stage_in = if existed { whole } else { parent_of(&destination)? };
+        let stage_in = if existed { whole } else { folder_above(&destination)? };
         let input_paths: Vec<PathBuf> = (origin.inputs.iter())
             .filter_map(|input| fs::canonicalize(input).ok())
             .collect();
@@ -287,7 +288,7 @@ impl OutputDirectory {
             let refused = |source| self.refused("write", "", source);
             fs::write(staging.path().join(marker::NAME), after.text()).map_err(refused)?;
             open_to_others(staging.path()).map_err(refused)?;
-            fs::rename(staging.path(), &self.destination).map_err(refused)?;
+            move_into_place(staging.path(), &self.destination).map_err(refused)?;
         }
         interrupt::forget(&mut folders, staging.path());
         Ok(self.destination.clone())
@@ -324,10 +325,7 @@ impl OutputDirectory {
         }
         for name in &self.names {
             let target = self.destination.join(name);
-            if let Some(folder) = target.parent() {
-                fs::create_dir_all(folder).map_err(|source| self.refused("make the folder of", name, source))?;
-            }
-            fs::rename(staging.join(name), &target).map_err(|source| self.refused("write", name, source))?;
+            move_into_place(&staging.join(name), &target).map_err(|source| self.refused("write", name, source))?;
         }
         self.mark(after)
     }
@@ -427,25 +425,46 @@ fn indented(name: &str, value: &impl Serialize) -> Result<String, OutputError> {
     Ok(text + "\n")
 }
 
-/// The existing folder that holds `path`.
-fn parent_of(path: &Path) -> Result<PathBuf, OutputError> {
-    let parent = match path.parent() {
-        Some(parent) if parent.as_os_str().is_empty() => PathBuf::from("."),
-        Some(parent) => parent.to_path_buf(),
-        None => {
-            return Err(OutputError::NotAFolder {
-                path: path.to_path_buf(),
-            });
+/// The nearest folder above `path` that exists.
+fn folder_above(path: &Path) -> Result<PathBuf, OutputError> {
+    let mut not_a_folder = path.to_path_buf();
+    for folder in path.ancestors().skip(1) {
+        let folder = if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            folder
+        };
+        match fs::metadata(folder) {
+            Ok(found) if found.is_dir() => return Ok(folder.to_path_buf()),
+            // A link to nothing is in the way, as a file is.
+            Err(error) if is_absent(&error) && !folder.is_symlink() => {}
+            Err(source) if !is_absent(&source) => {
+                return Err(OutputError::Io {
+                    action: "look into",
+                    path: folder.to_path_buf(),
+                    source,
+                });
+            }
+            _ => {
+                not_a_folder = folder.to_path_buf();
+                break;
+            }
         }
-    };
-    match fs::metadata(&parent) {
-        Ok(found) if found.is_dir() => Ok(parent),
-        Ok(_) => Err(OutputError::NotAFolder { path: parent }),
-        Err(_) => Err(OutputError::NoParent {
-            path: path.to_path_buf(),
-            parent,
-        }),
     }
+    Err(OutputError::NotAFolder { path: not_a_folder })
+}
+
+/// Whether a path is not there: neither itself nor perhaps the folders above it.
+fn is_absent(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory)
+}
+
+/// Moves what was staged to where it shall be, whose folder is made if it is missing.
+fn move_into_place(staged: &Path, target: &Path) -> io::Result<()> {
+    if let Some(folder) = target.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    fs::rename(staged, target)
 }
 
 /// A temporary file or folder is private to its owner; results have the permissions that they would have had otherwise.

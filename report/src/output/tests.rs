@@ -68,6 +68,19 @@ fn an_input_is_not_replaced_by_whatever_name_it_is_reached() {
 }
 
 #[test]
+fn folders_above_the_destination_are_made_with_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut out = new(&folder.path().join("runs/monday/1"));
+    out.write("a.txt", "1").expect("written");
+    assert!(!folder.path().join("runs").exists());
+    out.commit().expect("moved");
+    assert_eq!(entries(&folder.path().join("runs/monday/1")), [".oleo", "a.txt"]);
+    assert_eq!(entries(folder.path()), ["runs"]);
+    drop(new(&folder.path().join("other/1")));
+    assert_eq!(entries(folder.path()), ["runs"]);
+}
+
+#[test]
 fn a_folder_with_other_files_is_refused() {
     let folder = tempfile::tempdir().expect("a folder");
     fs::write(folder.path().join("notes.txt"), "mine").expect("written");
@@ -226,13 +239,10 @@ fn refusals_are_one_line_that_names_the_place() {
     let file = parent.path().join("file");
     fs::write(&file, "").expect("written");
     let inside = |path: &Path| stage(path, &[], false).expect_err("refused").to_string();
-    for (path, part) in [
-        (file.clone(), "not a folder"),
-        (parent.path().join("no/out"), "create it first"),
-    ] {
+    for (path, part) in [(file.clone(), "not a folder"), (file.join("new/out"), "not a folder")] {
         let message = inside(&path);
         assert!(
-            message.contains(part) && message.starts_with(&path.display().to_string()),
+            message.contains(part) && message.starts_with(&file.display().to_string()),
             "{message}"
         );
         assert!(!message.contains('\n'));

@@ -1,5 +1,6 @@
 //! `oleo diagnose`: finds the physics that a model leaves out.
 
+mod campaign;
 mod foreign;
 mod self_test;
 mod vehicle;
@@ -9,14 +10,13 @@ use std::process::ExitCode;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use oleo_diagnose::campaign::CompleteRecordings;
-use oleo_diagnose::{Campaign, DiagnoseError, Findings, KeptBack};
-use oleo_report::{OutputDirectory, Progress};
+use campaign::{found, stage, write};
+use oleo_diagnose::{Campaign, KeptBack};
 
 use super::column_map::column_map;
 use super::vehicle_log::DatabaseArgs;
 use crate::failure::Failure;
-use crate::results::{ResultsArgs, command_line};
+use crate::results::ResultsArgs;
 use crate::shard::Request;
 use crate::shard::arguments::of_this_process;
 
@@ -75,9 +75,6 @@ fn part(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Steps of the progress bar.
-const STEPS: u64 = 100;
-
 /// Runs the command.
 pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let Some(folder) = args.campaign.first() else {
@@ -93,17 +90,27 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
             "--shard: one campaign is one case; leave it out, or see oleo study fleet for a folder of campaigns",
         ));
     }
+    let kept_back = KeptBack {
+        fit_until: args.fit_until,
+        recordings: args.hold_out.clone(),
+    };
     if let Some(fmu) = &args.foreign.fmu {
-        return foreign::run(fmu, &args);
+        let recordings = foreign::Recordings {
+            files: &args.campaign,
+            kept_back,
+            columns: args.columns.as_deref(),
+        };
+        if args.database.is_given() {
+            return Err(Failure::new(
+                "--dbc and --signals: an FMU is compared with columns; convert the log with oleo convert, or leave the options out",
+            ));
+        }
+        return foreign::run(fmu, args.foreign.map.as_deref(), &recordings, &args.results);
     }
     if let Some(logs) = args.logs(folder)? {
         return vehicle::run(&logs, &args.database, &args.results);
     }
     let begun = Instant::now();
-    let kept_back = KeptBack {
-        fit_until: args.fit_until,
-        recordings: args.hold_out.clone(),
-    };
     let map = args.columns.as_deref().map(column_map).transpose()?;
     let (campaign, complete) = if kept_back.is_nothing() {
         (Campaign::open_by(folder, map.as_ref())?, None)
@@ -117,39 +124,6 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let stop = AtomicBool::new(false);
     let findings = found(campaign, complete.as_ref(), kept_back, begun, &stop)?;
     write(&args.results, out, &findings)
-}
-
-/// Stages the folder of the results. This is done before the work: Ctrl-C from here on removes the folder and ends with nothing half-written.
-fn stage(results: &ResultsArgs, campaign: &Campaign, inputs: Vec<PathBuf>) -> Result<Option<OutputDirectory>, Failure> {
-    let out = results.stage("oleo diagnose", &format!("diagnose-{}", campaign.name), inputs)?;
-    if let Some(out) = &out {
-        out.refuse(campaign.specimen.model_file())?;
-    }
-    Ok(out)
-}
-
-/// Diagnoses a campaign with a progress bar.
-fn found(
-    campaign: Campaign,
-    complete: Option<&CompleteRecordings>,
-    kept_back: KeptBack,
-    begun: Instant,
-    stop: &AtomicBool,
-) -> Result<Findings, DiagnoseError> {
-    let progress = Progress::new(&campaign.name, STEPS);
-    Findings::of(campaign, complete, kept_back, begun, stop, &|phase, part| {
-        progress.phase(phase);
-        progress.set((part * STEPS as f64) as u64);
-    })
-}
-
-/// Writes what was found, and says it.
-fn write(results: &ResultsArgs, mut out: Option<OutputDirectory>, findings: &Findings) -> Result<ExitCode, Failure> {
-    if let Some(out) = &mut out {
-        findings.write(out, None, &command_line())?;
-    }
-    results.publish(out, &findings.text())?;
-    Ok(ExitCode::SUCCESS)
 }
 
 impl Args {

@@ -1,7 +1,13 @@
 //! `oleo fmu`: writes strut, vehicle or controller as a functional mock-up unit for other simulation tools.
 
+mod arguments;
+#[cfg(feature = "fmu")]
+mod packed;
+
 use std::path::PathBuf;
 use std::process::ExitCode;
+
+use arguments::{FileArgs, ParameterArgs};
 
 use crate::failure::Failure;
 
@@ -73,38 +79,6 @@ struct VehicleArgs {
     file: FileArgs,
 }
 
-/// Files that describe a vehicle. For each, the default is the built-in one.
-#[derive(clap::Args)]
-#[cfg_attr(not(feature = "fmu"), allow(dead_code, reason = "the command refuses to run"))]
-struct ParameterArgs {
-    /// Parameters of body, axles and tyres
-    #[arg(long, value_name = "FILE.toml")]
-    vehicle: Option<PathBuf>,
-    /// Parameters of steering and links
-    #[arg(long, value_name = "FILE.toml")]
-    handling: Option<PathBuf>,
-    /// Model file of the struts
-    #[arg(long, value_name = "MODEL.toml")]
-    strut: Option<PathBuf>,
-}
-
-#[derive(clap::Args)]
-#[cfg_attr(not(feature = "fmu"), allow(dead_code, reason = "the command refuses to run"))]
-struct FileArgs {
-    /// File that is written
-    #[arg(long, value_name = "FILE.fmu")]
-    out: PathBuf,
-    /// Version of FMI, 2 or 3. One file has one version. The default is 2, which more tools read, and 3 for a node on CAN
-    #[arg(long, value_name = "VERSION", value_parser = clap::value_parser!(u8).range(2..=3))]
-    fmi: Option<u8>,
-    /// Shared library that goes into the file. May be given once for each platform
-    #[arg(long, value_name = "FILE")]
-    library: Vec<PathBuf>,
-    /// Replace a file of a campaign. Inputs are never replaced
-    #[arg(long)]
-    force: bool,
-}
-
 /// Runs the command.
 ///
 /// # Errors
@@ -168,75 +142,5 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         }
     };
     let fmi = file.fmi.unwrap_or(least);
-    with_feature::write(&resources, &file, fmi, inputs.into_iter().flatten().collect())
-}
-
-#[cfg(feature = "fmu")]
-mod with_feature {
-    use oleo_hil::parameter_files::Parameters;
-    use std::path::PathBuf;
-    use std::process::ExitCode;
-
-    use oleo_fmu::{FmiVersion, Packed, Resources, SharedLibrary, pack};
-    use oleo_plant_sim::model_file::ModelFileError;
-    use oleo_report::OutputFile;
-
-    use super::{FileArgs, ParameterArgs};
-    use crate::failure::Failure;
-    use crate::results::say;
-
-    impl ParameterArgs {
-        /// Reads the files.
-        pub fn read(&self) -> Result<Parameters, ModelFileError> {
-            Parameters::read(self.vehicle.as_ref(), self.handling.as_ref(), self.strut.as_ref())
-        }
-
-        /// The files that were given.
-        pub fn paths(self) -> Vec<Option<PathBuf>> {
-            vec![self.vehicle, self.handling, self.strut]
-        }
-    }
-
-    /// Packs resources and libraries into a file.
-    pub fn write(resources: &Resources, file: &FileArgs, fmi: u8, inputs: Vec<PathBuf>) -> Result<ExitCode, Failure> {
-        let libraries = (libraries(file)?.iter())
-            .map(|path| SharedLibrary::read(path))
-            .collect::<Result<Vec<_>, _>>()?;
-        let inputs = [inputs, file.library.clone()].concat();
-        let out = OutputFile::stage(&file.out, &inputs, file.force)?;
-        let version = match fmi {
-            3 => FmiVersion::Three,
-            _ => FmiVersion::Two,
-        };
-        let Packed {
-            bytes,
-            counts: [inputs, outputs, parameters],
-            platforms,
-        } = pack(resources, version, &libraries)?;
-        let out = out.bytes(&bytes)?;
-        say(&format!(
-            "FMI {}.0 for co-simulation, {}: {inputs} inputs, {outputs} outputs, {parameters} parameters\n{}\n",
-            fmi,
-            platforms.join(", "),
-            out.display()
-        ))?;
-        Ok(ExitCode::SUCCESS)
-    }
-
-    /// The libraries that were given, or the one beside this program.
-    fn libraries(file: &FileArgs) -> Result<Vec<PathBuf>, Failure> {
-        if !file.library.is_empty() {
-            return Ok(file.library.clone());
-        }
-        let program = std::env::current_exe()?;
-        let folder = program.parent().unwrap_or(&program);
-        let candidates = SharedLibrary::candidates(folder);
-        match candidates.iter().find(|path| path.is_file()) {
-            Some(path) => Ok(vec![path.clone()]),
-            None => Err(Failure::new(format!(
-                "{}: the shared library of the FMUs is not there; build it with `cargo build --release --features fmu -p oleo -p oleo-fmu`, or name it with --library",
-                candidates[0].display()
-            ))),
-        }
-    }
+    packed::write(&resources, &file, fmi, inputs.into_iter().flatten().collect())
 }

@@ -33,7 +33,7 @@ ORDER = [
 
 TOKEN = re.compile(
     r"""(?P<comment>//[^\n]*|/\*(?:[^*]|\*(?!/))*\*/)
-      | (?P<string>b?"(?:[^"\\]|\\.)*"|b?r(?P<hashes>\#*)"(?:.|\n)*?"(?P=hashes))
+      | (?P<string>b?"(?:[^"\\]|\\(?:.|\n))*"|b?r(?P<hashes>\#*)"(?:.|\n)*?"(?P=hashes))
       | (?P<char>b?'(?:[^'\\]|\\(?:u\{[^}]*\}|.)[^']*)')
       | (?P<word>'?[A-Za-z_][A-Za-z_0-9]*)
       | (?P<colons>::)

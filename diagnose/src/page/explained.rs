@@ -7,7 +7,7 @@ use oleo_plant_sim::strut::LawArgument;
 use oleo_report::{Axis, Curves, Page, Style};
 
 use super::effects;
-use super::locations::{brief, scaled, title};
+use super::shown::{brief, scaled, title};
 use crate::diagnosis::Diagnosis;
 use crate::locate::{self, Location};
 use crate::specimen::{Series, Specimen};

@@ -8,6 +8,7 @@ mod locations;
 mod model;
 mod next;
 mod portrait;
+mod shown;
 pub mod words;
 
 use oleo_report::{Column, Page, Table, Verdict as Colour, significant};

@@ -3,7 +3,7 @@
 
 use oleo_report::{Axis, Curves, Page, Style, extrema_by_bucket};
 
-use super::locations::{brief, scaled};
+use super::shown::{brief, scaled};
 use crate::diagnosis::Diagnosis;
 use crate::specimen::{Portrait, Series, Specimen};
 use crate::vocabulary::State;

@@ -28,6 +28,12 @@ plant src/c.rs <<< 'pub struct C; fn f() { crate::a::g(); }'
 check "a circle of three modules is found" finds \
     'circle of oleo-interface::a, oleo-interface::b, oleo-interface::c'
 
+# A text may go on in the next line; what stands behind it counts all the same.
+plant src/c.rs <<< 'pub struct C; fn f() { let _ = "one \
+    two"; crate::a::g(); }'
+check "a circle behind a text of two lines is found" finds \
+    'circle of oleo-interface::a, oleo-interface::b, oleo-interface::c'
+
 plant src/c.rs <<< 'pub struct C;'
 plant src/a.rs <<< 'mod inner; pub use inner::Inner; pub struct Own;'
 plant src/a/inner.rs <<< 'pub struct Inner(crate::b::B);'

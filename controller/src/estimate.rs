@@ -11,6 +11,9 @@
 //!   pitch       theta'' = g (- sum x (F - W)) / (sum W  i_y^2)
 //! ```
 //!
+//! `W` and the offset of p1 are means of all that was seen until their memories are full, so that an offset that is there from power-on
+//! is no motion. What is left of it on one side is taken off the lateral acceleration (`Uneven`).
+//!
 //! Source: Newton and Euler for the sprung mass at small angles. The lateral acceleration is [`crate::lateral`]'s. Signs: x forward,
 //! y left, z up; roll is positive with the right side down, pitch with the nose down. So a left turn, in which the lateral
 //! acceleration is positive, rolls the body in the positive direction.
@@ -26,6 +29,7 @@ use crate::filter::{Derivative, DerivativeState, LowPass, at_least};
 use crate::lateral::{self, Lateral};
 use crate::plausibility::Trusted;
 use crate::range::{ConfigurationError, within};
+use crate::timing::ticks;
 use crate::vehicle::VehicleDescription;
 use crate::wheelbase;
 
@@ -35,6 +39,8 @@ pub const GRAVITY_M_S2: f32 = 9.806_65;
 /// Corner frequency of the filter that differentiates the strut displacement, Hz. It is high enough for everything that valves of
 /// 40 to 90 ms can follow, and low enough for the 0.01 mm steps of the displacement signal (`vehicle.md`: 15 to 20 Hz).
 const SPEED_CORNER_HZ: f32 = 18.0;
+/// Ticks from the start in which uneven load is learnt.
+const LEARNING_TICKS: f32 = ticks(2_500) as f32;
 const _: () = assert!(
     SPEED_CORNER_HZ * 8.0 <= TICKS_PER_SECOND as f32,
     "fastest filter: at least eight ticks a period of its corner, or its discrete form is not what was designed"
@@ -87,6 +93,8 @@ pub struct Parameters {
     per_pitch_gyration_2: f32,
     strut_speed: Derivative,
     static_load: LowPass,
+    /// Lateral acceleration for each metre by which the first gas is compressed further on one side than on the other.
+    carried_m_s2_m: f32,
     lateral: lateral::Parameters,
     wheelbase: wheelbase::Parameters,
     running: LowPass,
@@ -109,11 +117,19 @@ impl Parameters {
             per_pitch_gyration_2: 1.0 / square(vehicle.pitch_gyration_m),
             strut_speed: Derivative::from_corner_hz(SPEED_CORNER_HZ),
             static_load: LowPass::from_time_constant_s(20.0),
+            carried_m_s2_m: carried_m_s2_m(vehicle),
             lateral: lateral::Parameters::new(&tuning.lateral, square(vehicle.roll_gyration_m) / vehicle.roll_arm_m),
             wheelbase: wheelbase::Parameters::new(),
             running: LowPass::from_time_constant_s(tuning.running_rms_s),
         }
     }
+}
+
+/// With two axles, each with half the spacing `y` to either side, the gas turns the body by `2 y k (c_r - c_l)`, where the stiffness of
+/// the first gas of a strut that carries a fourth of the weight is `k = A W / (4 V1)`.
+fn carried_m_s2_m(vehicle: &VehicleDescription) -> f32 {
+    let half_spacing_m = 0.25 * (vehicle.strut_spacing_m.front + vehicle.strut_spacing_m.rear);
+    GRAVITY_M_S2 * half_spacing_m * vehicle.piston_area_m2 / (2.0 * vehicle.gas_volume_1_m3 * vehicle.roll_arm_m)
 }
 
 /// Estimated motion. Quantities of the body are those of its centre of gravity, with x forward, y left and z up; compression of a
@@ -178,8 +194,9 @@ impl Estimate {
 ///     pressure: Corners::splat(StrutPressures::splat(Gauge(pressure_pa))),
 ///     ..Trusted::default()
 /// };
-/// // The first tick takes the load for the static load: the body is at rest.
-/// assert_eq!(state.step(&parameters, &under(2.0e6)).vertical_acceleration_m_s2, 0.0);
+/// // The mean load is the static load: the body is at rest.
+/// let estimate = (0..4_000).map(|_| state.step(&parameters, &under(2.0e6))).last().unwrap();
+/// assert_eq!(estimate.vertical_acceleration_m_s2, 0.0);
 /// // A tenth more force at every strut accelerates the body upwards by a tenth of gravity.
 /// let estimate = state.step(&parameters, &under(2.2e6));
 /// assert!((estimate.vertical_acceleration_m_s2 - 0.980_665).abs() < 1e-3);
@@ -193,7 +210,9 @@ pub struct State {
     wheelbase: wheelbase::State,
     lateral_mean_square: f32,
     vertical_mean_square: f32,
-    started: bool,
+    uneven: Uneven,
+    /// Ticks since the start. It is a number of ticks as long as anything depends on it.
+    ticks: f32,
 }
 
 impl Default for State {
@@ -210,7 +229,8 @@ impl State {
         wheelbase: wheelbase::State::INITIAL,
         lateral_mean_square: 0.0,
         vertical_mean_square: 0.0,
-        started: false,
+        uneven: Uneven::INITIAL,
+        ticks: 0.0,
     };
 
     /// The static load on each strut, N.
@@ -223,19 +243,19 @@ impl State {
         let force = Corners::from_fn(|corner| {
             (trusted.pressure[corner].p1.pa() - trusted.p1_offset_pa[corner]) * c.piston_area_m2
         });
-        if !self.started {
-            self.started = true;
+        if self.ticks == 0.0 {
             self.speed = trusted.displacement_m.map(DerivativeState::at_rest);
-            self.static_load_n = force;
         }
+        self.ticks += 1.0;
         let speeds = self.speed.each_mut().zip(trusted.displacement_m);
         let strut_speed_m_s = speeds.map(|(state, x)| c.strut_speed.step(state, x));
         let relative = Relative::from_struts(c, trusted.displacement_m);
         let relative_rate = Relative::from_struts(c, strut_speed_m_s);
 
+        let part = c.static_load.growing(self.ticks);
         for (load, force) in self.static_load_n.each_mut().zip(force).into_array() {
             // A strut without load (jacked up, or empty) must not lead to a division by zero.
-            *load = at_least(c.static_load.step(load, force), 1.0);
+            *load = at_least(*load + part * (force - *load), 1.0);
         }
         let weight: f32 = self.static_load_n.values().sum();
         let per_mass = GRAVITY_M_S2 / weight;
@@ -253,7 +273,16 @@ impl State {
         let roll = per_mass * c.per_roll_gyration_2 * (left_up_n_m - static_left_up_n_m - bars_n_m);
         let pitch = per_mass * c.per_pitch_gyration_2 * (b * (f2 + f3 - w2 - w3) - a * (f0 + f1 - w0 - w1));
 
-        let lateral_raw = per_mass * c.per_roll_arm * (bars_n_m - left_up_n_m) - GRAVITY_M_S2 * relative.roll_rad;
+        let per_inertia = per_mass * c.per_roll_arm;
+        if self.ticks <= LEARNING_TICKS {
+            (self.uneven).learn(
+                per_inertia * left_up_n_m,
+                trusted.load_to_right_m * c.carried_m_s2_m,
+                self.ticks,
+            );
+        }
+        let lateral_raw =
+            per_inertia * (bars_n_m - left_up_n_m) + self.uneven.lateral_m_s2 - GRAVITY_M_S2 * relative.roll_rad;
         let Axles { front, rear } = relative.axle_roll_rad;
         let delay = self.wheelbase.step(&c.wheelbase, strut_speed_m_s);
         let lateral = self.lateral.step(&c.lateral, lateral_raw, front, rear, delay);
@@ -281,10 +310,40 @@ impl State {
     /// A state whose memory was damaged, as no input can do.
     pub(crate) fn damaged() -> Self {
         Self {
-            started: true,
+            ticks: 1.0,
             lateral: lateral::State::damaged(),
             ..Self::default()
         }
+    }
+}
+
+/// What the forces of the struts are on one side more than on the other, as lateral acceleration, though the body does not lean: uneven
+/// load, and what sensors show too much since the controller has started.
+#[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+struct Uneven {
+    /// By the forces, and by the compression of the gas, m/s2, in the mean.
+    forces_m_s2: f32,
+    gas_m_s2: f32,
+    /// What of the first the second does not explain, m/s2.
+    lateral_m_s2: f32,
+}
+
+impl Uneven {
+    const INITIAL: Self = Self {
+        forces_m_s2: 0.0,
+        gas_m_s2: 0.0,
+        lateral_m_s2: 0.0,
+    };
+
+    /// The `n`-th tick.
+    #[inline(never)]
+    fn learn(&mut self, forces_m_s2: f32, gas_m_s2: f32, n: f32) {
+        let part = 1.0 / n;
+        self.forces_m_s2 += part * (forces_m_s2 - self.forces_m_s2);
+        self.gas_m_s2 += part * (gas_m_s2 - self.gas_m_s2);
+        let beyond_m_s2 = at_least(self.forces_m_s2.abs() - self.gas_m_s2.abs(), 0.0);
+        self.lateral_m_s2 = beyond_m_s2.copysign(self.forces_m_s2);
     }
 }
 

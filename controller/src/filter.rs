@@ -34,6 +34,13 @@ impl LowPass {
         *state += self.alpha * (input - *state);
         *state
     }
+
+    /// The part of the difference that the `n`-th input since the start, from 1, adds to the state, if that is the mean of all inputs
+    /// until it has the memory of the lag. So a sensor that is at rest is known from its first sample, and of the first sample of one
+    /// that moves no more is left than of any other.
+    pub fn growing(&self, n: f32) -> f32 {
+        at_least(1.0 / n, self.alpha)
+    }
 }
 
 /// Time constant of a lag with a corner frequency, Hz, above 0.

@@ -165,7 +165,10 @@ impl Bands {
 ///     pressure: Corners::from_array([left_pa, right_pa, left_pa, right_pa].map(|p| StrutPressures::splat(Gauge(p)))),
 ///     ..Trusted::default()
 /// };
-/// state.step(&parameters, &with(2.0e6, 2.0e6));
+/// // Uneven load is learnt in the first seconds.
+/// for _ in 0..500 {
+///     state.step(&parameters, &with(2.0e6, 2.0e6));
+/// }
 /// // Load moves to the right: a left turn. Both outputs see it, and nothing twists the vehicle.
 /// let lateral = (0..200).map(|_| state.step(&parameters, &with(1.8e6, 2.2e6)).lateral).last().unwrap();
 /// assert!(lateral.acceleration_m_s2.quick > 1.0 && lateral.acceleration_m_s2.slow > 1.0);

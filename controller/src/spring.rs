@@ -12,8 +12,8 @@
 //!             force step             dF = A (p - p1) = A (p4 - p1) V4 / (V1' + V4) = A (p4 - p1) V2 p1 / (V1 p4 + V2 p1)
 //! ```
 //!
-//! The rules for each strut use the pressures extrapolated by 60 ms, to the time at which the valve acts. The pressures of the front
-//! and of the rear axle are looked at in every second tick, in turns: 5 ms are little to a valve that takes 40 to 90 ms.
+//! The rules for each strut use the pressures extrapolated by 60 ms, to the time at which the valve acts. The struts are looked at in
+//! turns, one in each tick: 15 ms are little to a valve that takes 40 to 90 ms.
 //!
 //! - A valve closes when `|x_t|` is below its bound (8 mm). It waits for that up to 150 ms in handling mode and 1 s for
 //!   comfort, and not at all under the roll-over guard.
@@ -25,11 +25,11 @@
 //! The shift that a closing in an emergency traps has no bound. [`Springs::trapped_shift_m`] reports it, and the next opening
 //! releases it.
 
-use oleo_interface::tick::TICK_S_F32;
-use oleo_interface::{Absolute, Axle, Axles, Corner, Corners, Gauge, Side, StrutPressures, Valve};
+use oleo_interface::{Absolute, Axles, Corner, Corners, Gauge, Side, StrutPressures, Valve};
 
 use crate::filter::{Derivative, DerivativeState, at_least};
 use crate::plausibility::Trusted;
+use crate::plausibility::turn::{TURN_S, next};
 use crate::range::{ConfigurationError, within};
 use crate::strategy::Urgency;
 use crate::timing::ticks;
@@ -41,8 +41,8 @@ const AHEAD_S: f32 = 0.06;
 const HANDLING_PATIENCE_TICKS: u32 = ticks(150) as u32;
 const COMFORT_PATIENCE_TICKS: u32 = ticks(1_000) as u32;
 const DWELL_TICKS: u32 = ticks(500) as u32;
-/// Time from one look at an axle's pressures to the next, s.
-const OBSERVATION_S: f32 = 2.0 * TICK_S_F32;
+/// Time from one look at a strut's pressures to the next, s.
+const OBSERVATION_S: f32 = TURN_S;
 /// Time after which p4 follows p1 through an opened valve.
 const SETTLE_TICKS: u32 = ticks(200) as u32;
 /// Time after which a throttled opening ends even where the pressures stay apart: a sensor's offset must not keep the damper
@@ -161,8 +161,8 @@ pub struct Springs {
     throttled: u16,
     /// Valves that were wanted elsewhere at the end of the last tick.
     waiting: u16,
-    /// Whether the pressures of the rear axle are the next to be looked at.
-    rear_is_next: bool,
+    /// The strut whose pressures are the next to be looked at.
+    turn: Corner,
     trapped_shift_m: Corners<f32>,
     valves: Corners<SpringValve>,
 }
@@ -184,7 +184,7 @@ impl Springs {
         open: 0,
         throttled: 0,
         waiting: 0,
-        rear_is_next: false,
+        turn: Corner::FrontLeft,
         trapped_shift_m: Corners::splat(0.0),
         valves: Corners::splat(SpringValve::INITIAL),
     };
@@ -285,21 +285,19 @@ impl Springs {
         }
     }
 
-    /// Takes over what the pressures of an axle say.
+    /// Takes over what the pressures of the strut say whose turn it is.
     #[inline(never)]
     fn observe(&mut self, c: &Parameters, trusted: &Trusted) {
         self.now = self.now.wrapping_add(1);
-        let axle = if self.rear_is_next { Axle::Rear } else { Axle::Front };
-        self.rear_is_next = !self.rear_is_next;
-        for corner in Side::ALL.map(|side| axle.corner(side)) {
-            let is_open = self.is_open(corner);
-            let pressure = &trusted.pressure[corner];
-            self.trapped_shift_m[corner] = self.valves[corner].observe(c, pressure, trusted.charge[corner], is_open);
-            if self.throttled & bit(corner) != 0 {
-                let (since, apart) = (self.since(corner), (pressure.p3 - pressure.p4).abs());
-                if apart < EQUAL_PA && since >= SETTLE_TICKS || since >= LONGEST_THROTTLE_TICKS {
-                    self.throttled &= !bit(corner);
-                }
+        let corner = self.turn;
+        self.turn = next(corner);
+        let is_open = self.is_open(corner);
+        let pressure = &trusted.pressure[corner];
+        self.trapped_shift_m[corner] = self.valves[corner].observe(c, pressure, trusted.charge[corner], is_open);
+        if self.throttled & bit(corner) != 0 {
+            let (since, apart) = (self.since(corner), (pressure.p3 - pressure.p4).abs());
+            if apart < EQUAL_PA && since >= SETTLE_TICKS || since >= LONGEST_THROTTLE_TICKS {
+                self.throttled &= !bit(corner);
             }
         }
     }

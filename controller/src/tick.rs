@@ -139,15 +139,15 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     let trusted = state.plausibility.step(&c.plausibility, inputs, &context);
     let mut health = trusted.health;
 
-    // Before the first complete set of readings there is nothing to estimate from, and the filters must not start at zero
-    // load.
-    let mut estimate = Estimate::default();
-    if state.failsafe.was_normal() || health.is_good() {
-        estimate = state.estimate.step(&c.estimate, trusted);
-        if !estimate.is_finite() {
-            health.cause = FaultCode::Internal;
-            estimate = Estimate::default();
-        }
+    // Before the first complete sets of readings there is nothing to learn from.
+    if !state.failsafe.was_normal() {
+        state.estimate = estimate::State::INITIAL;
+        state.strategy = strategy::State::INITIAL;
+    }
+    let mut estimate = state.estimate.step(&c.estimate, trusted);
+    if !estimate.is_finite() {
+        health.cause = FaultCode::Internal;
+        estimate = Estimate::default();
     }
 
     let mode = state.failsafe.step(&health);

@@ -29,7 +29,7 @@ mod span;
 mod stuck;
 mod trapped_oil;
 mod trusted;
-mod turn;
+pub(crate) mod turn;
 mod verdict;
 mod vote;
 

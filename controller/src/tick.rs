@@ -4,7 +4,7 @@
 //! is wanted, let the mode machine take out what it does not permit, and limit how often valves switch. Nothing else keeps state
 //! between ticks.
 
-use oleo_interface::{Corners, Valve};
+use oleo_interface::Corners;
 
 use crate::configuration::Configuration;
 use crate::dwell::Dwell;
@@ -133,7 +133,7 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     let compared = state.plausibility.turn();
     let context = plausibility::Context {
         spring_settled_open: state.springs.is_settled_open(compared),
-        spring_commanded_closed: !state.switching.command().is_open(compared, Valve::Spring),
+        commanded_open: state.switching.command().strut(compared),
         learning: !state.failsafe.was_normal(),
     };
     let trusted = state.plausibility.step(&c.plausibility, inputs, &context);

@@ -52,7 +52,7 @@ enum From {
 }
 
 /// What is wrong: a row of the table; kind of the fault, corners (`left` is both left ones) and parts, value; and when it begins.
-const FAULTS: [(&str, &str, From); 27] = [
+const FAULTS: [(&str, &str, From); 28] = [
     (
         "displacement front left off by 35 mm",
         "sensor-offset front-left displacement 0.035",
@@ -166,6 +166,11 @@ const FAULTS: [(&str, &str, From); 27] = [
     (
         "valve 1 front left stuck open",
         "solenoid-stuck front-left 1 open",
+        From::Drive,
+    ),
+    (
+        "valve 1 front left stuck closed",
+        "solenoid-stuck front-left 1 closed",
         From::Drive,
     ),
     (

@@ -9,7 +9,8 @@
 //! | rate | spikes, bit errors before the message was protected | 3 | `reading_check` |
 //! | stuck | a value that does not change while the strut moves | 200 | `stuck` |
 //! | vote | a pressure that is off by over 1 MPa | about 2 s / offset (MPa) | `vote` |
-//! | trapped oil | oil that moves through a closed valve 3 | 260 in motion | `trapped_oil` |
+//! | closed valve | a valve 3 that does not close | 260 in motion | `closed_valve` |
+//! | closed valve | a valve 1 that does not close | 660 in motion | `closed_valve` |
 //! | oil balance | a displacement that disagrees with the gas volumes by over 40 mm, a charge that drifts | 600 | `oil_balance` |
 //! | oil motion | a displacement that does not move as the gas does | 400 in motion | `oil_motion` |
 //! | link (from the node) | a late or untrusted message | at once | `reading_check` |
@@ -21,27 +22,27 @@
 //! rigid, and the axles are assumed not to move), p1 from p2 or p3 (which are equal at rest), and p2 and p3 from p1. p4 keeps
 //! its last value; springs are not switched then, because the mode machine keeps them closed.
 
+mod closed_valve;
 mod limits;
 mod oil_balance;
 mod oil_motion;
 mod reading_check;
 mod span;
 mod stuck;
-mod trapped_oil;
 mod trusted;
 pub(crate) mod turn;
 mod verdict;
 mod vote;
 
-use oleo_interface::{Corner, Corners};
+use oleo_interface::{Corner, Corners, StrutValves, Valve};
 
 use crate::reading::Inputs;
 use crate::sensor_message::{MessageSet, SensorMessage};
 use crate::vehicle::VehicleDescription;
+use closed_valve::ClosedValves;
 use oil_balance::OilBalance;
 use reading_check::{StrutReadings, take_over};
 use stuck::Stuck;
-use trapped_oil::TrappedOil;
 pub use trusted::Trusted;
 use verdict::Verdicts;
 use vote::Vote;
@@ -127,8 +128,8 @@ pub struct Context {
     /// Whether valve 3 of the corner whose turn it is ([`State::turn`]) has been open for so long that p4 follows p1. Behind a
     /// closed valve it does not.
     pub spring_settled_open: bool,
-    /// Whether valve 3 of that corner was commanded closed in the last tick.
-    pub spring_commanded_closed: bool,
+    /// Which valves of that corner were commanded open in the last tick.
+    pub commanded_open: StrutValves<bool>,
     /// Whether the gas charges are still being learnt, because the mode has not been normal yet.
     pub learning: bool,
 }
@@ -139,7 +140,7 @@ pub struct Context {
 struct Comparisons {
     stuck: Stuck,
     vote: Vote,
-    trapped: TrappedOil,
+    closed_valves: ClosedValves,
     oil: OilBalance,
     verdicts: Verdicts,
 }
@@ -148,7 +149,7 @@ impl Comparisons {
     const INITIAL: Self = Self {
         stuck: Stuck::INITIAL,
         vote: Vote::INITIAL,
-        trapped: TrappedOil::INITIAL,
+        closed_valves: ClosedValves::INITIAL,
         oil: OilBalance::INITIAL,
         verdicts: Verdicts::GOOD,
     };
@@ -275,15 +276,14 @@ impl State {
         if self.offset_turns == 0 {
             self.measured.p1_offset_pa[corner] = comparisons.vote.p1_offset_pa(&parameters.vote);
         }
-        comparisons
-            .trapped
-            .step(pressure, context.spring_commanded_closed, &mut verdict);
+        let (of_bypass, open) = (self.offset_turns % 2 == 1, context.commanded_open);
+        (comparisons.closed_valves).step(of_bypass, pressure, open, &mut verdict);
         self.measured.charge[corner] = (comparisons.oil).step(
             &parameters.oil_balance,
             x,
             pressure,
             context.learning,
-            context.spring_commanded_closed,
+            !context.commanded_open[Valve::Spring],
             &mut verdict,
         );
         if self.disagreeing & bit(corner) != 0 || verdict != Verdicts::GOOD {
@@ -346,7 +346,7 @@ mod tests {
             let parameters = Configuration::defender110().plausibility;
             let context = Context {
                 spring_settled_open: true,
-                spring_commanded_closed: false,
+                commanded_open: StrutValves::new(true, true, true),
                 learning: true,
             };
             let mut health = crate::failsafe::Health::default();

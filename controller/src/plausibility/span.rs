@@ -18,6 +18,14 @@ impl Span {
         most: f32::MIN,
     };
 
+    /// After the first value.
+    pub const fn at(value: f32) -> Self {
+        Self {
+            least: value,
+            most: value,
+        }
+    }
+
     /// Takes a value in.
     pub fn add(&mut self, value: f32) {
         if value < self.least {

@@ -26,6 +26,8 @@ const PISTON_AREA_M2: f32 = 1.963_495_4e-3;
 const GAS_1_M3: f32 = 1.0e-4;
 const GAS_2_M3: f32 = 4.0e-4;
 const STATIC_PA: f32 = 2.0e6;
+/// What the pack of damper 1 takes while its bypass is closed, Pa for each metre of the strut in a tick.
+const PACK_PA_M: f32 = 4.0e6 / 0.005;
 
 /// The generator of the drive.
 pub struct Drive {
@@ -33,6 +35,8 @@ pub struct Drive {
     random: u32,
     /// Gas in the second accumulators, m3; kept while valve 3 is closed.
     gas_2_m3: Corners<f32>,
+    /// What the road did in the last tick, m.
+    road_m: Corners<f32>,
 }
 
 impl Drive {
@@ -42,6 +46,7 @@ impl Drive {
             tick: 0,
             random: 0x2545_F491,
             gas_2_m3: Corners::splat(GAS_2_M3),
+            road_m: Corners::default(),
         }
     }
 
@@ -72,7 +77,11 @@ impl Drive {
             let x = road_m + 0.006 * side * lateral + 1.0e-5 * self.noise();
             displacement_m[corner] = x;
             let mut p = self.pressures(corner, x, command.is_open(corner, Valve::Spring));
-            // The dampers' share, and what the tyres' side force shifts from left to right.
+            if !command.is_open(corner, Valve::Bypass1) {
+                p.p1 = p.p1 + PACK_PA_M * (road_m - self.road_m[corner]);
+            }
+            self.road_m[corner] = road_m;
+            // The lines' share, and what the tyres' side force shifts from left to right.
             p.p1 = p.p1 + (0.06e6 * triangle(phase + 38, 154) + 0.75e6 * side * lateral);
             pressure[corner] = p.map(|p| p + 5.0e3 * self.noise());
         }

@@ -109,6 +109,9 @@ fn follows_the_schema(report: &Value) {
     }
     for r in list(&report["rejected"]) {
         assert!(string(&r["id"]) && string(&r["place"]) && string(&r["why"]), "{r}");
+        for (key, size) in r["shown_from"].as_object().expect("sizes") {
+            assert!(!key.is_empty() && (size.is_null() || size.as_f64() > Some(0.0)), "{r}");
+        }
         assert!(
             r["why"]
                 .as_str()

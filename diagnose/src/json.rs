@@ -5,7 +5,9 @@ use serde_json::{Map, Value, json};
 
 use crate::campaign::Campaign;
 use crate::diagnosis::{Diagnosis, Estimate};
+use crate::effect::Candidate;
 use crate::locate::condition::Region;
+use crate::search::LeastSize;
 use crate::specimen::Specimen;
 use crate::vocabulary::Column;
 
@@ -127,9 +129,18 @@ pub fn rejected(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> Vec<Value> {
                 ),
                 None => format!("{alone}; it excludes or is excluded by an effect of the chosen model"),
             };
-            json!({ "id": c.id, "place": c.place_and_label(), "why": why })
+            json!({ "id": c.id, "place": c.place_and_label(), "why": why, "shown_from": shown_from(c, &t.least_sizes) })
         })
         .collect()
+}
+
+/// The sizes from which the recordings would have shown an effect, by their keys.
+fn shown_from(candidate: &Candidate, least_sizes: &[LeastSize]) -> Value {
+    let sizes = least_sizes.iter().map(|least| {
+        let (key, value) = candidate.parameters[least.parameter].as_reported(least.value);
+        (key.to_owned(), json!(value))
+    });
+    Value::Object(sizes.collect())
 }
 
 /// Candidates that the recordings cannot show.

@@ -159,6 +159,15 @@ impl Parameter {
         .clamp(self.lower, self.upper)
     }
 
+    /// Key and value as reported: those of the inverse, for a number that is shown as such.
+    #[must_use]
+    pub fn as_reported(&self, value: Option<f64>) -> (&str, Option<f64>) {
+        match self.inverse_of {
+            Some(key) => (key, value.map(|v| 1.0 / v)),
+            None => (&self.key, value),
+        }
+    }
+
     /// Fitted coordinate `z` of a value.
     #[must_use]
     pub fn z(&self, value: f64) -> f64 {

@@ -8,6 +8,7 @@ use crate::campaign::Campaign;
 use crate::diagnosis::{Diagnosis, Effect};
 use crate::effect::unlisted::is_of_free_table;
 use crate::effect::{Candidate, of};
+use crate::search::LeastSize;
 
 pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     let all = campaign.specimen.candidates();
@@ -31,6 +32,17 @@ pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
     }
     let rejected = rejected(all, diagnosis);
     let summary = format!("All {} rejected candidates with their noise ratios", rejected.len());
+    if diagnosis
+        .selection
+        .scores
+        .iter()
+        .any(|score| !score.least_sizes.is_empty())
+    {
+        page.text(
+            "The list of rejected candidates states from which size each would have been found in 19 of 20 such campaigns. Below that size, \
+             \"absent\" means only that these recordings cannot show it.",
+        );
+    }
     page.details(&summary, rejected);
 }
 
@@ -221,6 +233,28 @@ fn rivals(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
     table
 }
 
+/// The sizes from which an effect would have been found, in words.
+fn found_from(candidate: &Candidate, least_sizes: &[LeastSize]) -> String {
+    let sizes = least_sizes.iter().map(|least| {
+        let number = &candidate.parameters[least.parameter];
+        let (key, value) = number.as_reported(least.value);
+        let (name, unit) = words::parameter(key);
+        let bound = if number.inverse_of.is_some() {
+            "at most"
+        } else {
+            "at least"
+        };
+        match value {
+            Some(value) => format!("{name} of {bound} {} {unit}", significant(value, 2))
+                .trim_end()
+                .to_owned(),
+            None => format!("{name}: not by these recordings"),
+        }
+    });
+    let sizes: Vec<String> = sizes.collect();
+    if sizes.is_empty() { "-".into() } else { sizes.join("; ") }
+}
+
 fn rejected(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
     let selection = &diagnosis.selection;
     let after = selection.improved_ratio;
@@ -233,6 +267,7 @@ fn rejected(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
         Column::text("Place"),
         Column::number("Held-out noise ratio with it alone"),
         Column::number("Held-out noise ratio with it added to the improved model"),
+        Column::text("Would have been found from"),
         Column::text("Reason"),
     ]);
     for t in scores {
@@ -254,6 +289,7 @@ fn rejected(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
                 "not fitted".into()
             },
             t.added.map_or("-".into(), |a| format!("{a:.3}")),
+            found_from(c, &t.least_sizes),
             because,
         ]);
     }

@@ -22,6 +22,7 @@ mod elimination;
 pub mod evidence;
 mod forward;
 mod oscillation;
+mod power;
 mod restart;
 mod rivals;
 pub mod screen;
@@ -33,6 +34,7 @@ mod simplification;
 mod sizes;
 
 pub use evidence::HeldOutGain;
+pub use power::LeastSize;
 pub use screen::Screen;
 pub use select::select;
 pub use selection::{CandidateScore, LawPairs, Progress, Rival, SelectedEffect, Selection};

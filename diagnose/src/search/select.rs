@@ -68,6 +68,7 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
     for (candidate, fit) in &screened {
         if let (Some(score), Some(fit)) = (scores.iter_mut().find(|s| s.candidate == *candidate), fit) {
             score.added = Some(selector.held_out_ratio(fit));
+            score.least_sizes = selector.least_sizes(&best, *candidate, fit);
         }
     }
     let improved_ratio = selector.held_out_ratio(&best);
@@ -258,6 +259,7 @@ fn score_alone(selector: &Selector<'_, '_>, screened: &[Screened], scores: &mut 
                 candidate: *candidate,
                 alone: fit.as_ref().map_or(f64::INFINITY, |f| selector.held_out_ratio(f)),
                 added: None,
+                least_sizes: vec![],
             });
         }
     }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::evidence::HeldOutGain;
+use super::power::LeastSize;
 use crate::estimation::Fit;
 
 /// Told what is being done, and the fraction of the work that is done, 0 to 1.
@@ -86,4 +87,6 @@ pub struct CandidateScore {
     pub alone: f64,
     /// Held-out noise ratio with it added to the improved model; `None` if it is in it or excluded by it.
     pub added: Option<f64>,
+    /// From which sizes the recordings would have shown it beside the improved model, if that is complete; one entry for each size.
+    pub least_sizes: Vec<LeastSize>,
 }

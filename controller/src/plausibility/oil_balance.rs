@@ -94,14 +94,14 @@ impl OilBalance {
         started: false,
     };
 
-    /// One turn, with whether valve 3 is commanded closed; returns the charge pressure as learnt so far.
+    /// One turn, with whether valve 3 is commanded open; returns the charge pressure as learnt so far.
     pub fn step(
         &mut self,
         c: &Parameters,
         displacement_m: f32,
         pressure: &StrutPressures<Gauge<f32>>,
         learning: bool,
-        closed: bool,
+        open: bool,
         verdict: &mut Verdicts,
     ) -> Absolute<f32> {
         let mut motion = None;
@@ -133,7 +133,7 @@ impl OilBalance {
             self.carried_m = displacement_m - in_second_m;
             let drifted = self.charge_pa < DRIFT.0 * self.charge_at_start_pa
                 || self.charge_pa > DRIFT.1 * self.charge_at_start_pa;
-            let adiabatic = if closed { ADIABATIC } else { 0.0 };
+            let adiabatic = if open { 0.0 } else { ADIABATIC };
             let permitted_m = WRONG_M + adiabatic * in_second_m.abs();
             let wrong = self.residual_m.abs() > permitted_m
                 || drifted
@@ -203,7 +203,7 @@ mod tests {
         closed: bool,
     ) -> (bool, f32) {
         let mut verdict = Verdicts::GOOD;
-        let charge = balance.step(&parameters(), reading_m, p, learning, closed, &mut verdict);
+        let charge = balance.step(&parameters(), reading_m, p, learning, !closed, &mut verdict);
         assert!(verdict.pressures_are_good(), "it is about the displacement");
         (Verdicts::gravest(&[verdict]) == FaultCode::OilBalance, charge.pa())
     }

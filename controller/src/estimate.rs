@@ -160,6 +160,9 @@ pub struct Estimate {
     pub vertical_mean_square: f32,
     /// Static load on each strut, N.
     pub static_load_n: Corners<f32>,
+    /// Ticks after which the rear axle meets what the front one has met, where that is known.
+    #[cfg(feature = "comparison")]
+    pub axle_delay_ticks: Option<u8>,
 }
 
 impl Estimate {
@@ -301,6 +304,8 @@ impl State {
             lateral_mean_square: c.running.step(&mut self.lateral_mean_square, lateral_square),
             vertical_mean_square: c.running.step(&mut self.vertical_mean_square, vertical * vertical),
             static_load_n: self.static_load_n,
+            #[cfg(feature = "comparison")]
+            axle_delay_ticks: delay,
         }
     }
 }

@@ -50,6 +50,7 @@ fn words(strategy: Strategy, policy: DamperPolicy) -> Vec<u16> {
         ..Builder::default()
     };
     builder.tuning.strategy.ride_handling.dampers.policy = policy;
+    builder.tuning.strategy.road_and_dampers.dampers.policy = policy;
     let configuration = builder.build().unwrap();
     let (mut state, mut struts) = (State::new(), Corners::splat(QuietStrut::default()));
     let mut command = ValveCommand::SAFE;
@@ -121,4 +122,21 @@ fn road_and_cornering() {
         "soft on the rough road"
     );
     assert_eq!(words[2100], 0, "stiff in the lane change");
+}
+
+#[test]
+fn dampers_on_rough_roads() {
+    for (name, strategy, policy) in [
+        (
+            "road-and-dampers-nell-steyn",
+            Strategy::RoadAndDampers,
+            DamperPolicy::NellSteyn,
+        ),
+        ("predictive", Strategy::Predictive, DamperPolicy::Karnopp),
+    ] {
+        let words = check(name, strategy, policy);
+        let soft = |tick: usize| words[tick] & 0b100_100_100_100;
+        assert_eq!(soft(1500), 0b100_100_100_100, "{name}: soft on the rough road");
+        assert_eq!(words[2100], 0, "{name}: stiff in the lane change");
+    }
 }

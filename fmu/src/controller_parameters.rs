@@ -8,13 +8,21 @@ use crate::complaint::Complaint;
 use crate::variable::{Role, Variable, Word};
 
 /// The words of [`Strategy`], in the order of the numbers here.
-const STRATEGIES: [Word; 4] = [
+const STRATEGIES: [Word; 6] = [
     ("always-soft", "all valves open, for comparison"),
     ("always-stiff", "all valves closed, for comparison"),
     ("ride-handling", "ride mode or handling mode by running RMS"),
     (
         "road-and-cornering",
         "stiff on a smooth road and as soon as the vehicle corners; low damping by the road else",
+    ),
+    (
+        "road-and-dampers",
+        "as road-and-cornering, but a rule of the literature switches the dampers on a rough road",
+    ),
+    (
+        "predictive",
+        "as road-and-cornering, but a forecast sets the rear dampers on a very rough road",
     ),
 ];
 

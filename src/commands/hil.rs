@@ -95,7 +95,7 @@ pub struct Args {
     /// Strategy by which the controller sets the valves [default: the scenario's]
     #[arg(long, value_name = "NAME", value_parser = by_name::<Strategy>())]
     strategy: Option<Strategy>,
-    /// Rule by which the ride/handling strategy switches the dampers in ride mode [default: the scenario's]
+    /// Rule by which the strategies ride-handling and road-and-dampers switch the dampers [default: the scenario's]
     #[arg(long, value_name = "NAME", value_parser = by_name::<DamperPolicy>())]
     damper_policy: Option<DamperPolicy>,
     /// Strut model, such as the model.toml that oleo diagnose writes [default: the scenario's]

@@ -8,6 +8,9 @@
 //! |---|---|---|
 //! | `always-soft` | soft | low |
 //! | `always-stiff` | stiff | high |
+//! | `road-and-cornering` | soft on a rough road, stiff on a smooth one and in bends | by the road; high where the springs are stiff |
+//! | `road-and-dampers` | the same | on a rough road the damper policy |
+//! | `predictive` | the same | on a very rough road a forecast sets the rear ones |
 //! | `ride-handling` | soft in ride mode, stiff in handling mode or under the roll-over guard | ride mode: the damper policy; else high |
 //!
 //! A new strategy is a file here with a type that implements [`Decide`], and one line in the list at the end of this
@@ -18,8 +21,12 @@ mod demand;
 mod fixed;
 pub mod parts;
 #[cfg(feature = "comparison")]
+pub mod predictive;
+#[cfg(feature = "comparison")]
 pub mod ride_handling;
 pub mod road_and_cornering;
+#[cfg(feature = "comparison")]
+pub mod road_and_dampers;
 
 use strum::{EnumString, IntoStaticStr, VariantArray, VariantNames};
 
@@ -152,6 +159,10 @@ strategies! {
     /// Stiff on a smooth road and as soon as the vehicle corners; low damping by the road else.
     #[default]
     RoadAndCornering, road_and_cornering: road_and_cornering::RoadAndCornering;
+    /// The same, but on a rough road a damper policy switches the dampers.
+    RoadAndDampers, road_and_dampers: road_and_dampers::RoadAndDampers;
+    /// The same, but on a rough road the dampers are set by a forecast.
+    Predictive, predictive: predictive::Predictive;
 }
 
 // The board's image holds the one strategy that it drives with.

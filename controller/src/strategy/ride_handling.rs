@@ -72,7 +72,7 @@ impl Decide for RideHandling {
     fn step(&self, state: &mut State, estimate: &Estimate, trusted: &Trusted) -> Demand {
         let rollover_guard = state.guard.step(&self.rollover_guard, estimate);
         let handling = state.mode.step(&self.running_rms, estimate);
-        let low_damping = state.dampers.step(&self.dampers, estimate, &trusted.displacement_m);
+        let low_damping = state.dampers.step(&self.dampers, estimate, trusted);
         let valves = if handling || rollover_guard {
             ValveCommand::SAFE
         } else {

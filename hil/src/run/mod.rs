@@ -55,7 +55,9 @@ pub fn builder(scenario: &Scenario) -> Result<Builder, RunError> {
         strategy: scenario.strategy,
         ..Builder::default()
     };
-    builder.tuning.strategy.ride_handling.dampers.policy = scenario.damper_policy;
+    let strategies = &mut builder.tuning.strategy;
+    strategies.ride_handling.dampers.policy = scenario.damper_policy;
+    strategies.road_and_dampers.dampers.policy = scenario.damper_policy;
     Ok(builder)
 }
 

@@ -32,7 +32,7 @@ pub struct Overrides {
     pub duration_s: Option<f64>,
     /// Strategy of the controller.
     pub strategy: Option<Strategy>,
-    /// Rule by which the strategy `ride-handling` switches the dampers.
+    /// Rule by which the strategies `ride-handling` and `road-and-dampers` switch the dampers.
     pub damper_policy: Option<DamperPolicy>,
     /// Path of a strut model.
     pub strut: Option<String>,
@@ -76,11 +76,12 @@ impl Overrides {
         if let Some(settings) = &chosen.course {
             settings.manoeuvre(chosen.speed_m_s, Some(chosen.duration_s()))?;
         }
-        if self.damper_policy.is_some() && chosen.strategy != Strategy::RideHandling {
+        let with_policy = [Strategy::RideHandling, Strategy::RoadAndDampers];
+        if self.damper_policy.is_some() && !with_policy.contains(&chosen.strategy) {
+            let [first, second] = with_policy.map(Strategy::name);
             let what = format!(
-                "has no use in the strategy {}: take the strategy {}, or leave it out",
+                "has no use in the strategy {}: take the strategy {first} or {second}, or leave it out",
                 chosen.strategy.name(),
-                Strategy::RideHandling.name()
             );
             return Err(InvalidValue::new("damper_policy", what));
         }

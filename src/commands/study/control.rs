@@ -45,9 +45,11 @@ pub struct Args {
 }
 
 /// Controllers that are compared: name, strategy, and the damper policy of `ride-handling`. The first is the one that is scored.
-/// The other four decide as Els does, by running RMS; their dampers stay low, or follow a rule of the literature.
-const CONTROLLERS: [(&str, Strategy, DamperPolicy); 5] = [
+/// The second is the same with rear dampers that a forecast sets. The others decide as Els does, by running RMS; their dampers stay low,
+/// or follow a rule of the literature.
+const CONTROLLERS: [(&str, Strategy, DamperPolicy); 7] = [
     ("road-and-cornering", Strategy::RoadAndCornering, DamperPolicy::Low),
+    ("predictive", Strategy::Predictive, DamperPolicy::Low),
     ("ride-handling-low", Strategy::RideHandling, DamperPolicy::Low),
     ("ride-handling-karnopp", Strategy::RideHandling, DamperPolicy::Karnopp),
     (
@@ -56,6 +58,11 @@ const CONTROLLERS: [(&str, Strategy, DamperPolicy); 5] = [
         DamperPolicy::HoelscherHuang,
     ),
     ("ride-handling-sh-add", Strategy::RideHandling, DamperPolicy::ShAdd),
+    (
+        "ride-handling-nell-steyn",
+        Strategy::RideHandling,
+        DamperPolicy::NellSteyn,
+    ),
 ];
 
 /// What the names of the controllers that decide by running RMS begin with: one series of the picture.
@@ -327,7 +334,7 @@ fn page(
                 .iter_mut()
                 .find(|(names, ..)| name.starts_with(RUNNING_RMS) && names.starts_with(RUNNING_RMS))
             {
-                *names = format!("{RUNNING_RMS} with four damper policies");
+                *names = format!("{RUNNING_RMS} with five damper policies");
                 x.push(ride);
                 y.push(roll);
             } else {

@@ -9,6 +9,8 @@
 //!   SH-ADD              the first where |a| < alpha |v|, which is near the body's resonance, else the second
 //! ```
 //!
+//! Nell & Steyn's rule looks at the body as a whole and is in [`super::nell_steyn`]; the stops are treated alike.
+//!
 //! Sources: Karnopp, Crosby & Harwood, "Vibration control using semi-active force generators", J. Eng. Ind. 96 (1974);
 //! Hoelscher & Huang as described by Nell & Steyn (report, reference 16); Savaresi & Spelta, "Mixed Sky-Hook and ADD: approaching the
 //! filtering limits of a semi-active suspension", J. Dyn. Syst. Meas. Control 129 (2007), 382-392. All are *recalled*.
@@ -25,8 +27,10 @@
 use oleo_interface::{Axle, Corners, Side};
 use strum::{EnumString, IntoStaticStr, VariantNames};
 
+use super::nell_steyn;
 use crate::estimate::Estimate;
 use crate::filter::{LeakyIntegrator, LowPass, at_least};
+use crate::plausibility::Trusted;
 use crate::range::{ConfigurationError, within};
 use crate::vehicle::VehicleDescription;
 
@@ -62,6 +66,8 @@ pub enum DamperPolicy {
     HoelscherHuang,
     /// As [`DamperPolicy::Karnopp`] near the body's resonance, and as [`DamperPolicy::HoelscherHuang`] above it.
     ShAdd,
+    /// High at those corners whose forces together oppose the body's heave, roll and pitch best.
+    NellSteyn,
 }
 
 impl DamperPolicy {
@@ -78,7 +84,7 @@ pub struct Tuning {
     pub policy: DamperPolicy,
     /// Body velocity over the running RMS of vertical acceleration that Karnopp's rule needs to act, s, 0 to 10.
     pub body_velocity_share_s: f32,
-    /// Body acceleration below 4 Hz over the running RMS that Hoelscher and Huang's rule needs to act, 0 to 100.
+    /// Body acceleration below 4 Hz over the running RMS that Hoelscher and Huang's rule and Nell and Steyn's need to act, 0 to 100.
     pub body_acceleration_share: f32,
 }
 
@@ -120,30 +126,38 @@ pub(crate) struct Parameters {
     body_band: LowPass,
     body_velocity_share_2: f32,
     body_acceleration_share_2: f32,
+    combination: nell_steyn::Parameters,
 }
 
 impl Parameters {
     /// From a description and a tuning that have been checked.
     pub(crate) fn new(vehicle: &VehicleDescription, tuning: &Tuning) -> Self {
         let square = |x: f32| x * x;
+        let place_m = places_m(vehicle);
         Self {
             policy: tuning.policy,
-            place_m: Corners::from_fn(|corner| {
-                let ahead_m = match corner.axle() {
-                    Axle::Front => vehicle.axle_distance_m.front,
-                    Axle::Rear => -vehicle.axle_distance_m.rear,
-                };
-                let half_m = 0.5 * vehicle.strut_spacing_m[corner.axle()];
-                let left_m = if corner.side() == Side::Left { half_m } else { -half_m };
-                (ahead_m, left_m)
-            }),
+            place_m,
             body_velocity: LeakyIntegrator::from_corner_hz(0.2),
             // Body frequencies only: the valves cannot follow the wheel.
             body_band: LowPass::from_corner_hz(4.0),
             body_velocity_share_2: square(tuning.body_velocity_share_s),
             body_acceleration_share_2: square(tuning.body_acceleration_share),
+            combination: nell_steyn::Parameters::new(vehicle, &place_m, tuning.body_acceleration_share),
         }
     }
+}
+
+/// Places of the struts ahead of and to the left of the centre of gravity, m.
+pub(crate) fn places_m(vehicle: &VehicleDescription) -> Corners<(f32, f32)> {
+    Corners::from_fn(|corner| {
+        let ahead_m = match corner.axle() {
+            Axle::Front => vehicle.axle_distance_m.front,
+            Axle::Rear => -vehicle.axle_distance_m.rear,
+        };
+        let half_m = 0.5 * vehicle.strut_spacing_m[corner.axle()];
+        let left_m = if corner.side() == Side::Left { half_m } else { -half_m };
+        (ahead_m, left_m)
+    })
 }
 
 /// State of the four corners.
@@ -151,6 +165,7 @@ impl Parameters {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     corners: Corners<CornerState>,
+    combination: nell_steyn::State,
 }
 
 /// State of one corner.
@@ -166,15 +181,18 @@ struct CornerState {
 impl State {
     pub const INITIAL: Self = Self {
         corners: Corners::splat(CornerState::INITIAL),
+        combination: nell_steyn::State::INITIAL,
     };
 
     /// One tick; returns whether low damping is wanted at each corner.
-    pub fn step(
-        &mut self,
-        parameters: &Parameters,
-        estimate: &Estimate,
-        displacement_m: &Corners<f32>,
-    ) -> Corners<bool> {
+    pub fn step(&mut self, parameters: &Parameters, estimate: &Estimate, trusted: &Trusted) -> Corners<bool> {
+        if parameters.policy == DamperPolicy::NellSteyn {
+            let high = self.combination.step(&parameters.combination, estimate, trusted);
+            return Corners::from_fn(|corner| {
+                let speed = estimate.strut_speed_m_s[corner];
+                !(high[corner] || near_stop(trusted.displacement_m[corner], speed))
+            });
+        }
         for (corner, state) in self.corners.iter_mut() {
             let acceleration = acceleration_at(parameters.place_m[corner], estimate);
             let velocity = parameters.body_velocity.step(&mut state.velocity_m_s, acceleration);
@@ -184,7 +202,7 @@ impl State {
                 acceleration,
                 velocity,
                 estimate.vertical_mean_square,
-                displacement_m[corner],
+                trusted.displacement_m[corner],
             );
         }
         self.corners.map(|state| !state.high)
@@ -195,6 +213,12 @@ impl State {
 fn acceleration_at((ahead_m, left_m): (f32, f32), estimate: &Estimate) -> f32 {
     estimate.vertical_acceleration_m_s2 + left_m * estimate.roll_acceleration_rad_s2
         - ahead_m * estimate.pitch_acceleration_rad_s2
+}
+
+/// Whether a strut is near a stop and moves on towards it.
+fn near_stop(displacement_m: f32, speed_m_s: f32) -> bool {
+    let (jounce, rebound) = NEAR_STOP_M;
+    (displacement_m > jounce && speed_m_s > 0.0) || (displacement_m < -rebound && speed_m_s < 0.0)
 }
 
 impl CornerState {
@@ -228,15 +252,13 @@ impl CornerState {
         );
         let near_resonance = body_acceleration * body_acceleration < CROSSOVER_2 * velocity * velocity;
         let (body, least_2) = match parameters.policy {
-            DamperPolicy::Low => (0.0, f32::MAX),
+            DamperPolicy::Low | DamperPolicy::NellSteyn => (0.0, f32::MAX),
             DamperPolicy::Karnopp => by_velocity,
             DamperPolicy::ShAdd if near_resonance => by_velocity,
             DamperPolicy::HoelscherHuang | DamperPolicy::ShAdd => by_acceleration,
         };
-        let (jounce, rebound) = NEAR_STOP_M;
-        let near_stop = (displacement_m > jounce && speed > 0.0) || (displacement_m < -rebound && speed < 0.0);
         let opposes = if body < 0.0 { -extension } else { extension };
-        if near_stop {
+        if near_stop(displacement_m, speed) {
             self.high = true;
         } else if body * body < least_2 || opposes < -DEAD_BAND_M_S {
             self.high = false;
@@ -247,158 +269,4 @@ impl CornerState {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn settled(policy: DamperPolicy, extension_m_s: f32, velocity: f32, acceleration: f32, x_m: f32) -> bool {
-        let parameters = parameters(policy);
-        let mut state = CornerState::INITIAL;
-        for _ in 0..100 {
-            state.step(&parameters, -extension_m_s, acceleration, velocity, 0.0, x_m);
-        }
-        state.high
-    }
-
-    fn parameters(policy: DamperPolicy) -> Parameters {
-        let tuning = Tuning {
-            policy,
-            ..Tuning::default()
-        };
-        Parameters::new(&VehicleDescription::default(), &tuning)
-    }
-
-    /// Struts half a metre to the side, 1.389 m ahead and 1.405 m behind: a rigid body. The integral of a constant acceleration
-    /// levels off at that times the time constant of 0.2 Hz, 0.8 s.
-    #[test]
-    fn the_body_moves_differently_over_each_strut() {
-        let parameters = parameters(DamperPolicy::Low);
-        let estimate = Estimate {
-            vertical_acceleration_m_s2: 1.0,
-            roll_acceleration_rad_s2: 0.4,
-            pitch_acceleration_rad_s2: 0.2,
-            ..Estimate::default()
-        };
-        let expected = [
-            1.0 + 0.2 - 0.2778,
-            1.0 - 0.2 - 0.2778,
-            1.0 + 0.2 + 0.281,
-            1.0 - 0.2 + 0.281,
-        ];
-        let mut state = State::INITIAL;
-        for _ in 0..2_000 {
-            state.step(&parameters, &estimate, &Corners::default());
-        }
-        let there = parameters.place_m.zip(state.corners).into_array();
-        for ((place_m, corner), expected) in there.into_iter().zip(expected) {
-            let found = acceleration_at(place_m, &estimate);
-            assert!((found - expected).abs() < 1e-3, "{found}, expected {expected}");
-            let velocity = expected / (2.0 * core::f32::consts::PI * 0.2);
-            assert!(
-                (corner.velocity_m_s - velocity).abs() < 0.01,
-                "{} m/s, expected {velocity}",
-                corner.velocity_m_s
-            );
-        }
-    }
-
-    #[test]
-    fn quadrants_of_both_rules() {
-        for w in [0.3, -0.3] {
-            for v in [0.4, -0.4] {
-                assert_eq!(settled(DamperPolicy::Karnopp, w, v, 0.0, 0.0), w * v > 0.0);
-                assert_eq!(settled(DamperPolicy::HoelscherHuang, w, 0.0, 5.0 * v, 0.0), w * v > 0.0);
-                assert!(!settled(DamperPolicy::Low, w, v, 5.0 * v, 0.0));
-                // The body's velocity decides where it is large against the acceleration, and the acceleration else.
-                assert_eq!(settled(DamperPolicy::ShAdd, w, v, -5.0 * v, 0.0), w * v > 0.0);
-                assert_eq!(settled(DamperPolicy::ShAdd, w, 0.1 * v, -5.0 * v, 0.0), w * v < 0.0);
-            }
-        }
-    }
-
-    #[test]
-    fn a_quiet_body_rests_the_valves_and_a_near_stop_does_not() {
-        assert!(!settled(DamperPolicy::Karnopp, 0.3, 0.05, 0.0, 0.0));
-        assert!(settled(DamperPolicy::Karnopp, -0.3, 0.0, 0.0, 0.07));
-        assert!(!settled(DamperPolicy::Karnopp, 0.3, 0.0, 0.0, 0.07));
-    }
-
-    /// Names lead back to policies, and each value outside its range is named.
-    #[test]
-    fn policies_have_names_and_values_have_ranges() {
-        for name in <DamperPolicy as strum::VariantNames>::VARIANTS {
-            assert_eq!(name.parse().map(DamperPolicy::name), Ok(*name));
-        }
-        assert_eq!(Tuning::default().check(), Ok(()));
-        let velocity = Tuning {
-            body_velocity_share_s: -0.1,
-            ..Tuning::default()
-        };
-        let name = velocity.check().map_err(|error| error.name);
-        assert_eq!(name, Err("tuning.strategy.ride_handling.dampers.body_velocity_share_s"));
-        let acceleration = Tuning {
-            body_acceleration_share: 101.0,
-            ..Tuning::default()
-        };
-        let name = acceleration.check().map_err(|error| error.name);
-        assert_eq!(
-            name,
-            Err("tuning.strategy.ride_handling.dampers.body_acceleration_share")
-        );
-    }
-
-    #[test]
-    fn near_resonance_the_velocity_decides_and_above_it_the_acceleration() {
-        // 11.9 rad/s: 15 m/s2 of 2 m/s is nearer to the resonance, 30 m/s2 is above it.
-        assert!(settled(DamperPolicy::ShAdd, 0.3, 2.0, -15.0, 0.0));
-        assert!(!settled(DamperPolicy::ShAdd, 0.3, 2.0, -30.0, 0.0));
-    }
-
-    #[test]
-    fn near_each_stop_the_damping_is_high_while_the_strut_moves_on_towards_it() {
-        for (x_m, extension_m_s, high) in [
-            (0.07, -0.3, true),
-            (0.07, 0.3, false),
-            (0.05, -0.3, false),
-            (-0.12, 0.3, true),
-            (-0.12, -0.3, false),
-            (-0.10, 0.3, false),
-        ] {
-            assert_eq!(
-                settled(DamperPolicy::Karnopp, extension_m_s, 0.0, 0.0, x_m),
-                high,
-                "{x_m} m, {extension_m_s} m/s"
-            );
-        }
-    }
-
-    /// Within 0.02 m/s nothing changes, and beyond it on the other side the damping is low again.
-    #[test]
-    fn the_relative_speed_has_a_dead_band() {
-        let parameters = parameters(DamperPolicy::Karnopp);
-        let mut state = State::INITIAL;
-        let mut low = |extension_m_s: f32| {
-            let mut last = Corners::splat(false);
-            for _ in 0..100 {
-                for corner in state.corners.values_mut() {
-                    corner.velocity_m_s = 0.4;
-                }
-                let estimate = Estimate {
-                    strut_speed_m_s: Corners::splat(-extension_m_s),
-                    ..Estimate::default()
-                };
-                last = state.step(&parameters, &estimate, &Corners::default());
-            }
-            last
-        };
-        for (extension_m_s, is_low) in [
-            (0.01, true),
-            (0.03, false),
-            (0.01, false),
-            (-0.01, false),
-            (-0.03, true),
-            (-0.01, true),
-        ] {
-            assert_eq!(low(extension_m_s), Corners::splat(is_low), "{extension_m_s} m/s");
-        }
-    }
-}
+mod tests;

@@ -4,7 +4,8 @@
 //! ```text
 //!  parameters --> equilibrium --+
 //!  road --> contact --> tyre ---+--> equations (accelerations) --> ride (fixed step) --> body, wheels, struts
-//!  signals --> suspension ------+
+//!  signals --> suspension ------+                                                            |
+//!                                                                                            +--> inertial
 //! ```
 //!
 //! Inside, the sign convention is the appendix's (extension and tension positive); everything that leaves this module
@@ -15,6 +16,7 @@
 mod contact;
 pub mod equations;
 mod gas_temperature;
+mod inertial;
 mod levelling;
 pub mod linear;
 mod load;
@@ -24,6 +26,8 @@ mod seat;
 pub mod suspension;
 
 pub use gas_temperature::TemperedStrut;
+pub use inertial::InertialReading;
+pub(crate) use inertial::RigidMotion;
 pub use levelling::{LevelledStrut, Levelling, LevellingLimits};
 pub use load::Load;
 pub(crate) use load::{Cargo, put};

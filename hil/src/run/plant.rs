@@ -5,8 +5,8 @@ use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::Drive;
 use oleo_plant_sim::road;
 use oleo_plant_sim::strut::StrutModel;
-use oleo_plant_sim::vehicle::RideVehicle;
 use oleo_plant_sim::vehicle::suspension::StrutElement;
+use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
 
 use super::error::RunError;
 use super::parameters::Parameters;
@@ -41,6 +41,10 @@ fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunErr
     }
     let charged = parameters.charged(loaded.static_strut_load_n());
     let struts = Parameters::at_rest(&charged)?;
+    let unit_m = scenario
+        .imu
+        .as_ref()
+        .map(|imu| from_centre_of(&loaded, &parameters.vehicle, imu.place_m()));
     let outline_m = parameters.handling.outline.corners_m(&loaded);
     let surface = |length_m: f64| road::from_name_or_path(&scenario.road, length_m, scenario.seed);
     let Some(settings) = &scenario.course else {
@@ -52,7 +56,8 @@ fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunErr
             struts: charged,
             outline_m,
         };
-        return Ok(Vehicle::on_road(model, assembly).over_measured(measured_m));
+        let vehicle = Vehicle::on_road(model, assembly).with_inertial_unit_at(unit_m);
+        return Ok(vehicle.over_measured(measured_m));
     };
     let manoeuvre = settings
         .manoeuvre(scenario.speed_m_s, Some(scenario.duration_s()))
@@ -64,5 +69,13 @@ fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunErr
         struts: charged,
         outline_m,
     };
-    Ok(Vehicle::on_course(drive, assembly).over_measured(course.road.measured_length_m()))
+    let vehicle = Vehicle::on_course(drive, assembly).with_inertial_unit_at(unit_m);
+    Ok(vehicle.over_measured(course.road.measured_length_m()))
+}
+
+/// A place of the body that is counted from its centre of mass in running order, counted from where that is with the load, m.
+fn from_centre_of(loaded: &VehicleParameters, empty: &VehicleParameters, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    let back_m = loaded.body_cg_behind_front_axle_m() - empty.body_cg_behind_front_axle_m();
+    let up_m = loaded.body_cg_height_m() - empty.body_cg_height_m();
+    [x + back_m, y, z - up_m]
 }

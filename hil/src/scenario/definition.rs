@@ -9,6 +9,7 @@ use strum::{EnumString, IntoStaticStr, VariantNames};
 use super::check::Check;
 use super::fault::Fault;
 use crate::bus::BusAddress;
+use crate::imu::ImuSettings;
 
 /// How time passes in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, EnumString, IntoStaticStr, VariantNames)]
@@ -70,6 +71,8 @@ pub struct Scenario {
     pub handling: String,
     /// What the vehicle carries. The controller does not know it.
     pub load: Load,
+    /// The inertial unit that sends on the same bus; `None` without one.
+    pub imu: Option<ImuSettings>,
     /// Time at the start that does not count for ride measures, s.
     pub score_from_s: f64,
     /// Of the road and of all fault randomness.

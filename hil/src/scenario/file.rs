@@ -4,7 +4,7 @@ use std::path::Path;
 
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::{CourseSettings, DriverStyle, ManoeuvreKind};
-use oleo_plant_sim::model_file::limits::each_checked;
+use oleo_plant_sim::model_file::limits::{checked, each_checked};
 use oleo_plant_sim::model_file::names::{one_of, suggestion};
 use oleo_plant_sim::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, read};
 use oleo_plant_sim::vehicle::Load;
@@ -15,6 +15,7 @@ use super::check_entry::CheckEntry;
 use super::definition::Scenario;
 use super::fault_entry::FaultEntry;
 use crate::bus::BusAddress;
+use crate::imu::ImuSettings;
 
 pub use super::fault_entry::LONGEST_S;
 
@@ -53,6 +54,7 @@ struct ScenarioFile {
     clock: Option<String>,
     on_controller_loss: Option<String>,
     partner_timeout_s: Option<f64>,
+    imu: Option<ImuSettings>,
     #[serde(default)]
     fault: Vec<FaultEntry>,
     #[serde(default)]
@@ -76,6 +78,9 @@ impl Checked for ScenarioFile {
     ];
 
     fn check_together(&self) -> Result<(), InvalidValue> {
+        if let Some(imu) = &self.imu {
+            checked(imu, "imu")?;
+        }
         each_checked(&self.fault, "fault")?;
         each_checked(&self.check, "check")
     }
@@ -116,6 +121,7 @@ impl ScenarioFile {
             vehicle: located(self.vehicle.as_deref().unwrap_or(DEFENDER), folder, &[DEFENDER]),
             handling: located(self.handling.as_deref().unwrap_or(DEFENDER), folder, &[DEFENDER]),
             load: word::<Load>("load", self.load.as_deref())?.unwrap_or_default(),
+            imu: self.imu,
             score_from_s: self.score_from_s.unwrap_or(0.0),
             seed: self.seed.unwrap_or(1),
             bus: match self.bus {
@@ -318,6 +324,8 @@ mod tests {
                 "load = \"heavy\"\n",
                 "x.toml:5: load is \"heavy\": the choices are as-sold",
             ),
+            ("[imu]\nx_m = 9\n", "x.toml:6: [imu] x_m is 9: must be from -5 to 5 m"),
+            ("[imu]\nplace = 9\n", "x.toml:6: [imu] place is not a known key: "),
             ("entry_m = 50\n", "x.toml:5: entry_m needs a manoeuvre"),
             ("driver = \"hard\"\n", "x.toml:5: driver needs a manoeuvre"),
             (

@@ -39,8 +39,8 @@ struct OnBus {
 
 impl Rows {
     /// Rows from the first tick on.
-    pub fn new(on_course: bool) -> Self {
-        let (names, quantities): (Vec<String>, Vec<OfTick>) = quantities(on_course).into_iter().unzip();
+    pub fn new(on_course: bool, with_unit: bool) -> Self {
+        let (names, quantities): (Vec<String>, Vec<OfTick>) = quantities(on_course, with_unit).into_iter().unzip();
         let mut columns: Vec<Column> = names.into_iter().map(Column::number).collect();
         for corner in Corner::ALL {
             columns
@@ -164,7 +164,7 @@ mod tests {
             ..scenario::named("bus-silence").expect("built in")
         };
         let on_course = scenario.course.is_some();
-        let (mut live, mut found) = (Rows::new(on_course), Vec::new());
+        let (mut live, mut found) = (Rows::new(on_course, false), Vec::new());
         let outcome = both(&scenario, vehicle(&scenario).expect("a vehicle"), 1, &mut |run| {
             while let Some((tick, row)) = live.next(run.recording, run.trace, 1) {
                 found.push((tick, row.to_vec()));
@@ -173,7 +173,7 @@ mod tests {
         })
         .expect("a run");
         assert_eq!(found.len(), 129, "one less than the watch has seen");
-        let mut after = Rows::new(on_course);
+        let mut after = Rows::new(on_course, false);
         let mut all = Vec::new();
         while let Some((tick, row)) = after.next(&outcome.plant.recording, &outcome.plant.trace, 0) {
             all.push((tick, row.to_vec()));

@@ -1,7 +1,7 @@
 //! Builds the road, the struts and the vehicle of a scenario before the clock starts.
 
-use oleo_interface::Corners;
 use oleo_interface::tick::TICK_S;
+use oleo_interface::{Axle, Corners};
 use oleo_plant_sim::course::Drive;
 use oleo_plant_sim::road;
 use oleo_plant_sim::strut::StrutModel;
@@ -30,7 +30,7 @@ pub fn vehicle_on(scenario: &Scenario, struts: Corners<StrutModel>) -> Result<Ve
 }
 
 fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunError> {
-    let loaded = scenario.load.at_ride_height(&parameters.vehicle);
+    let loaded = carried(scenario, &parameters.vehicle);
     let step_s = loaded.solver.step_s;
     let steps = TICK_S / step_s;
     if (steps - steps.round()).abs() > 1e-9 * steps || steps < 0.5 {
@@ -71,6 +71,20 @@ fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunErr
     };
     let vehicle = Vehicle::on_course(drive, assembly).with_inertial_unit_at(unit_m);
     Ok(vehicle.over_measured(course.road.measured_length_m()))
+}
+
+/// The vehicle that drives: with its load, and with what nobody is told.
+fn carried(scenario: &Scenario, empty: &VehicleParameters) -> VehicleParameters {
+    let mut vehicle = scenario.load.at_ride_height(empty);
+    if let Some(payload) = &scenario.payload {
+        vehicle = payload.on(&vehicle, empty);
+    }
+    match scenario.broken_anti_roll_link {
+        Some(Axle::Front) => vehicle.front_axle.anti_roll_stiffness_n_m_rad = 0.0,
+        Some(Axle::Rear) => vehicle.rear_axle.anti_roll_stiffness_n_m_rad = 0.0,
+        None => {}
+    }
+    vehicle
 }
 
 /// A place of the body that is counted from its centre of mass in running order, counted from where that is with the load, m.

@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use oleo_interface::Axle;
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::{CourseSettings, DriverStyle, ManoeuvreKind};
 use oleo_plant_sim::model_file::limits::{checked, each_checked};
 use oleo_plant_sim::model_file::names::{one_of, suggestion};
 use oleo_plant_sim::model_file::{Checked, InvalidValue, Limit, ModelFileError, Range, read};
-use oleo_plant_sim::vehicle::Load;
+use oleo_plant_sim::vehicle::{Load, Payload};
 use serde::Deserialize;
 use strum::VariantArray;
 
@@ -54,6 +55,8 @@ struct ScenarioFile {
     clock: Option<String>,
     on_controller_loss: Option<String>,
     partner_timeout_s: Option<f64>,
+    payload: Option<Payload>,
+    broken_anti_roll_link: Option<String>,
     imu: Option<ImuSettings>,
     #[serde(default)]
     fault: Vec<FaultEntry>,
@@ -78,6 +81,9 @@ impl Checked for ScenarioFile {
     ];
 
     fn check_together(&self) -> Result<(), InvalidValue> {
+        if let Some(payload) = &self.payload {
+            checked(payload, "payload")?;
+        }
         if let Some(imu) = &self.imu {
             checked(imu, "imu")?;
         }
@@ -121,6 +127,8 @@ impl ScenarioFile {
             vehicle: located(self.vehicle.as_deref().unwrap_or(DEFENDER), folder, &[DEFENDER]),
             handling: located(self.handling.as_deref().unwrap_or(DEFENDER), folder, &[DEFENDER]),
             load: word::<Load>("load", self.load.as_deref())?.unwrap_or_default(),
+            payload: self.payload,
+            broken_anti_roll_link: axle(self.broken_anti_roll_link.as_deref())?,
             imu: self.imu,
             score_from_s: self.score_from_s.unwrap_or(0.0),
             seed: self.seed.unwrap_or(1),
@@ -173,6 +181,19 @@ impl ScenarioFile {
 
 /// What is wrong with a setting of a course where there is none.
 const NEEDS_MANOEUVRE: &str = "needs a manoeuvre, since without one the ride model drives straight ahead: add manoeuvre = \"straight\" or another";
+
+/// The axle whose link is broken.
+fn axle(name: Option<&str>) -> Result<Option<Axle>, InvalidValue> {
+    let Some(name) = name else { return Ok(None) };
+    match name {
+        "front" => Ok(Some(Axle::Front)),
+        "rear" => Ok(Some(Axle::Rear)),
+        other => Err(InvalidValue::new(
+            "broken_anti_roll_link",
+            format!("is {other:?}: must be front or rear"),
+        )),
+    }
+}
 
 /// A value that a key names out of a list.
 fn word<T>(key: &'static str, name: Option<&str>) -> Result<Option<T>, InvalidValue>
@@ -323,6 +344,14 @@ mod tests {
             (
                 "load = \"heavy\"\n",
                 "x.toml:5: load is \"heavy\": the choices are as-sold",
+            ),
+            (
+                "broken_anti_roll_link = \"left\"\n",
+                "x.toml:5: broken_anti_roll_link is \"left\": must be front or rear",
+            ),
+            (
+                "[payload]\nmass_kg = -5\n",
+                "x.toml:6: [payload] mass_kg is -5: must be from 0 to 2000 kg",
             ),
             ("[imu]\nx_m = 9\n", "x.toml:6: [imu] x_m is 9: must be from -5 to 5 m"),
             ("[imu]\nplace = 9\n", "x.toml:6: [imu] place is not a known key: "),

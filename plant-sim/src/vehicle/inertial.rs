@@ -135,9 +135,9 @@ mod tests {
     /// A point is followed through the world by its position alone, which is differentiated twice, and a rotation matrix once.
     #[test]
     fn large_heave_pitch_and_roll_are_the_second_derivative_of_the_path() {
-        let heave = |t: f64| 0.3 * (2.0 * t).sin();
-        let pitch = |t: f64| 0.4 * (1.7 * t + 0.3).sin();
-        let roll = |t: f64| 0.7 * (2.3 * t - 0.5).sin();
+        let heave = |t: f64| 0.3 * libm::sin(2.0 * t);
+        let pitch = |t: f64| 0.4 * libm::sin(1.7 * t + 0.3);
+        let roll = |t: f64| 0.7 * libm::sin(2.3 * t - 0.5);
         let place = [1.1, -0.6, 0.8];
         let rotation = |t: f64| {
             Rotation3::from_axis_angle(&Vector3::y_axis(), pitch(t))

@@ -21,6 +21,7 @@ mod levelling;
 pub mod linear;
 mod load;
 mod parameters;
+mod payload;
 mod ride;
 mod seat;
 pub mod suspension;
@@ -35,5 +36,6 @@ pub use parameters::{
     AxleParameters, BaselineParameters, BodyParameters, GRAVITY_M_S2, LayoutParameters, SeatParameters,
     SolverParameters, TyreParameters, VehicleParameters,
 };
+pub use payload::Payload;
 pub use ride::{BaselineVehicle, BodyMotion, RideError, RideModel, RideVehicle, WheelMotion};
 pub use seat::{Seat, SeatAcceleration, Seats};

@@ -263,7 +263,7 @@ fn an_inertial_unit_in_a_bend_reads_what_the_circle_says() {
     );
 
     let centre = Vector3::from(model.inertial_at([0.0; 3]).specific_force_m_s2);
-    let expected = GRAVITY_M_S2.hypot(driven * yaw_rate);
+    let expected = libm::hypot(GRAVITY_M_S2, driven * yaw_rate);
     assert!((centre.norm() - expected).abs() < 2e-3, "{} {expected}", centre.norm());
     let (sin, cos) = libm::sincos(motion.roll_rad);
     let rate = model.inertial_at([0.0; 3]).rate_rad_s;

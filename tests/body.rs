@@ -1,0 +1,223 @@
+//! The body in the balance: drives of `oleo hil` with an inertial unit and something concealed, read from their logs, and what is named.
+//!
+//! `cargo test --test body -- --nocapture` prints the table.
+
+use std::path::Path;
+
+use oleo_diagnose::body::{Believed, BodyDrive, BodyEffect, BodyEffectId, BodyFindings, find};
+use oleo_hil::bus::Direction;
+use oleo_hil::drive_log::{self, LoggedSample};
+use oleo_hil::logs::candump::write_line;
+use oleo_hil::run;
+use oleo_hil::scenario::Scenario;
+use oleo_hil::scenario::file::parse;
+use oleo_interface::tick::TICK_S;
+use oleo_interface::{Axle, Corner, Corners};
+use oleo_plant_sim::strut::StrutModel;
+use oleo_plant_sim::vehicle::VehicleParameters;
+
+/// Place of the unit, m.
+const UNIT_M: [f64; 3] = [0.3, -0.2, 0.1];
+
+/// A campaign: what its scenario says besides, friction that a corner has in excess, and what must be named with what sizes.
+struct Campaign {
+    name: &'static str,
+    /// Keys of the scenario.
+    keys: &'static str,
+    /// Keys of the unit.
+    unit: &'static str,
+    friction: Option<(Corner, f64)>,
+    truth: Vec<(BodyEffectId, Vec<(&'static str, f64)>)>,
+}
+
+impl Campaign {
+    fn new(name: &'static str, keys: &'static str, unit: &'static str) -> Self {
+        let (friction, truth) = (None, Vec::new());
+        Self {
+            name,
+            keys,
+            unit,
+            friction,
+            truth,
+        }
+    }
+
+    fn with(mut self, id: BodyEffectId, sizes: &[(&'static str, f64)]) -> Self {
+        self.truth.push((id, sizes.to_vec()));
+        self
+    }
+
+    fn rubbing(mut self, corner: Corner, more_n: f64) -> Self {
+        self.friction = Some((corner, more_n));
+        self.with(BodyEffectId::CornerFriction(corner), &[("more_friction_N", more_n)])
+    }
+
+    fn scenario(&self, seed: u64) -> Scenario {
+        let [x, y, z] = UNIT_M;
+        let text = format!(
+            "name = \"body\"\nroad = \"iso-e\"\nspeed_km_h = 40\nduration_s = 60\nseed = {seed}\n{}\n[imu]\nx_m = {x}\ny_m = {y}\nz_m = {z}\n{}\n",
+            self.keys, self.unit
+        );
+        parse(&text, self.name, Path::new("")).unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    /// What the log of its drive holds.
+    fn drive(&self, seed: u64) -> BodyDrive {
+        let scenario = self.scenario(seed);
+        let believed = StrutModel::defender110(1.0);
+        let struts = Corners::from_fn(|corner| {
+            let mut strut = believed.clone();
+            if let (Some((at, more_n)), Some(seal)) = (self.friction, &mut strut.effects.seal_friction)
+                && at == corner
+            {
+                seal.coulomb_force_n += more_n;
+                seal.breakaway_force_n += more_n;
+            }
+            strut
+        });
+        let vehicle = run::vehicle_on(&scenario, struts).unwrap();
+        let outcome = run::both(&scenario, vehicle, 1, &mut |_| true).unwrap();
+        let mut log = Vec::new();
+        for (k, entry) in outcome.plant.trace.iter().enumerate() {
+            // The order of the bus; where in the tick a frame is does not matter.
+            let within_us = 200
+                + (k as u64 % 10)
+                + if entry.direction == Direction::Received {
+                    2000
+                } else {
+                    0
+                };
+            write_line(&mut log, u64::from(entry.tick) * 5000 + within_us, "can0", &entry.frame).unwrap();
+        }
+        let mut read = drive_log::parse(&log).unwrap();
+        columns(&read.drives.remove(0).samples)
+    }
+}
+
+/// The columns of a log.
+fn columns(samples: &[LoggedSample]) -> BodyDrive {
+    let number = |reading: oleo_controller::Reading| reading.value().map_or(f64::NAN, f64::from);
+    let of = |get: &dyn Fn(&LoggedSample) -> oleo_controller::Reading| -> Vec<f64> {
+        samples.iter().map(|sample| number(get(sample))).collect()
+    };
+    BodyDrive {
+        period_s: TICK_S,
+        displacement_m: Corners::from_fn(|corner| of(&|sample| sample.displacement_m[corner])),
+        p1_pa: Corners::from_fn(|corner| of(&|sample| sample.pressure_pa[corner].p1)),
+        specific_force_m_s2: [0, 1, 2].map(|axis| of(&|sample| sample.inertial.specific_force_m_s2[axis])),
+        rate_rad_s: [0, 1, 2].map(|axis| of(&|sample| sample.inertial.rate_rad_s[axis])),
+    }
+}
+
+fn campaigns() -> Vec<Campaign> {
+    use BodyEffectId::{AntiRollBar, Payload, UnitMounting};
+    let payload = |mass_kg: f64, x_m: f64| [("mass_kg", mass_kg), ("x_m", x_m), ("y_m", 0.0)];
+    let broken = [("lost_share", 1.0)];
+    vec![
+        Campaign::new("nothing", "", ""),
+        Campaign::new(
+            "payload of 120 kg at the back",
+            "[payload]\nmass_kg = 120\nx_m = -1.4\nz_m = 0.3",
+            "",
+        )
+        .with(Payload, &payload(120.0, -1.4)),
+        Campaign::new(
+            "payload of 150 kg on the roof",
+            "[payload]\nmass_kg = 150\nx_m = -0.4\nz_m = 1.3",
+            "",
+        )
+        .with(Payload, &payload(150.0, -0.4)),
+        Campaign::new("broken link", "broken_anti_roll_link = \"rear\"", "").with(AntiRollBar(Axle::Rear), &broken),
+        Campaign::new("friction at a corner", "", "").rubbing(Corner::FrontRight, 180.0),
+        Campaign::new("unit turned", "", "yaw_deg = 7")
+            .with(UnitMounting, &[("yaw_deg", 7.0), ("pitch_deg", 0.0), ("roll_deg", 0.0)]),
+        Campaign::new("unit askew", "", "roll_deg = -5\npitch_deg = 4\nyaw_deg = -3").with(
+            UnitMounting,
+            &[("yaw_deg", -3.0), ("pitch_deg", 4.0), ("roll_deg", -5.0)],
+        ),
+        Campaign::new(
+            "payload and broken link",
+            "broken_anti_roll_link = \"rear\"\n[payload]\nmass_kg = 200\nx_m = 0.9\nz_m = 0.1",
+            "",
+        )
+        .with(Payload, &payload(200.0, 0.9))
+        .with(AntiRollBar(Axle::Rear), &broken),
+        Campaign::new(
+            "all of them",
+            "broken_anti_roll_link = \"rear\"\n[payload]\nmass_kg = 300\nx_m = -1.1\nz_m = 0.2",
+            "yaw_deg = 12",
+        )
+        .with(Payload, &payload(300.0, -1.1))
+        .with(AntiRollBar(Axle::Rear), &broken)
+        .rubbing(Corner::RearLeft, 150.0)
+        .with(
+            UnitMounting,
+            &[("yaw_deg", 12.0), ("pitch_deg", 0.0), ("roll_deg", 0.0)],
+        ),
+    ]
+}
+
+fn found(drive: BodyDrive) -> Result<BodyFindings, String> {
+    let vehicle = VehicleParameters::defender110();
+    let believed = Believed::new(&vehicle, Corners::from_fn(|_| StrutModel::defender110(1.0)), UNIT_M);
+    find(&believed, &[drive])
+}
+
+/// The true sizes within their intervals, and all of them; prints a line for each.
+fn held(effect: &BodyEffect, truth: &[(&'static str, f64)]) -> (usize, usize) {
+    let mut within = 0;
+    for (name, size) in truth {
+        let found = effect.parameters.iter().find(|parameter| parameter.name == *name);
+        let found = found.unwrap_or_else(|| panic!("no {name}"));
+        let holds = (found.low..=found.high).contains(size);
+        within += usize::from(holds);
+        let mark = if holds { "" } else { "  MISSED" };
+        println!(
+            "      {name:<16} true {size:8.3}  found {:8.3}  from {:8.3} to {:8.3}{mark}",
+            found.value, found.low, found.high
+        );
+    }
+    (within, truth.len())
+}
+
+#[test]
+fn what_is_concealed_in_the_body_is_named_and_nothing_else() {
+    let (mut within, mut all) = (0, 0);
+    for campaign in campaigns() {
+        for seed in [1, 2] {
+            let findings = found(campaign.drive(seed)).unwrap();
+            let names: Vec<String> = findings
+                .effects
+                .iter()
+                .map(|e| format!("{} ({})", e.id.name(), e.id.place()))
+                .collect();
+            println!(
+                "{}, seed {seed}, {:.0} s: {}",
+                campaign.name,
+                findings.used_s,
+                names.join(", ")
+            );
+            let ids: Vec<BodyEffectId> = findings.effects.iter().map(|effect| effect.id).collect();
+            let expected: Vec<BodyEffectId> = campaign.truth.iter().map(|(id, _)| *id).collect();
+            assert_eq!(ids, expected, "{}, seed {seed}: {:#?}", campaign.name, findings.effects);
+            for (effect, (_, sizes)) in findings.effects.iter().zip(&campaign.truth) {
+                let (held, of) = held(effect, sizes);
+                within += held;
+                all += of;
+            }
+        }
+    }
+    println!("{within} of {all} intervals hold the truth");
+    assert!(20 * within >= 18 * all, "{within} of {all}");
+}
+
+/// A drive that is too short, on a smooth road, or without a unit is one sentence.
+#[test]
+fn what_cannot_be_balanced_is_said() {
+    let campaign = Campaign::new("nothing", "", "");
+    let drive = campaign.drive(1);
+    let mut silent = drive.clone();
+    silent.rate_rad_s[0].fill(f64::NAN);
+    let said = found(silent).unwrap_err();
+    assert!(said.contains("0 s straight ahead") && !said.contains('\n'), "{said}");
+}

@@ -2,6 +2,9 @@
 //!
 //! `cargo test --test body -- --nocapture` prints the table.
 
+mod support;
+
+use std::fs;
 use std::path::Path;
 
 use oleo_diagnose::body::{Believed, BodyDrive, BodyEffect, BodyEffectId, BodyFindings, find};
@@ -15,6 +18,7 @@ use oleo_interface::tick::TICK_S;
 use oleo_interface::{Axle, Corner, Corners};
 use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::vehicle::VehicleParameters;
+use support::{complaint, is_as_documented, run as oleo};
 
 /// Place of the unit, m.
 const UNIT_M: [f64; 3] = [0.3, -0.2, 0.1];
@@ -220,4 +224,70 @@ fn what_cannot_be_balanced_is_said() {
     silent.rate_rad_s[0].fill(f64::NAN);
     let said = found(silent).unwrap_err();
     assert!(said.contains("0 s straight ahead") && !said.contains('\n'), "{said}");
+}
+
+/// The whole way: `oleo hil` drives with a broken link, `oleo diagnose` reads its log beside a model with a table `[body]`.
+#[test]
+fn a_broken_link_is_named_by_oleo_diagnose() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let [x, y, z] = UNIT_M;
+    fs::write(
+        path("drive.toml"),
+        format!(
+            "name = \"broken\"\nroad = \"iso-e\"\nspeed_km_h = 40\nduration_s = 36\nbroken_anti_roll_link = \"rear\"\n\
+             [imu]\nx_m = {x}\ny_m = {y}\nz_m = {z}\n"
+        ),
+    )
+    .unwrap();
+    let ran = oleo(&["hil", "--scenario", &path("drive.toml"), "--out", &path("run")]);
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    fs::create_dir(path("drives")).unwrap();
+    fs::copy(path("run/candump.log"), path("drives/drive.log")).unwrap();
+    let vehicle = VehicleParameters::defender110();
+    let load_n = vehicle.static_strut_load_n();
+    for (name, corner) in [("front.toml", Corner::FrontLeft), ("rear.toml", Corner::RearLeft)] {
+        let strut = StrutModel::defender110(load_n[corner]);
+        fs::write(path(&format!("drives/{name}")), strut.to_toml()).unwrap();
+    }
+    let model = |body: &str| {
+        let text = format!(
+            "[specimen]\nname = \"car\"\nkind = \"vehicle\"\n[strut]\nfront_left = \"front.toml\"\nfront_right = \"front.toml\"\n\
+             rear_left = \"rear.toml\"\nrear_right = \"rear.toml\"\n{body}"
+        );
+        fs::write(path("drives/model.toml"), text).unwrap();
+    };
+    model("[body]\nvehicle = \"absent.toml\"\nunit_m = [0, 0, 0]\n");
+    assert!(complaint(&oleo(&["diagnose", &path("drives"), "--no-out"])).contains("absent.toml"));
+    model("[body]\nvehicle = \"../car.toml\"\nunit_m = [0, 0, 0]\n");
+    assert!(complaint(&oleo(&["diagnose", &path("drives"), "--no-out"])).contains("without a folder"));
+
+    fs::write(path("drives/car.toml"), vehicle.to_toml()).unwrap();
+    model(&format!("[body]\nvehicle = \"car.toml\"\nunit_m = [{x}, {y}, {z}]\n"));
+    let ran = oleo(&["diagnose", &path("drives"), "--out", &path("found")]);
+    let said = String::from_utf8_lossy(&ran.stdout).into_owned();
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    assert!(
+        said.contains("an anti-roll bar at the rear axle that has lost stiffness"),
+        "{said}"
+    );
+    is_as_documented(Path::new(&path("found")), "diagnose");
+    let report = fs::read_to_string(path("found/report.json")).unwrap();
+    let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+    let effects = report["body"]["effects"].as_array().unwrap();
+    assert_eq!(effects.len(), 1, "{effects:?}");
+    assert_eq!(
+        (&effects[0]["id"], &effects[0]["place"]),
+        (&"anti_roll_bar".into(), &"rear axle".into())
+    );
+    let lost = &effects[0]["parameters"]["lost_share"]["ci95"];
+    assert!(
+        lost[0].as_f64().unwrap() < 1.0 && lost[1].as_f64().unwrap() > 1.0,
+        "{lost}"
+    );
+    let page = fs::read_to_string(path("found/report.html")).unwrap();
+    assert!(page.contains("The body in the balance"));
+    // The improved model names what is believed of the body, as the given one did.
+    assert_eq!(fs::read_to_string(path("found/car.toml")).unwrap(), vehicle.to_toml());
+    assert!(fs::read_to_string(path("found/model.toml")).unwrap().contains("[body]"));
 }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use oleo_diagnose::vehicle::{Drive, StrutSamples};
+use oleo_diagnose::vehicle::{Drive, InertialSamples, StrutSamples};
 use oleo_hil::logs::Account;
 use oleo_interface::{Corners, StrutValves};
 
@@ -90,6 +90,7 @@ impl Collected {
                     pressure_pa: std::array::from_fn(|_| Vec::new()),
                     valves: Vec::new(),
                 }),
+                inertial: InertialSamples::default(),
             }),
             (Part::Sample(sample), Some(drive)) => {
                 for (strut, sample) in drive.struts.values_mut().zip(sample.struts.values()) {
@@ -98,6 +99,12 @@ impl Collected {
                         series.push(value);
                     }
                     strut.valves.push(sample.valves);
+                }
+                let of_unit = (drive.inertial.specific_force_m_s2.iter_mut()).zip(sample.inertial.specific_force_m_s2);
+                for (series, value) in
+                    of_unit.chain(drive.inertial.rate_rad_s.iter_mut().zip(sample.inertial.rate_rad_s))
+                {
+                    series.push(value);
                 }
             }
             (Part::Sample(_), None) => {}

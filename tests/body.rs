@@ -30,17 +30,20 @@ struct Campaign {
     keys: &'static str,
     /// Keys of the unit.
     unit: &'static str,
+    /// Whether the handling model drives, whose equations are not those of the balance.
+    is_steered: bool,
     friction: Option<(Corner, f64)>,
     truth: Vec<(BodyEffectId, Vec<(&'static str, f64)>)>,
 }
 
 impl Campaign {
     fn new(name: &'static str, keys: &'static str, unit: &'static str) -> Self {
-        let (friction, truth) = (None, Vec::new());
+        let (friction, truth, is_steered) = (None, Vec::new(), false);
         Self {
             name,
             keys,
             unit,
+            is_steered,
             friction,
             truth,
         }
@@ -56,10 +59,19 @@ impl Campaign {
         self.with(BodyEffectId::CornerFriction(corner), &[("more_friction_N", more_n)])
     }
 
+    fn steered(mut self) -> Self {
+        self.is_steered = true;
+        self
+    }
+
     fn scenario(&self, seed: u64) -> Scenario {
+        let course = match self.is_steered {
+            true => "road = \"iso-d\"\nmanoeuvre = \"straight\"",
+            false => "road = \"iso-e\"",
+        };
         let [x, y, z] = UNIT_M;
         let text = format!(
-            "name = \"body\"\nroad = \"iso-e\"\nspeed_km_h = 40\nduration_s = 60\nseed = {seed}\n{}\n[imu]\nx_m = {x}\ny_m = {y}\nz_m = {z}\n{}\n",
+            "name = \"body\"\n{course}\nspeed_km_h = 40\nduration_s = 60\nseed = {seed}\n{}\n[imu]\nx_m = {x}\ny_m = {y}\nz_m = {z}\n{}\n",
             self.keys, self.unit
         );
         parse(&text, self.name, Path::new("")).unwrap_or_else(|error| panic!("{error}"))
@@ -146,6 +158,24 @@ fn campaigns() -> Vec<Campaign> {
         )
         .with(Payload, &payload(200.0, 0.9))
         .with(AntiRollBar(Axle::Rear), &broken),
+        Campaign::new("nothing, handling model", "", "").steered(),
+        Campaign::new(
+            "payload, handling model",
+            "[payload]\nmass_kg = 150\nx_m = -0.4\nz_m = 1.3",
+            "",
+        )
+        .steered()
+        .with(Payload, &payload(150.0, -0.4)),
+        Campaign::new("broken link, handling model", "broken_anti_roll_link = \"rear\"", "")
+            .steered()
+            .with(AntiRollBar(Axle::Rear), &broken),
+        Campaign::new("friction and unit turned, handling model", "", "yaw_deg = -6")
+            .steered()
+            .rubbing(Corner::FrontLeft, 160.0)
+            .with(
+                UnitMounting,
+                &[("yaw_deg", -6.0), ("pitch_deg", 0.0), ("roll_deg", 0.0)],
+            ),
         Campaign::new(
             "all of them",
             "broken_anti_roll_link = \"rear\"\n[payload]\nmass_kg = 300\nx_m = -1.1\nz_m = 0.2",

@@ -10,6 +10,11 @@
 //!   sum s_i F_i - sum k q - J_x a_x     = p y f_z + D_x a_x - sum b k q - d J_x a_y                - sum s_i c_i u_i
 //! ```
 //!
+//! Three more unknowns stand for what the links of the axles do, of which nothing is believed. The lateral forces of front and rear axle, `m f_y` in
+//! all and `J_z a_z` about the vertical, act at roll centres at unknown depths below the centre of mass, and add `h_1 Y_1 + h_2 Y_2` to the right side of
+//! the roll, with the sign of the left one turned. Of the longitudinal force `m f_x` the links bring unknown shares into pitch and heave. The ride model
+//! has none of it; the handling model does, and without these unknowns its roll is mistaken for a lost bar.
+//!
 //! Unknown are the mass with its moments `p, p x, p y`, what it adds to the inertias `D_x, D_y`, the share `b` of a bar that is lost, the angle `d`
 //! that the unit is turned about the vertical, and the friction `c_i` at a corner beyond the believed one (`u_i` is the course of 1 N of it). All are
 //! linear. The height of the mass is in `D_x` and `D_y` alone: straight ahead no force acts along x or y that would tip it.
@@ -29,8 +34,12 @@ pub const PITCH_INERTIA: usize = 4;
 pub const BAR_LOST: [usize; 2] = [5, 6];
 pub const YAW: usize = 7;
 pub const FRICTION: usize = 8;
+/// Depths of the roll centres of both axles below the centre of mass, m.
+pub const ROLL_CENTRE: [usize; 2] = [12, 13];
+/// Arm of the longitudinal force in pitch, m, and its share in heave.
+pub const LINKS: [usize; 2] = [14, 15];
 /// Number of unknowns.
-pub const UNKNOWNS: usize = 12;
+pub const UNKNOWNS: usize = 16;
 
 /// Heave, pitch, roll at one instant: what the believed vehicle leaves unbalanced, and what each unknown would do.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,21 +64,22 @@ pub fn rows(believed: &Believed, stretch: &BodyDrive, band: &Band) -> Vec<Row> {
     let friction = stretch.displacement_m.each_ref().map(|x| pass(&unit_friction(x)));
     let compression = stretch.displacement_m.each_ref().map(|x| pass(x));
     let speed = stretch.displacement_m.each_ref().map(|x| derivative(x));
-    let [_, _, up] = &stretch.specific_force_m_s2;
-    let up = pass(up);
+    let [along, across, up] = stretch.specific_force_m_s2.each_ref().map(|series| pass(series));
     let [roll_rate, pitch_rate, yaw_rate] = &stretch.rate_rad_s;
-    let [roll, pitch] = [roll_rate, pitch_rate].map(|series| derivative(series));
+    let [roll, pitch, yaw] = [roll_rate, pitch_rate, yaw_rate].map(|series| derivative(series));
     let turning: Vec<f64> = (roll_rate.iter().zip(pitch_rate)).map(|(p, q)| p * p + q * q).collect();
     let (turning, yaw_rate) = (pass(&turning), pass(yaw_rate));
 
     let equations = &believed.equations;
-    let (mass, [j_x, j_y, _]) = (equations.body_mass_kg, equations.body_inertia_kg_m2);
+    let (mass, [j_x, j_y, j_z]) = (equations.body_mass_kg, equations.body_inertia_kg_m2);
     let (ahead, left, unit) = (believed.ahead_m(), believed.left_m(), believed.unit_m);
     (0..up.len())
         .map(|k| {
-            let (a_x, a_y) = (roll[k], pitch[k]);
+            let (a_x, a_y, a_z) = (roll[k], pitch[k], yaw[k]);
             // From the unit's place to the centre of mass.
             let f_z = up[k] - unit[1] * a_x + unit[0] * a_y + unit[2] * turning[k];
+            let f_y = across[k] - unit[0] * a_z + unit[2] * a_x;
+            let f_x = along[k] - unit[2] * a_y + unit[1] * a_z;
             let bar = |axle: Axle| {
                 let [l, r] = compression.of_axle(axle).map(|series| series[k]);
                 let twist = (r - l) / (2.0 * equations.half_strut_spacing_m[axle]);
@@ -90,6 +100,11 @@ pub fn rows(believed: &Believed, stretch: &BodyDrive, band: &Band) -> Vec<Row> {
             for (at, moment) in BAR_LOST.into_iter().zip(bars) {
                 rolling[at] = -moment;
             }
+            let [front_m, rear_m] = equations.axle_ahead_m.into_array();
+            let wheelbase_m = front_m - rear_m;
+            rolling[ROLL_CENTRE[0]] = -(j_z * a_z - rear_m * mass * f_y) / wheelbase_m;
+            rolling[ROLL_CENTRE[1]] = -(front_m * mass * f_y - j_z * a_z) / wheelbase_m;
+            (pitching[LINKS[0]], heave[LINKS[1]]) = (mass * f_x, mass * f_x);
             for corner in Corner::ALL {
                 let (at, course) = (FRICTION + corner.index(), friction[corner][k]);
                 (heave[at], pitching[at], rolling[at]) = (-course, ahead[corner] * course, -left[corner] * course);

@@ -79,8 +79,9 @@ fn bridge(series: &mut [f64], most: usize) {
             && k - before - 1 <= most
         {
             let (from, to) = (series[before], series[k]);
-            for at in before + 1..k {
-                series[at] = from + (to - from) * (at - before) as f64 / (k - before) as f64;
+            let step = (to - from) / (k - before) as f64;
+            for (n, value) in (1..).zip(&mut series[before + 1..k]) {
+                *value = from + step * f64::from(n);
             }
         }
         last = Some(k);

@@ -27,8 +27,11 @@ const LEAN: f64 = 2.9 * DEGREE;
 const FRICTION_ERROR: f64 = 0.05;
 /// Error of a force that no believed friction explains, N: half a step of p1 on the bus, 5 kPa on 20 cm2.
 const FORCE_ERROR_N: f64 = 5.0;
+/// Part of the body's weight that the links of an axle may carry at constant speed, of which nothing is believed: rolling resistance of 1 % of the weight and the drive
+/// force against it, on links that bring up to a third of it into heave.
+const LINK_ERROR: f64 = 0.002;
 /// Error of a share of a bar, from the arms of its believed place.
-const BAR_ERROR: f64 = 0.01;
+const BAR_ERROR: f64 = 0.02;
 /// Error of the angle about the vertical, rad.
 const YAW_ERROR: f64 = 0.1 * DEGREE;
 const DEGREE: f64 = core::f64::consts::PI / 180.0;
@@ -238,12 +241,21 @@ fn payload(believed: &Believed, fitted: &Fit) -> Option<BodyEffect> {
         .ahead_m()
         .zip(believed.left_m())
         .zip(believed.friction_level_n());
-    // Forces of the struts that are off, each on its own, as a mass with its moments.
+    // Forces of struts and links that are off, each on its own, as a mass with its moments.
     let mut covariance =
         [MASS, MASS_AHEAD, MASS_LEFT].map(|i| [MASS, MASS_AHEAD, MASS_LEFT].map(|j| fitted.covariance[i][j]));
-    for ((ahead_m, left_m), level_n) in of_struts.values() {
-        let error_kg = libm::hypot(FRICTION_ERROR * level_n, FORCE_ERROR_N) / GRAVITY_M_S2;
-        let arms = [1.0, *ahead_m, *left_m].map(|arm| arm * error_kg);
+    let struts = (of_struts.values()).map(|((ahead_m, left_m), level_n)| {
+        let error_n = libm::hypot(FRICTION_ERROR * level_n, FORCE_ERROR_N);
+        (error_n / GRAVITY_M_S2, *ahead_m, *left_m)
+    });
+    let link_kg = LINK_ERROR * believed.equations.body_mass_kg;
+    let links = believed
+        .equations
+        .axle_ahead_m
+        .into_array()
+        .map(|ahead_m| (link_kg, ahead_m, 0.0));
+    for (error_kg, ahead_m, left_m) in struts.chain(links) {
+        let arms = [1.0, ahead_m, left_m].map(|arm| arm * error_kg);
         for (line, a) in covariance.iter_mut().zip(arms) {
             for (entry, b) in line.iter_mut().zip(arms) {
                 *entry += a * b;
@@ -291,7 +303,7 @@ fn height(believed: &Believed, fitted: &Fit) -> Option<BodyEstimate> {
 }
 
 /// Error of the believed inertia in roll, as a part of it.
-const INERTIA_ERROR: f64 = 0.02;
+const INERTIA_ERROR: f64 = 0.03;
 
 /// How the unit is turned, where it is askew.
 fn mounting(fitted: &Fit, attitude: Attitude) -> Option<BodyEffect> {

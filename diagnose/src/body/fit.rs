@@ -48,8 +48,8 @@ pub fn fit(blocks: &[&[Row]], active: &[usize]) -> Option<Fit> {
     for _ in 0..PASSES {
         let (mut normal, mut right) = (DMatrix::zeros(n, n), DVector::zeros(n));
         for row in all() {
-            for e in 0..3 {
-                let (slope, weight) = (slope(row, e), 1.0 / (rms[e] * rms[e]));
+            for (e, rms) in rms.iter().enumerate() {
+                let (slope, weight) = (slope(row, e), 1.0 / (rms * rms));
                 normal.ger(weight, &slope, &slope, 1.0);
                 right.axpy(weight * row.unbalanced[e], &slope, 1.0);
             }
@@ -65,10 +65,10 @@ pub fn fit(blocks: &[&[Row]], active: &[usize]) -> Option<Fit> {
     for block in blocks {
         let mut gradient = DVector::zeros(n);
         for row in *block {
-            for e in 0..3 {
+            for (e, rms) in rms.iter().enumerate() {
                 let slope = slope(row, e);
                 let left = row.unbalanced[e] - slope.dot(&solution);
-                gradient.axpy(left / (rms[e] * rms[e]), &slope, 1.0);
+                gradient.axpy(left / (rms * rms), &slope, 1.0);
             }
         }
         spread.ger(1.0, &gradient, &gradient, 1.0);

@@ -30,20 +30,20 @@ struct Campaign {
     keys: &'static str,
     /// Keys of the unit.
     unit: &'static str,
-    /// Whether the handling model drives, whose equations are not those of the balance.
-    is_steered: bool,
+    /// Road and manoeuvre. With a manoeuvre the handling model drives, whose equations are not those of the balance.
+    course: &'static str,
     friction: Option<(Corner, f64)>,
     truth: Vec<(BodyEffectId, Vec<(&'static str, f64)>)>,
 }
 
 impl Campaign {
     fn new(name: &'static str, keys: &'static str, unit: &'static str) -> Self {
-        let (friction, truth, is_steered) = (None, Vec::new(), false);
+        let (friction, truth, course) = (None, Vec::new(), "road = \"iso-e\"");
         Self {
             name,
             keys,
             unit,
-            is_steered,
+            course,
             friction,
             truth,
         }
@@ -59,16 +59,17 @@ impl Campaign {
         self.with(BodyEffectId::CornerFriction(corner), &[("more_friction_N", more_n)])
     }
 
-    fn steered(mut self) -> Self {
-        self.is_steered = true;
+    fn steered(self) -> Self {
+        self.over("road = \"iso-d\"\nmanoeuvre = \"straight\"")
+    }
+
+    fn over(mut self, course: &'static str) -> Self {
+        self.course = course;
         self
     }
 
     fn scenario(&self, seed: u64) -> Scenario {
-        let course = match self.is_steered {
-            true => "road = \"iso-d\"\nmanoeuvre = \"straight\"",
-            false => "road = \"iso-e\"",
-        };
+        let course = self.course;
         let [x, y, z] = UNIT_M;
         let text = format!(
             "name = \"body\"\n{course}\nspeed_km_h = 40\nduration_s = 60\nseed = {seed}\n{}\n[imu]\nx_m = {x}\ny_m = {y}\nz_m = {z}\n{}\n",
@@ -127,7 +128,14 @@ fn columns(samples: &[LoggedSample]) -> BodyDrive {
 
 fn campaigns() -> Vec<Campaign> {
     use BodyEffectId::{AntiRollBar, Payload, UnitMounting};
-    let payload = |mass_kg: f64, x_m: f64| [("mass_kg", mass_kg), ("x_m", x_m), ("y_m", 0.0)];
+    let payload = |mass_kg: f64, x_m: f64, z_m: f64| {
+        [
+            ("mass_kg", mass_kg),
+            ("x_m", x_m),
+            ("y_m", 0.0),
+            ("height_at_most_m", z_m),
+        ]
+    };
     let broken = [("lost_share", 1.0)];
     vec![
         Campaign::new("nothing", "", ""),
@@ -136,13 +144,13 @@ fn campaigns() -> Vec<Campaign> {
             "[payload]\nmass_kg = 120\nx_m = -1.4\nz_m = 0.3",
             "",
         )
-        .with(Payload, &payload(120.0, -1.4)),
+        .with(Payload, &payload(120.0, -1.4, 0.3)),
         Campaign::new(
             "payload of 150 kg on the roof",
             "[payload]\nmass_kg = 150\nx_m = -0.4\nz_m = 1.3",
             "",
         )
-        .with(Payload, &payload(150.0, -0.4)),
+        .with(Payload, &payload(150.0, -0.4, 1.3)),
         Campaign::new("broken link", "broken_anti_roll_link = \"rear\"", "").with(AntiRollBar(Axle::Rear), &broken),
         Campaign::new("friction at a corner", "", "").rubbing(Corner::FrontRight, 180.0),
         Campaign::new("unit turned", "", "yaw_deg = 7")
@@ -156,16 +164,19 @@ fn campaigns() -> Vec<Campaign> {
             "broken_anti_roll_link = \"rear\"\n[payload]\nmass_kg = 200\nx_m = 0.9\nz_m = 0.1",
             "",
         )
-        .with(Payload, &payload(200.0, 0.9))
+        .with(Payload, &payload(200.0, 0.9, 0.1))
         .with(AntiRollBar(Axle::Rear), &broken),
+        Campaign::new("nothing, class C", "", "").over("road = \"iso-c\""),
         Campaign::new("nothing, handling model", "", "").steered(),
+        Campaign::new("nothing, lane change", "", "")
+            .over("road = \"iso-d\"\nmanoeuvre = \"lane-change\"\nentry_m = 250"),
         Campaign::new(
             "payload, handling model",
             "[payload]\nmass_kg = 150\nx_m = -0.4\nz_m = 1.3",
             "",
         )
         .steered()
-        .with(Payload, &payload(150.0, -0.4)),
+        .with(Payload, &payload(150.0, -0.4, 1.3)),
         Campaign::new("broken link, handling model", "broken_anti_roll_link = \"rear\"", "")
             .steered()
             .with(AntiRollBar(Axle::Rear), &broken),
@@ -181,7 +192,7 @@ fn campaigns() -> Vec<Campaign> {
             "broken_anti_roll_link = \"rear\"\n[payload]\nmass_kg = 300\nx_m = -1.1\nz_m = 0.2",
             "yaw_deg = 12",
         )
-        .with(Payload, &payload(300.0, -1.1))
+        .with(Payload, &payload(300.0, -1.1, 0.2))
         .with(AntiRollBar(Axle::Rear), &broken)
         .rubbing(Corner::RearLeft, 150.0)
         .with(

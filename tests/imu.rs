@@ -37,6 +37,11 @@ fn columns(file: &Path) -> BTreeMap<String, Vec<f64>> {
     heads.into_iter().map(str::to_owned).zip(columns).collect()
 }
 
+/// What a column holds in a tick.
+fn value(columns: &BTreeMap<String, Vec<f64>>, name: &str, tick: usize) -> f64 {
+    columns[name][tick]
+}
+
 /// A signal as a database says it: first bit, length, step.
 struct Signal {
     name: String,
@@ -146,7 +151,7 @@ fn the_log_says_what_the_body_did_on_a_rough_road() {
     // The columns of the unit are the motion of the body at its place, to terms of second order.
     let (mut moved, mut missed) = ([0.0; 2], [0.0; 2]);
     for tick in 0..1200 {
-        let at = |name: &str| did[name][tick];
+        let at = |name: &str| value(&did, name, tick);
         let (pitch, roll) = (at("pitch_acceleration_rad_s2"), at("roll_acceleration_rad_s2"));
         let upward = 9.806_65 + at("heave_acceleration_m_s2");
         let up = upward - x * pitch + y * roll;
@@ -205,7 +210,7 @@ fn the_log_says_what_the_body_did_in_a_lane_change() {
     let above = -share * (1.05 - vehicle.body_cg_height_m());
     let mut largest: f64 = 0.0;
     for tick in 1..did["time_s"].len() - 1 {
-        let at = |name: &str| did[name][tick];
+        let at = |name: &str| value(&did, name, tick);
         let yaw_acceleration = (did["yaw_rate_rad_s"][tick + 1] - did["yaw_rate_rad_s"][tick - 1]) / 0.01;
         let upward = 9.806_65 + at("heave_acceleration_m_s2");
         let across = at("lateral_acceleration_m_s2") + upward * at("roll_rad") + ahead * yaw_acceleration

@@ -17,8 +17,12 @@ except ImportError as error:
     print(f"can_database.py: {error}: pip install cantools autosar-e2e", file=sys.stderr)
     sys.exit(2)
 
-DATABASE = pathlib.Path(__file__).resolve().parent.parent / "controller" / "oleo.dbc"
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+DATABASE = ROOT / "controller" / "oleo.dbc"
 PERIODS_MS = {0x0A0: 5, 0x110: 5, 0x111: 5, 0x112: 5, 0x113: 5, 0x114: 5, 0x115: 5, 0x300: 100, 0x301: 1000}
+# The inertial unit's, which `oleo hil --imu` sends on the same bus.
+UNIT_DATABASE = ROOT / "hil" / "imu.dbc"
+UNIT_PERIODS_MS = {0x120: 5, 0x121: 5}
 
 passed = failed = 0
 
@@ -34,13 +38,17 @@ def check(what, good):
 
 db = cantools.database.load_file(str(DATABASE), strict=True)
 check("identifiers", sorted(m.frame_id for m in db.messages) == sorted(PERIODS_MS))
+unit_db = cantools.database.load_file(str(UNIT_DATABASE), strict=True)
+check("identifiers of the unit", sorted(m.frame_id for m in unit_db.messages) == sorted(UNIT_PERIODS_MS))
+lists = [m.dbc.attributes["E2E_DataIdList"].value.split() for m in db.messages + unit_db.messages]
+check("data ids apart", all(len({ids[counter] for ids in lists}) == len(lists) for counter in range(16)))
 random.seed(1)
 
 bits_a_second = 0.0
-for message in db.messages:
+for message in db.messages + unit_db.messages:
     name = message.name
     check(f"{name}: eight bytes", message.length == 8)
-    check(f"{name}: period", message.cycle_time == PERIODS_MS.get(message.frame_id))
+    check(f"{name}: period", message.cycle_time == (PERIODS_MS | UNIT_PERIODS_MS).get(message.frame_id))
     check(f"{name}: comment", bool(message.comment))
     check(f"{name}: all signals commented", all(s.comment for s in message.signals))
     data_ids = bytes.fromhex(message.dbc.attributes["E2E_DataIdList"].value)
@@ -66,6 +74,12 @@ frame = db.get_message_by_name("PRESSURE_REAR_LEFT").encode(
     {"E2E_Crc": 0, "E2E_Counter": 0, "P1": 0, "P2": 2e6, "P3": 10e6, "P4": "SensorError"})
 bits = int.from_bytes(frame, "little")
 check("pressure bits", bits == 1000 << 12 | 1400 << 25 | 3000 << 38 | 8190 << 51)
+
+# One of the unit by hand: gravity upward, and two readings out of range.
+frame = unit_db.get_message_by_name("IMU_SPECIFIC_FORCE").encode(
+    {"E2E_Crc": 0, "E2E_Counter": 0, "SpecificForceX": -0.002, "SpecificForceY": "SensorError", "SpecificForceZ": 9.806})
+bits = int.from_bytes(frame, "little")
+check("specific force bits", bits == 0xFFFF << 12 | 0x8000 << 28 | 4903 << 44)
 
 # The vector of controller/tests/end_to_end_protection.rs: zeros, counter 1, data ids 1 to 16.
 example = bytearray([0, 1, 0, 0, 0, 0, 0, 0])

@@ -52,6 +52,7 @@
 
 #[cfg(test)]
 mod analytic;
+pub mod body;
 pub mod campaign;
 pub mod confidence;
 pub mod correction;

@@ -11,8 +11,8 @@
 use oleo_controller::can::bus_load::worst_case_bits;
 use oleo_controller::can::{Contract, MESSAGES};
 
-use crate::Frame;
 use crate::bus::{Direction, TraceEntry};
+use crate::{Frame, imu};
 
 /// Bits after the stuffed part: CRC delimiter, ACK slot, ACK delimiter, 7 EOF, 3 interframe space.
 const UNSTUFFED_BITS: u32 = 13;
@@ -116,16 +116,18 @@ impl WireModel {
     pub fn of(trace: &[TraceEntry], bits: &[u32], bit_rate: u32, tick_us: u32, ticks: u32) -> Self {
         let bit_us = 1e6 / f64::from(bit_rate);
         let mut end_us = vec![0; trace.len()];
-        let mut timing = MESSAGES.map(|contract| {
-            let bound_us = response_bound_bits(&contract, bit_rate).map_or(f64::INFINITY, |bits| bits * bit_us);
+        let on_bus = contracts(trace);
+        let of_contract = |contract: &Contract| {
+            let bound_us = response_bound_bits(contract, &on_bus, bit_rate).map_or(f64::INFINITY, |bits| bits * bit_us);
             MessageTiming {
-                contract,
+                contract: *contract,
                 frames: 0,
                 mean_us: 0.0,
                 max_us: 0.0,
                 bound_us,
             }
-        });
+        };
+        let mut timing: Vec<MessageTiming> = on_bus.iter().map(of_contract).collect();
         let (mut free_us, mut busy_us, mut peak_us) = (0.0f64, 0.0, 0.0f64);
         let mut begin = 0;
         for group in trace.chunk_by(|a, b| a.tick == b.tick) {
@@ -165,10 +167,18 @@ impl WireModel {
             bit_rate,
             utilisation: busy_us / (f64::from(ticks.max(1)) * f64::from(tick_us)),
             peak_utilisation: peak_us / f64::from(tick_us),
-            messages: timing.to_vec(),
+            messages: timing,
             end_us,
         }
     }
+}
+
+/// The messages of the suspension, and those of an inertial unit where one sends.
+fn contracts(trace: &[TraceEntry]) -> Vec<Contract> {
+    let of_unit =
+        |entry: &TraceEntry| entry.direction == Direction::Sent && imu::of_unit(entry.frame.standard_id()).is_some();
+    let unit: &[Contract] = if trace.iter().any(of_unit) { &imu::MESSAGES } else { &[] };
+    MESSAGES.iter().chain(unit).copied().collect()
 }
 
 /// Order of arbitration: the dominant bit wins, and a standard frame wins against an extended one with the same first 11 bits.
@@ -182,17 +192,17 @@ fn arbitration_key(frame: &Frame) -> (u32, bool, u32) {
 }
 
 /// Longest response of a message in bit times; `None` if it does not converge within its period.
-fn response_bound_bits(message: &Contract, bit_rate: u32) -> Option<f64> {
+fn response_bound_bits(message: &Contract, on_bus: &[Contract], bit_rate: u32) -> Option<f64> {
     let length = |m: &Contract| f64::from(worst_case_bits(m.length));
     let period = |m: &Contract| f64::from(m.period_ms) * 1e-3 * f64::from(bit_rate);
-    let blocking = MESSAGES
+    let blocking = on_bus
         .iter()
         .filter(|m| m.id > message.id)
         .map(length)
         .fold(length(message), f64::max);
     let mut waiting = blocking;
     loop {
-        let interference: f64 = MESSAGES
+        let interference: f64 = on_bus
             .iter()
             .filter(|m| m.id < message.id)
             .map(|m| ((waiting + 1.0) / period(m)).ceil() * length(m))
@@ -279,12 +289,12 @@ mod tests {
     fn bound_by_hand() {
         // The command has the highest priority: it waits for one frame and then takes its own time.
         assert_eq!(
-            response_bound_bits(&oleo_controller::can::COMMAND, 500_000),
+            response_bound_bits(&oleo_controller::can::COMMAND, &MESSAGES, 500_000),
             Some(270.0)
         );
         // Status: all seven of higher priority once, a frame of its own length as blocking, and itself.
         assert_eq!(
-            response_bound_bits(&oleo_controller::can::STATUS, 500_000),
+            response_bound_bits(&oleo_controller::can::STATUS, &MESSAGES, 500_000),
             Some(135.0 * 9.0)
         );
     }

@@ -16,6 +16,7 @@
 //!   run in real time.
 //! * [`image`] seals a firmware image; [`emulator`] runs one on an emulated board, whose frames are compared with those of the controller in this process.
 //! * [`scenario`] describes what is driven, which faults occur and which checks must be met; [`run`] turns a scenario into a recording.
+//! * [`imu`] is an inertial unit on the body that sends on the same bus, for whoever logs it.
 //! * [`metrics`] and [`output`] turn a recording into figures and files; [`bit_timing`] computes when a wire would have carried each
 //!   frame.
 //! * [`strut_recording`] gives a run as a recording of one strut, for a diagnosis.
@@ -40,6 +41,7 @@ pub mod emulator;
 pub mod frame;
 pub mod handshake;
 pub mod image;
+pub mod imu;
 pub mod instruments;
 pub mod logs;
 pub mod metrics;

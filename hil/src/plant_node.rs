@@ -7,10 +7,12 @@ use std::time::Duration;
 
 use oleo_controller::PlantEnd;
 use oleo_plant_sim::course::{Ending, NotFinite, Track};
+use oleo_plant_sim::vehicle::InertialReading;
 
 use crate::Frame;
 use crate::bus::{Bus, BusError, FaultInjector, Trace, TraceEntry};
 use crate::deadline::Deadline;
+use crate::imu::{self, Unit};
 use crate::instruments::{Instruments, StuckValves};
 use crate::newcomer::Newcomer;
 use crate::record::{Recording, Sample};
@@ -35,6 +37,7 @@ pub struct PlantNode<B> {
     end: PlantEnd,
     vehicle: Vehicle,
     instruments: Instruments,
+    unit: Option<Unit>,
     stuck: StuckValves,
     ticks_without_command: u32,
     recording: Recording,
@@ -57,7 +60,7 @@ pub struct PlantNode<B> {
 const TICK_MASK: u32 = 0xFF_FFFF;
 
 /// Number of frames in a tick, both directions together, for which the trace has memory.
-const FRAMES_PER_TICK: usize = 8;
+const FRAMES_PER_TICK: usize = 8 + imu::MESSAGES.len();
 
 impl<B: Bus> PlantNode<B> {
     /// A plant at the start of the road. With `wall_clock` the traced frames carry the time.
@@ -79,6 +82,7 @@ impl<B: Bus> PlantNode<B> {
             },
             vehicle,
             instruments: Instruments::new(&scenario.faults, scenario.seed),
+            unit: scenario.imu.as_ref().map(|settings| Unit::new(settings, scenario.seed)),
             stuck: StuckValves::new(&scenario.faults),
             ticks_without_command: 0,
             tick: 0,
@@ -124,7 +128,19 @@ impl<B: Bus> PlantNode<B> {
         for frame in self.end.encode(self.tick as u16, &inputs) {
             self.bus.send(&frame.into())?;
         }
+        let read = self.inertial();
+        if let (Some(unit), Some(read)) = (&mut self.unit, read) {
+            for frame in unit.frames(&read) {
+                self.bus.send(&frame)?;
+            }
+        }
         Ok(())
+    }
+
+    /// What the inertial unit would read now without noise, in its own axes.
+    fn inertial(&self) -> Option<InertialReading> {
+        let body = self.vehicle.inertial()?;
+        Some(self.unit.as_ref()?.without_noise(&body))
     }
 
     /// Tells the controller that all frames of this tick are on the bus.
@@ -223,6 +239,7 @@ impl<B: Bus> PlantNode<B> {
             motion: self.vehicle.motion(),
             displacement_m: self.vehicle.strut_displacement_m(),
             strut: self.vehicle.strut_output(),
+            inertial: self.inertial(),
             heard: self.ticks_without_command == 0,
             command,
             energised,
@@ -269,7 +286,7 @@ impl<B: Bus> PlantNode<B> {
         let lost_here = self.controller_sent.saturating_sub(received);
         let bus_lost = lost_here + u64::from(self.controller_lost);
         PlantResult {
-            frames_sent: trace.messages_sent() + trace.messages_received(),
+            frames_sent: trace.messages_sent() + trace.messages_received() + trace.unit_messages_sent(),
             bus_frames_lost: bus_lost,
             foreign_frames: trace.foreign(),
             foreign_sync_frames: self.strangers,
@@ -293,7 +310,7 @@ pub struct PlantResult {
     pub recording: Recording,
     /// Every frame that was on the wire, in order.
     pub trace: Vec<TraceEntry>,
-    /// Number of messages of the database that were on the wire, both directions together.
+    /// Number of messages of the database that were on the wire, both directions together, and of the inertial unit's.
     pub frames_sent: u64,
     /// How many of them one end sent and the other did not receive.
     pub bus_frames_lost: u64,

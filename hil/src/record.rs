@@ -10,7 +10,7 @@ use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::course::Phase;
 use oleo_plant_sim::handling::HandlingMotion;
 use oleo_plant_sim::strut::StrutOutput;
-use oleo_plant_sim::vehicle::BodyMotion;
+use oleo_plant_sim::vehicle::{BodyMotion, InertialReading};
 
 use crate::bus::{Direction, TraceEntry};
 
@@ -60,6 +60,8 @@ pub struct Sample {
     pub displacement_m: Corners<f64>,
     /// Force and pressures of each strut.
     pub strut: Corners<StrutOutput>,
+    /// What the inertial unit would read without noise, in its own axes; `None` where there is none.
+    pub inertial: Option<InertialReading>,
     /// Whether a command of the controller arrived in this tick and passed its check.
     pub heard: bool,
     /// The command that the drivers obeyed, after check and watchdog.

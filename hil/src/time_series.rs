@@ -90,8 +90,8 @@ impl<'r> Tick<'r> {
 /// What a column takes of a tick.
 pub type OfTick = Box<dyn Fn(&Tick) -> f64 + Send>;
 
-/// Name of each column, and what it takes of a tick. Only a vehicle on a course has all of them.
-pub fn quantities(on_course: bool) -> Vec<(String, OfTick)> {
+/// Name of each column, and what it takes of a tick. What only a vehicle on a course or one with an inertial unit has is there where it is asked for.
+pub fn quantities(on_course: bool, with_unit: bool) -> Vec<(String, OfTick)> {
     let mut columns: Vec<(String, OfTick)> = Vec::with_capacity(64);
     let mut column = |name: &str, of: OfTick| columns.push((name.to_owned(), of));
     column("time_s", Box::new(|at| at.number as f64 * TICK_S));
@@ -137,6 +137,24 @@ pub fn quantities(on_course: bool) -> Vec<(String, OfTick)> {
             );
         }
     }
+    if with_unit {
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            column(
+                &format!("imu_specific_force_{name}_m_s2"),
+                Box::new(move |at| {
+                    at.sample
+                        .inertial
+                        .map_or(f64::NAN, |read| read.specific_force_m_s2[axis])
+                }),
+            );
+        }
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            column(
+                &format!("imu_rate_{name}_rad_s"),
+                Box::new(move |at| at.sample.inertial.map_or(f64::NAN, |read| read.rate_rad_s[axis])),
+            );
+        }
+    }
     column("valve_word", Box::new(|at| f64::from(at.sample.command.word())));
     column("energised_word", Box::new(|at| f64::from(at.sample.energised.word())));
     column("handling", Box::new(|at| f64::from(u8::from(at.strategy.handling))));
@@ -154,7 +172,8 @@ pub fn columns(outcome: &Outcome, metrics: &Metrics) -> Vec<(String, Vec<f64>)> 
         .filter_map(|(number, strategy)| Tick::of(recording, number, *strategy))
         .collect();
     let on_course = ticks.iter().all(|at| at.sample.motion.course.is_some());
-    quantities(on_course)
+    let with_unit = ticks.iter().any(|at| at.sample.inertial.is_some());
+    quantities(on_course, with_unit)
         .into_iter()
         .map(|(name, of)| (name, ticks.iter().map(of).collect()))
         .collect()

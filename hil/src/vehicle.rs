@@ -12,7 +12,7 @@ use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::{Drive, Ending, NotFinite, Signals, Track};
 use oleo_plant_sim::strut::{StrutModel, StrutOutput};
 use oleo_plant_sim::vehicle::suspension::StrutElement;
-use oleo_plant_sim::vehicle::{BodyMotion, RideVehicle, Seats, VehicleParameters};
+use oleo_plant_sim::vehicle::{BodyMotion, InertialReading, RideVehicle, Seats, VehicleParameters};
 
 use crate::record::{CourseMotion, Motion, StrutStep, Wheel};
 
@@ -36,6 +36,7 @@ pub struct Vehicle {
     steps_per_tick: u32,
     measured_road_m: Option<f64>,
     records_struts: bool,
+    inertial_place_m: Option<[f64; 3]>,
 }
 
 /// Which model drives. Both are some kilobytes, so that neither is moved about.
@@ -64,6 +65,7 @@ impl Vehicle {
             steps_per_tick: (TICK_S / step_s).round() as u32,
             measured_road_m: None,
             records_struts: false,
+            inertial_place_m: None,
             assembly,
         }
     }
@@ -79,6 +81,23 @@ impl Vehicle {
             measured_road_m,
             ..self
         }
+    }
+
+    /// The same vehicle with an inertial unit at a place ahead, left and up of the body's present centre of mass, m.
+    pub(crate) fn with_inertial_unit_at(self, place_m: Option<[f64; 3]>) -> Self {
+        Self {
+            inertial_place_m: place_m,
+            ..self
+        }
+    }
+
+    /// What an inertial unit without error reads at its place in the body's axes; `None` where there is no unit.
+    pub fn inertial(&self) -> Option<InertialReading> {
+        let place_m = self.inertial_place_m?;
+        Some(match &self.model {
+            Model::Ride(model) => model.inertial_at(place_m),
+            Model::Course(drive) => drive.model().inertial_at(place_m),
+        })
     }
 
     /// The same vehicle, whose struts are recorded after every integration step.

@@ -425,3 +425,36 @@ fn fixed_step_converges_to_the_library_s_solution() {
         assert!((3.3..4.7).contains(&(pair[0] / pair[1])), "{errors:?}");
     }
 }
+
+/// Over a rough road the reading is the one of angles that are small: heave, pitch and roll accelerations with their arms along z, gravity
+/// on the tilted axes along x and y, and the rates.
+#[test]
+fn an_inertial_unit_reads_the_small_motion_of_the_body() {
+    let parameters = VehicleParameters::defender110();
+    let road = oleo_plant_sim::road::from_name_or_path("belgian", 60.0, 1).expect("built in");
+    let mut model = BaselineVehicle::baseline(&parameters, road, 12.0).expect("it stands");
+    let at_rest = model.inertial_at([0.4, 0.3, -0.2]);
+    assert!((at_rest.specific_force_m_s2[2] - 9.806_65).abs() < 0.1, "{at_rest:?}");
+    let [x, y, z] = [0.8, -0.5, 0.4];
+    let (mut largest, mut most) = (0.0f64, [0.0f64; 2]);
+    for _ in 0..3000 {
+        model.step(Default::default());
+        let (body, reading) = (model.body(), model.inertial_at([x, y, z]));
+        let [along, across, up] = reading.specific_force_m_s2;
+        let upward = 9.806_65 + body.heave_acceleration_m_s2;
+        let expected = [
+            z * body.pitch_acceleration_rad_s2 - upward * body.pitch_rad,
+            -z * body.roll_acceleration_rad_s2 + upward * body.roll_rad,
+            9.806_65 + model.vertical_acceleration_at(x, y),
+        ];
+        for (found, expected) in [along, across, up].into_iter().zip(expected) {
+            largest = largest.max((found - expected).abs());
+        }
+        let [roll_rate, pitch_rate, _] = reading.rate_rad_s;
+        assert!((roll_rate - body.roll_rate_rad_s).abs() < 1e-12);
+        assert!((pitch_rate - body.pitch_rate_rad_s).abs() < 1e-3);
+        most = [most[0].max(along.abs()), most[1].max(across.abs())];
+    }
+    // Terms of second order remain.
+    assert!(largest < 0.15 && most[0] > 0.5 && most[1] > 0.5, "{largest} {most:?}");
+}

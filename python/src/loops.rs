@@ -137,6 +137,7 @@ pub fn hil<'py>(
         strut: settings.text("strut")?,
         vehicle: settings.text("vehicle")?,
         handling: settings.text("handling")?,
+        imu_m: None,
         seed: settings.seed()?,
     };
     let ran = watched(py, progress, |stop, tell| -> Result<_, RunError> {

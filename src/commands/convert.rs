@@ -31,6 +31,7 @@ use crate::results::say;
     oleo convert drive.blf drive.mf4                                  frames, from Vector BLF to ASAM MDF 4\n  \
     oleo convert drive.log drive.blf                                  frames, as Vector BLF\n  \
     oleo convert drive.log drive.csv                                  columns in SI units, one row every 5 ms\n  \
+    oleo convert drive.log drive.csv --imu                            and what the inertial unit of oleo hil --imu read\n  \
     oleo convert drive.log drive.mcap                                 the same for Foxglove and PlotJuggler\n  \
     oleo convert drive.log drive.parquet                              the same for pandas and DuckDB\n  \
     oleo convert drive.mf4 drive.csv --dbc car.dbc --signals map.toml   the same of messages of another database\n\n\
@@ -47,6 +48,9 @@ pub struct Args {
     output: PathBuf,
     #[command(flatten)]
     database: DatabaseArgs,
+    /// Columns also for the inertial unit whose messages the log has (database: oleo show imu-dbc)
+    #[arg(long, conflicts_with = "dbc")]
+    imu: bool,
     /// Replace a file of a campaign. Inputs are never replaced
     #[arg(long)]
     force: bool,
@@ -59,6 +63,7 @@ impl Args {
             input,
             output,
             database: DatabaseArgs::default(),
+            imu: false,
             force: false,
         }
     }
@@ -88,7 +93,7 @@ pub fn convert(args: &Args) -> Result<String, Failure> {
             true => Rereadable::of(&args.input, &staged)?,
             false => Rereadable::as_it_is(&args.input),
         };
-        let (path, said) = format.write(staged, |sink| {
+        let (path, said) = format.write(staged, args.imu, |sink| {
             let read = reader.stream(log.path(), format.names_drives(), sink);
             read.map_err(|failure| log.named(&failure))
         })?;
@@ -106,6 +111,11 @@ pub fn convert(args: &Args) -> Result<String, Failure> {
     if args.database.is_given() {
         return Err(Failure::new(
             "--dbc and --signals: frames are converted as they are; leave the options out, or write columns to a file that ends in .csv, .mcap or .parquet",
+        ));
+    }
+    if args.imu {
+        return Err(Failure::new(
+            "--imu: frames are converted as they are; leave the option out, or write columns to a file that ends in .csv, .mcap or .parquet",
         ));
     }
     frames::write(&args.input, stage()?, format)

@@ -13,6 +13,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use oleo_controller::{DamperPolicy, FaultCode, Mode, Strategy};
 use oleo_hil::bus::BusAddress;
 use oleo_hil::companion::Companion;
+use oleo_hil::imu;
 use oleo_hil::metrics::Metrics;
 use oleo_hil::output::{self, Summary};
 use oleo_hil::record::command_hash;
@@ -49,6 +50,7 @@ Examples:
   oleo hil --scenario lane-change-on-belgian --out lane     change lanes in the middle of a rough road
   oleo hil --manoeuvre lane-change-2 --driver hard --load laden --road flat
   oleo hil --record rear-left --out run                     record a strut, for oleo diagnose run/rear-left
+  oleo hil --imu=0.3,0,-0.2 --out run                       an inertial unit on the body sends on the same bus
   oleo hil --bus socketcan:vcan0                            send the frames over SocketCAN
   oleo hil --clock realtime --duration-s 5                  run in real time
   oleo hil --bus socketcan:vcan0 --clock realtime --xcp     let a calibration tool read the controller
@@ -110,6 +112,10 @@ pub struct Args {
     /// Seed of random roads and of injected faults, up to 2^63 - 1 [default: the scenario's]
     #[arg(long, value_parser = clap::value_parser!(u64).range(..=i64::MAX.cast_unsigned()))]
     seed: Option<u64>,
+    /// An inertial unit on the body sends what it reads each tick, three specific forces and three rates, in two more frames (database: oleo
+    /// show imu-dbc). Its place ahead, left and up of the body's centre of mass in running order, m; without a place it is in that centre
+    #[arg(long, value_name = "X,Y,Z", num_args = 0..=1, require_equals = true, default_missing_value = "0,0,0", value_parser = place)]
+    imu: Option<[f64; 3]>,
     /// Run only this node; the other node must run as another process on the same bus
     #[arg(long, value_parser = by_name::<Role>())]
     node: Option<Role>,
@@ -147,6 +153,11 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
         suits_image(&scenario)?;
     }
     let companion = args.xcp.companion(&scenario, args.node)?;
+    if companion.is_some() && scenario.imu.is_some() {
+        return Err(Failure::new(
+            "--xcp: the scenario has an inertial unit, and the bus has no room for both: leave one of them out",
+        ));
+    }
     if args.node == Some(Role::Controller) {
         has_no_vehicle(&args)?;
         return controller(&args, &scenario, companion);
@@ -205,6 +216,9 @@ fn has_no_vehicle(args: &Args) -> Result<(), Failure> {
     if args.record.is_some() {
         return refused("--record", "strut");
     }
+    if args.imu.is_some() {
+        return refused("--imu", "body");
+    }
     if args.live.is_some() {
         return refused("--live", "vehicle");
     }
@@ -217,7 +231,7 @@ fn has_no_vehicle(args: &Args) -> Result<(), Failure> {
 /// The server for viewers, if it is wanted. Says where they find it.
 fn live(args: &Args, scenario: &Scenario) -> Result<Option<Live>, Failure> {
     let Some(port) = args.live else { return Ok(None) };
-    let rows = Rows::new(scenario.course.is_some());
+    let rows = Rows::new(scenario.course.is_some(), scenario.imu.is_some());
     let hold_back = scenario.clock == Clock::Lockstep;
     let live = Live::begin(port, "oleo hil", rows, hold_back)?;
     let _ = writeln!(
@@ -231,7 +245,7 @@ fn live(args: &Args, scenario: &Scenario) -> Result<Option<Live>, Failure> {
 /// Writes the messages of a run.
 fn messages(out: &mut BufWriter<File>, scenario: &Scenario, outcome: &Outcome) -> std::io::Result<()> {
     let plant = &outcome.plant;
-    let mut rows = Rows::new(scenario.course.is_some());
+    let mut rows = Rows::new(scenario.course.is_some(), scenario.imu.is_some());
     let mut file = McapFile::new(out, &program())?;
     file.add(None, rows.columns())?;
     while let Some((tick, row)) = rows.next(&plant.recording, &plant.trace, 0) {
@@ -300,6 +314,7 @@ fn chosen(args: &Args) -> Result<Scenario, Failure> {
         duration_s: args.duration_s,
         strategy: args.strategy,
         damper_policy: args.damper_policy,
+        imu_m: args.imu,
         strut: args.strut.clone(),
         vehicle: args.vehicle.clone(),
         handling: args.handling.clone(),
@@ -307,6 +322,13 @@ fn chosen(args: &Args) -> Result<Scenario, Failure> {
     };
     let written = scenario::named(&args.scenario)?;
     overrides.of(&written).map_err(|invalid| option_failure(&invalid))
+}
+
+/// Reads a place: three numbers with commas between.
+fn place(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(str::parse).collect();
+    (numbers.ok().and_then(|numbers| numbers.try_into().ok()))
+        .ok_or_else(|| "is no place: give three numbers in m, such as 0.3,0,-0.2".to_owned())
 }
 
 /// Reads an enum of a library by the names that the library gives its variants.
@@ -340,6 +362,9 @@ fn report(
         parameters.keep(out)?;
         out.write("scenario.toml", scenario.to_toml())?;
         out.write("oleo.dbc", DBC)?;
+        if scenario.imu.is_some() {
+            out.write("imu.dbc", imu::DBC)?;
+        }
         out.page(&page::page(scenario, outcome, &metrics, &summary, &command_line()))?;
         for corner in args.record.iter().flat_map(|recorded| &recorded.0) {
             text += &record(out, scenario, outcome, *corner)?;

@@ -20,6 +20,7 @@ use crate::results::say;
     after_help = "Examples:\n  oleo show vehicle > mine.toml         for --vehicle of drive, study and hil\n  \
                         oleo show scenario bus-silence > mine.toml\n  \
                         oleo show dbc > oleo.dbc\n  \
+                        oleo show imu-dbc > imu.dbc           messages of oleo hil --imu\n  \
                         oleo show schema                      lists the schemas\n  \
                         oleo show schema hil > hil.schema.json\n  \
                         oleo show completions bash > oleo.bash\n  oleo show man hil | man -l -"
@@ -57,6 +58,8 @@ enum What {
     },
     /// Database of the messages on the bus (DBC)
     Dbc,
+    /// Database of the messages of an inertial unit on the body, which oleo hil --imu also sends (DBC)
+    ImuDbc,
     /// JSON Schema (draft 2020-12) of a summary.json or report.json; without a name, the list of schemas
     Schema {
         /// Name of the schema: the command, with hyphens
@@ -116,6 +119,7 @@ pub fn run(args: Args, program: clap::Command) -> Result<ExitCode, Failure> {
         What::Scenario { name: None } => scenarios()?,
         What::Scenario { name: Some(name) } => one_of(&name, "scenario", scenario::BUILT_IN)?,
         What::Dbc => DBC.to_owned(),
+        What::ImuDbc => oleo_hil::imu::DBC.to_owned(),
         What::Schema { name: None } => list(),
         What::Schema { name: Some(name) } => one_of(&name, "schema", &SCHEMAS.map(|(name, _, text)| (name, text)))?,
         What::Completions { shell } => completions(shell, program),

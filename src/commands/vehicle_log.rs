@@ -10,16 +10,16 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use oleo_controller::Reading;
-use oleo_controller::can::{DISPLACEMENT_STEP_M, PRESSURE_STEP_PA};
+use oleo_controller::can::{DISPLACEMENT_STEP_M, MESSAGES, PRESSURE_STEP_PA};
 use oleo_diagnose::vehicle::Resolution;
-use oleo_hil::drive_log::{self, DrivePart, LogAccount, LoggedSample};
+use oleo_hil::drive_log::{self, DrivePart, LogAccount, LoggedSample, MessageAccount};
 use oleo_interface::tick::{TICK_MS, TICK_S};
 use oleo_interface::{Corner, Corners, StrutPressures};
 
 #[cfg(feature = "logs")]
 use by_map::ByMap;
 use content::{Collected, VehicleLog, others, plural};
-pub use content::{Part, PartSink, StrutSample};
+pub use content::{InertialSample, Part, PartSink, StrutSample, VehicleSample};
 #[cfg(not(feature = "logs"))]
 use without_map::ByMap;
 
@@ -116,10 +116,20 @@ fn name_of(path: &Path) -> String {
 /// What was read of a log with our own database, in one sentence.
 fn in_words(account: &LogAccount, drives: usize) -> String {
     let longest = account.messages.iter().map(|m| m.longest_gap_ticks).max().unwrap_or(0);
+    let suspension = MESSAGES.iter().map(|contract| contract.name);
+    let (of_suspension, of_unit): (Vec<_>, Vec<_>) = account
+        .messages
+        .iter()
+        .partition(|m| suspension.clone().any(|name| name == m.name));
+    let received = |messages: &[&MessageAccount]| messages.iter().map(|m| m.received).sum::<u64>();
+    let unit = match of_unit.is_empty() {
+        true => String::new(),
+        false => format!(" and {} of an inertial unit", received(&of_unit)),
+    };
     format!(
-        "{drives} drive{}, {} frames of the suspension; {} lost, {} repeated, {} late, {} corrupted, {} out of sequence, longest gap {} ms; {}.",
+        "{drives} drive{}, {} frames of the suspension{unit}; {} lost, {} repeated, {} late, {} corrupted, {} out of sequence, longest gap {} ms; {}.",
         plural(drives),
-        account.total(|m| m.received),
+        received(&of_suspension),
         account.total(|m| m.lost),
         account.total(|m| m.repeated),
         account.total(|m| m.late),
@@ -142,7 +152,13 @@ fn of_our_database(path: &Path, names_drives: bool, sink: &mut PartSink) -> Resu
                 of_several,
             })
         }
-        DrivePart::Sample(sample) => sink(Part::Sample(&Corners::from_fn(|corner| strut_sample(sample, corner)))),
+        DrivePart::Sample(sample) => sink(Part::Sample(&VehicleSample {
+            struts: Corners::from_fn(|corner| strut_sample(sample, corner)),
+            inertial: InertialSample {
+                specific_force_m_s2: sample.inertial.specific_force_m_s2.map(number),
+                rate_rad_s: sample.inertial.rate_rad_s.map(number),
+            },
+        })),
     })?;
     Ok(in_words(&account, drives))
 }
@@ -159,10 +175,14 @@ fn number_of_drives(path: &Path) -> Result<usize, Failure> {
 
 /// A sample of one strut.
 fn strut_sample(sample: &LoggedSample, corner: Corner) -> StrutSample {
-    let number = |reading: Reading| reading.value().map_or(f64::NAN, f64::from);
     StrutSample {
         displacement_m: number(sample.displacement_m[corner]),
         pressure_pa: sample.pressure_pa[corner].into_array().map(number),
         valves: sample.command.map(|command| command.strut(corner)),
     }
+}
+
+/// A reading, or NaN.
+fn number(reading: Reading) -> f64 {
+    reading.value().map_or(f64::NAN, f64::from)
 }

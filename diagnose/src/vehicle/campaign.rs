@@ -5,9 +5,10 @@ use std::sync::atomic::AtomicBool;
 use oleo_interface::{Corner, Corners, Valve};
 use oleo_plant_sim::strut::StrutModel;
 
+use super::body::BodyCampaign;
 use super::bridge::bridge;
 use super::drive::{Drive, Resolution};
-use super::model::VehicleModel;
+use super::model::{BodyModel, VehicleModel};
 use super::stretch::{BridgedDrive, Chosen, choose};
 use crate::campaign::{Campaign, MODEL_FILE};
 use crate::error::DiagnoseError;
@@ -24,6 +25,8 @@ pub struct VehicleCampaign {
     pub model: VehicleModel,
     /// Each strut with its recordings.
     pub corners: Corners<Campaign>,
+    /// The body with the drives that have an inertial unit, where the model says what is believed of it.
+    pub body: Option<BodyCampaign>,
     /// What was used of the drives, one sentence each.
     pub notes: Vec<String>,
 }
@@ -78,14 +81,30 @@ impl VehicleCampaign {
                 specimen: Box::new(specimen),
                 notes: vec![],
             });
-        Ok(Self { corners, model, notes })
+        let (body, note) = BodyCampaign::of(&model, drives);
+        notes.extend(note);
+        Ok(Self {
+            corners,
+            model,
+            body,
+            notes,
+        })
     }
 
-    /// Names of the files in which the improved model is written: the struts', and `model.toml`.
+    /// Names of the files in which the improved model is written: the struts', `model.toml`, and the body's where it has one.
     #[must_use]
     pub fn model_files(&self) -> Vec<String> {
         let struts = self.model.distinct_files().into_array();
-        std::iter::once(MODEL_FILE.to_owned()).chain(struts).collect()
+        let body = self
+            .model
+            .body
+            .as_ref()
+            .and_then(BodyModel::own_file)
+            .map(str::to_owned);
+        std::iter::once(MODEL_FILE.to_owned())
+            .chain(struts)
+            .chain(body)
+            .collect()
     }
 }
 

@@ -7,8 +7,10 @@ use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::strut::StrutModel;
 use rayon::prelude::*;
 
+use super::body::BodyCampaign;
 use super::campaign::VehicleCampaign;
 use super::common::{Common, common};
+use crate::body::BodyFindings;
 use crate::campaign::MODEL_FILE;
 use crate::diagnosis::{Diagnosis, Effect, Estimate, Verdict};
 use crate::error::DiagnoseError;
@@ -32,6 +34,8 @@ pub struct VehicleDiagnosis {
     pub corners: Corners<Diagnosis>,
     /// All effects: first what is common to all corners, then each corner's own.
     pub effects: Vec<VehicleEffect>,
+    /// What the balance of the body says, or why it says nothing; `None` where there is nothing to balance.
+    pub body: Option<Result<BodyFindings, String>>,
 }
 
 impl VehicleDiagnosis {
@@ -61,10 +65,11 @@ impl VehicleDiagnosis {
         Ok(Self {
             effects: effects(&corners),
             corners,
+            body: campaign.body.as_ref().map(BodyCampaign::find),
         })
     }
 
-    /// The answer in one word.
+    /// The answer on the struts in one word; the body has an answer of its own.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         let any = |verdict: Verdict| self.corners.values().any(|d| d.verdict() == verdict);
@@ -100,6 +105,11 @@ impl VehicleDiagnosis {
             // The noise that was fitted with contains the rounding of the bus; the file states the sensor's.
             strut.noise.clone_from(&campaign.model.struts[corner].noise);
             files.push((names[corner].clone(), strut.to_toml()));
+        }
+        if let Some(body) = &campaign.model.body
+            && let Some(name) = body.own_file()
+        {
+            files.push((name.to_owned(), body.parameters.to_toml()));
         }
         Ok(files)
     }

@@ -13,6 +13,8 @@ pub struct Drive {
     pub period_s: f64,
     /// The four struts. All series have the same length.
     pub struts: Corners<StrutSamples>,
+    /// The inertial unit; empty or NaN where there is none.
+    pub inertial: InertialSamples,
 }
 
 impl Drive {
@@ -26,6 +28,24 @@ impl Drive {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+}
+
+/// The samples of an inertial unit, in its own axes. What was not received is NaN.
+#[derive(Debug, Clone, Default)]
+pub struct InertialSamples {
+    /// Specific force along x, y, z, m/s2.
+    pub specific_force_m_s2: [Vec<f64>; 3],
+    /// Angular velocity about x, y, z, rad/s.
+    pub rate_rad_s: [Vec<f64>; 3],
+}
+
+impl InertialSamples {
+    /// Whether the unit has said something.
+    #[must_use]
+    pub fn is_there(&self) -> bool {
+        let all = self.specific_force_m_s2.iter().chain(&self.rate_rad_s);
+        all.flatten().any(|value| value.is_finite())
     }
 }
 

@@ -18,6 +18,7 @@
 //! |---|---|
 //! | `model` | the model files of a vehicle |
 //! | `drive` | what a drive recorded |
+//! | `body` | the balance of the body, where drives have an inertial unit |
 //! | `bridge` | missing readings: what is interpolated, and what no longer counts |
 //! | `stretch` | the parts of the drives that are used, and why |
 //! | `campaign` | model and drives put together |
@@ -26,6 +27,7 @@
 //! | `report` | `report.json` |
 //! | `page` | `report.html` |
 
+mod body;
 mod bridge;
 mod campaign;
 mod common;
@@ -38,7 +40,7 @@ mod stretch;
 
 pub use campaign::VehicleCampaign;
 pub use diagnosis::{VehicleDiagnosis, VehicleEffect};
-pub use drive::{Drive, Resolution, StrutSamples};
-pub use model::{VEHICLE, VehicleModel, is_vehicle};
+pub use drive::{Drive, InertialSamples, Resolution, StrutSamples};
+pub use model::{BodyModel, VEHICLE, VehicleModel, is_vehicle};
 pub use page::{effects_table, headline, page};
 pub use report::report;

@@ -6,6 +6,7 @@ use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::model_file::{Checked, InvalidValue, Limit, read};
 use oleo_plant_sim::specimen::specimen_name;
 use oleo_plant_sim::strut::StrutModel;
+use oleo_plant_sim::vehicle::VehicleParameters;
 use serde::{Deserialize, Serialize};
 
 use crate::error::DiagnoseError;
@@ -22,7 +23,31 @@ pub struct VehicleModel {
     pub files: Corners<String>,
     /// The struts.
     pub struts: Corners<StrutModel>,
+    /// The body with an inertial unit, where something is believed of it.
+    pub body: Option<BodyModel>,
 }
+
+/// The body of a vehicle with an inertial unit.
+#[derive(Debug, Clone)]
+pub struct BodyModel {
+    /// Name of the file of the vehicle's parameters, without a folder, or that of the built-in vehicle.
+    pub vehicle: String,
+    /// The parameters in it.
+    pub parameters: VehicleParameters,
+    /// Place of the unit ahead, left and up of the centre of mass of the sprung mass, m.
+    pub unit_m: [f64; 3],
+}
+
+impl BodyModel {
+    /// The name of the parameters' file; `None` of the built-in vehicle.
+    #[must_use]
+    pub fn own_file(&self) -> Option<&str> {
+        (self.vehicle != BUILT_IN).then_some(self.vehicle.as_str())
+    }
+}
+
+/// Name of the built-in vehicle.
+const BUILT_IN: &str = "defender110";
 
 /// `model.toml` of a vehicle.
 #[derive(Debug, Serialize, Deserialize)]
@@ -30,6 +55,15 @@ pub struct VehicleModel {
 struct File {
     specimen: Specimen,
     strut: Struts,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    body: Option<Body>,
+}
+
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Body {
+    vehicle: String,
+    unit_m: [f64; 3],
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -53,6 +87,19 @@ impl Checked for File {
     const LIMITS: &'static [Limit<Self>] = &[];
 
     fn check_together(&self) -> Result<(), InvalidValue> {
+        if let Some(body) = &self.body {
+            if !is_plain_name(&body.vehicle) {
+                let what = format!(
+                    "is {:?}: must be {BUILT_IN}, or the name of a file of vehicle parameters beside this file, without a folder",
+                    body.vehicle
+                );
+                return Err(InvalidValue::new("vehicle", what).inside("body"));
+            }
+            if let Some(far) = body.unit_m.iter().find(|place| !(-10.0..=10.0).contains(*place)) {
+                let what = format!("has {far}: each must be from -10 to 10 m");
+                return Err(InvalidValue::new("unit_m", what).inside("body"));
+            }
+        }
         let Struts {
             front_left,
             front_right,
@@ -63,10 +110,7 @@ impl Checked for File {
             .into_iter()
             .zip([front_left, front_right, rear_left, rear_right])
         {
-            if Path::new(name)
-                .file_name()
-                .is_none_or(|file| file.to_str() != Some(name))
-            {
+            if !is_plain_name(name) {
                 let what =
                     format!("is {name:?}: must be the name of a strut's model file beside this file, without a folder");
                 return Err(InvalidValue::new(corner.key(), what).inside("strut"));
@@ -74,6 +118,13 @@ impl Checked for File {
         }
         Ok(())
     }
+}
+
+/// Whether a name is that of a file without a folder.
+fn is_plain_name(name: &str) -> bool {
+    Path::new(name)
+        .file_name()
+        .is_some_and(|file| file.to_str() == Some(name))
 }
 
 /// Whether the text of a model file is that of a vehicle.
@@ -102,6 +153,24 @@ fn starting_at_rest(text: String, path: &Path) -> Result<String, DiagnoseError> 
     toml::to_string(&table).map_err(|e| DiagnoseError::Output(e.to_string()))
 }
 
+/// Reads what a table `[body]` names.
+fn body_model(body: Body, folder: &Path) -> Result<BodyModel, DiagnoseError> {
+    let Body { vehicle, unit_m } = body;
+    let parameters = if vehicle == BUILT_IN {
+        VehicleParameters::defender110()
+    } else {
+        let path = folder.join(&vehicle);
+        let text = std::fs::read_to_string(&path)
+            .map_err(|e| DiagnoseError::file(&path, format!("{e}; it is needed as the parameters of the body")))?;
+        VehicleParameters::from_toml(&text, &path.display().to_string())?
+    };
+    Ok(BodyModel {
+        vehicle,
+        parameters,
+        unit_m,
+    })
+}
+
 impl VehicleModel {
     /// Reads `model.toml` of a vehicle and the files of its struts, which lie beside it.
     ///
@@ -125,7 +194,7 @@ impl VehicleModel {
             );
             return Err(DiagnoseError::file(path, what));
         }
-        let File { specimen, strut } = read::<File>(&text, &source)?;
+        let File { specimen, strut, body } = read::<File>(&text, &source)?;
         let Struts {
             front_left,
             front_right,
@@ -146,6 +215,7 @@ impl VehicleModel {
         Ok(Self {
             name: specimen.name,
             struts: Corners::try_from_fn(strut)?,
+            body: body.map(|body| body_model(body, folder)).transpose()?,
             files,
         })
     }
@@ -181,6 +251,10 @@ impl VehicleModel {
                 rear_left,
                 rear_right,
             },
+            body: self.body.as_ref().map(|body| Body {
+                vehicle: body.vehicle.clone(),
+                unit_m: body.unit_m,
+            }),
         };
         toml::to_string_pretty(&file).map_err(|e| DiagnoseError::Output(e.to_string()))
     }

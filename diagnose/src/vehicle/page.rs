@@ -3,6 +3,7 @@
 use oleo_interface::Corner;
 use oleo_report::{Cell, Column, Page, Table, Verdict as Colour, significant};
 
+use super::body;
 use super::campaign::VehicleCampaign;
 use super::diagnosis::{VehicleDiagnosis, VehicleEffect};
 use crate::diagnosis::Verdict;
@@ -24,6 +25,7 @@ pub fn page(campaign: &VehicleCampaign, diagnosis: &VehicleDiagnosis, command: &
         &format!("{simulated} stretches of one strut simulated in {runtime_s:.0} s"),
     );
     let colour = match diagnosis.verdict() {
+        Verdict::Consistent if names_body(diagnosis) => Colour::Attention,
         Verdict::Consistent => Colour::Pass,
         Verdict::MissingPhysics => Colour::Attention,
         Verdict::Unexplained => Colour::Fail,
@@ -38,6 +40,9 @@ pub fn page(campaign: &VehicleCampaign, diagnosis: &VehicleDiagnosis, command: &
          the fit. Each strut is simulated with its displacement and the commands to its valves; it receives no measured pressure. No \
          force is recorded in a vehicle, so that friction of the main seal and contact at the end stops cannot be seen.",
     );
+    if let Some(found) = &diagnosis.body {
+        body::section(&mut page, found);
+    }
     page.section("The four corners beside each other");
     page.text("Held-out noise ratios of each strut, recalibrated within its tolerances and improved by the effects that were found there.");
     page.table(corners(diagnosis));
@@ -99,7 +104,14 @@ pub fn headline(diagnosis: &VehicleDiagnosis) -> String {
     if !unexplained.is_empty() {
         text += &format!(" Part of the misfit remains unexplained ({}).", unexplained.join(", "));
     }
+    text += &diagnosis.body.as_ref().map_or_else(String::new, body::sentence);
     text
+}
+
+/// Whether the balance of the body names something.
+fn names_body(diagnosis: &VehicleDiagnosis) -> bool {
+    let found = diagnosis.body.as_ref().and_then(|found| found.as_ref().ok());
+    found.is_some_and(|findings| !findings.effects.is_empty())
 }
 
 /// An effect as a phrase: its name, the place in the strut, and the corner.

@@ -3,6 +3,7 @@
 use oleo_interface::Corner;
 use serde_json::{Map, Value, json};
 
+use super::body;
 use super::campaign::VehicleCampaign;
 use super::diagnosis::VehicleDiagnosis;
 use crate::json;
@@ -75,6 +76,9 @@ pub fn report(campaign: &VehicleCampaign, diagnosis: &VehicleDiagnosis, runtime_
         }
     }
     out["fit"] = Value::Object(fit);
+    if let Some(found) = &diagnosis.body {
+        out["body"] = body::report(found);
+    }
     out
 }
 

@@ -2,14 +2,14 @@
 //!
 //! In the loop an entry costs a copy of some 32 bytes. Frames of [`crate::sync`] are left out, because they would not be on a vehicle's
 //! bus. Messages of the vehicle's database and other frames are counted separately, so that two ends can compare what was sent with
-//! what arrived.
+//! what arrived. What an inertial unit sends is counted for itself, because the other end does not listen to it.
 
 use std::time::{Duration, Instant};
 
 use oleo_controller::can::MESSAGES;
 
 use super::{Bus, BusCounters, BusError};
-use crate::{Frame, sync};
+use crate::{Frame, imu, sync};
 
 /// Direction of a frame, seen from the end that keeps the trace.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +42,7 @@ pub struct Trace<B> {
     entries: Option<Vec<TraceEntry>>,
     sent: u64,
     received: u64,
+    of_unit: u64,
     foreign: u64,
 }
 
@@ -65,6 +66,7 @@ impl<B: Bus> Trace<B> {
             entries: None,
             sent: 0,
             received: 0,
+            of_unit: 0,
             foreign: 0,
         }
     }
@@ -77,6 +79,11 @@ impl<B: Bus> Trace<B> {
     /// Number of messages of the database that arrived at this end.
     pub fn messages_received(&self) -> u64 {
         self.received
+    }
+
+    /// Number of messages of an inertial unit that this end sent.
+    pub fn unit_messages_sent(&self) -> u64 {
+        self.of_unit
     }
 
     /// Number of frames with other identifiers that passed.
@@ -104,6 +111,7 @@ impl<B: Bus> Trace<B> {
         match (known, direction) {
             (true, Direction::Sent) => self.sent += 1,
             (true, Direction::Received) => self.received += 1,
+            (false, Direction::Sent) if imu::of_unit(frame.standard_id()).is_some() => self.of_unit += 1,
             (false, _) => self.foreign += 1,
         }
         if let Some(entries) = &mut self.entries {

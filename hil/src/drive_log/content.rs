@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use oleo_controller::{Reading, ValveCommand};
 use oleo_interface::{Corners, StrutPressures};
 
+use crate::imu::InertialReadings;
 use crate::logs::Account;
 
 /// A piece of the drives of a log, in the order of the log.
@@ -46,6 +47,8 @@ pub struct LoggedSample {
     pub pressure_pa: Corners<StrutPressures<Reading>>,
     /// The command that echoes this tick; `None` if it is missing.
     pub command: Option<ValveCommand>,
+    /// What the inertial unit read, in its own axes.
+    pub inertial: InertialReadings,
 }
 
 /// What was read from a log, and what could not be used.
@@ -53,9 +56,10 @@ pub struct LoggedSample {
 pub struct LogAccount {
     /// Entries of the log, of whatever kind.
     pub log: Account,
-    /// Number of frames whose identifier is not in the database.
+    /// Number of frames whose identifier is in no database of ours.
     pub foreign_frames: u64,
-    /// One entry for each message of the database except `STATUS` and `BOARD`, in the order of [`oleo_controller::can::MESSAGES`].
+    /// One entry for each message of the database except `STATUS` and `BOARD`, in the order of [`oleo_controller::can::MESSAGES`]; then, where
+    /// an inertial unit was heard, one for each of its two.
     pub messages: Vec<MessageAccount>,
 }
 

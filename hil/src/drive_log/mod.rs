@@ -15,6 +15,8 @@
 //!   logs are read too.)
 //! * A pressure message has no tick. It belongs to the pair of displacement messages that follows it; its 4-bit counter, which
 //!   advances by one in every tick, corrects this where frames are missing or late.
+//! * A message of an inertial unit (`hil/imu.dbc`) has no tick either. It is sent behind the displacement messages of its tick, and its counter
+//!   corrects that as above.
 //! * A command is entered at the tick that it echoes, which is the tick at whose end it acts.
 //! * A drive ends where the bus is silent for a second, or where the tick starts again.
 //! * Frames may come out of order: displacement messages by a second, others within the 20 s in which their neighbours settle their
@@ -92,6 +94,7 @@ fn of(log: &mut dyn FrameSource, path: &Path, sink: &mut DriveSink) -> Result<Lo
         // The sink has had enough, and knows why.
         ControlFlow::Break(()) => (drives.account, false),
     };
+    heard::without_silent_unit(&mut account);
     account.log = read;
     if is_empty {
         return Err(LogError::new(path, nothing_of_ours(&account)));

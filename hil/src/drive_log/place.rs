@@ -1,4 +1,4 @@
-//! The tick of every pressure message and command.
+//! The tick of every pressure message, of every command, and of what an inertial unit says.
 
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
@@ -7,7 +7,7 @@ use oleo_controller::can::CommandMessage;
 use oleo_interface::tick::TICK_US;
 
 use super::content::{DriveSink, LogAccount};
-use super::heard::{COMMAND_AT, HeardFrame};
+use super::heard::{COMMAND_AT, HeardFrame, UNIT};
 use super::ticks::{Anchor, Sorted, signed_low_byte};
 use super::window::{MOST_OUTSIDE_TICKS, Window};
 
@@ -42,6 +42,9 @@ impl Places {
             (Sorted::Other(frame), Some(drive)) if frame.message == COMMAND_AT => {
                 drive.window.place(frame, echoed(&frame, &drive.before), account);
             }
+            (Sorted::Other(frame), Some(drive)) if UNIT.contains(&frame.message) => {
+                drive.window.place(frame, Some(behind(&frame, &drive.before)), account);
+            }
             (Sorted::Other(frame), _) => {
                 self.waiting.push_back(frame);
                 if self.waiting.len() > MOST_WAITING
@@ -65,6 +68,8 @@ impl Places {
         for frame in self.waiting.drain(..) {
             let tick = match frame.message {
                 COMMAND_AT => echoed(&frame, &anchor),
+                // What waits here was logged before the first displacements, and belongs to a tick before them.
+                message if UNIT.contains(&message) => None,
                 // Pressures go before the displacements of their tick.
                 _ => Some(anchor.tick + ticks_between(&anchor, &frame).clamp(-MOST_OUTSIDE_TICKS, 0)),
             };
@@ -97,6 +102,11 @@ impl Places {
 fn ticks_between(anchor: &Anchor, frame: &HeardFrame) -> i64 {
     let passed_us = frame.time_us.saturating_sub(anchor.frame.time_us);
     (passed_us as f64 / f64::from(TICK_US)).round() as i64
+}
+
+/// The tick of a frame that is sent behind the displacements of its tick.
+fn behind(frame: &HeardFrame, near: &Anchor) -> i64 {
+    near.tick + ticks_between(near, frame).clamp(0, MOST_OUTSIDE_TICKS)
 }
 
 /// The tick that a command echoes. A command answers what came before it.

@@ -13,6 +13,8 @@ use crate::frame::standard;
 use crate::logs::candump::write_line;
 use crate::logs::{Entry, LoggedFrame};
 
+mod unit;
+
 /// A line of a log before it is written.
 #[derive(Clone, Debug)]
 struct Line {

@@ -35,7 +35,7 @@ pub enum Sorted {
     Begins,
     /// A displacement message of the drive.
     Anchor(Anchor),
-    /// A pressure message or a command.
+    /// A pressure message, a command, or a message of an inertial unit.
     Other(HeardFrame),
 }
 

@@ -17,9 +17,10 @@ use oleo_controller::can::{CommandMessage, DisplacementMessage, PressureMessage}
 use oleo_interface::{Axle, Corner, Side};
 
 use super::content::{DrivePart, DriveSink, LogAccount, LoggedSample};
-use super::heard::{COMMAND_AT, DISPLACEMENT, HeardFrame, MESSAGES_OF_A_SAMPLE};
+use super::heard::{COMMAND_AT, DISPLACEMENT, HeardFrame, MESSAGES_OF_A_SAMPLE, UNIT};
 use super::queue::{MOST_MOVED_TICKS, Queue};
 use super::ticks::{Anchor, MOST_BEHIND_TICKS};
+use crate::imu::{RATE_STEP_RAD_S, SPECIFIC_FORCE_STEP_M_S2, decode_axes};
 
 /// Most ticks from a displacement message to another frame that it places. What is further outside a drive does not belong to it.
 pub const MOST_OUTSIDE_TICKS: i64 = 20;
@@ -189,6 +190,10 @@ impl LoggedSample {
                 self.displacement_m[axle.corner(Side::Left)] = content.left;
                 self.displacement_m[axle.corner(Side::Right)] = content.right;
             }
+            message if message == UNIT.start => {
+                self.inertial.specific_force_m_s2 = decode_axes(data, SPECIFIC_FORCE_STEP_M_S2);
+            }
+            message if UNIT.contains(&message) => self.inertial.rate_rad_s = decode_axes(data, RATE_STEP_RAD_S),
             message => self.pressure_pa[Corner::ALL[message]] = PressureMessage::decode(data).pressure,
         }
         true

@@ -126,6 +126,7 @@ mod tests {
             },
             displacement_m: Corners::default(),
             strut: Corners::splat(StrutOutput::default()),
+            inertial: None,
             heard: true,
             command: ValveCommand::from_word(word),
             energised: ValveCommand::from_word(word),

@@ -284,6 +284,7 @@ mod tests {
                 force_n: 0.0,
                 pressure_pa: [4e6; 4],
             }),
+            inertial: None,
             heard: true,
             command: ValveCommand::from_word(word),
             energised: ValveCommand::from_word(word),

@@ -305,6 +305,7 @@ mod tests {
                 force_n: 0.0,
                 pressure_pa: [4e6; 4],
             }),
+            inertial: None,
             heard: true,
             command: ValveCommand::SAFE,
             energised: ValveCommand::SAFE,

@@ -1,12 +1,12 @@
 //! Builds the road, the struts and the vehicle of a scenario before the clock starts.
 
-use oleo_interface::Corners;
 use oleo_interface::tick::TICK_S;
+use oleo_interface::{Axle, Corners};
 use oleo_plant_sim::course::Drive;
 use oleo_plant_sim::road;
 use oleo_plant_sim::strut::StrutModel;
-use oleo_plant_sim::vehicle::RideVehicle;
 use oleo_plant_sim::vehicle::suspension::StrutElement;
+use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
 
 use super::error::RunError;
 use super::parameters::Parameters;
@@ -30,7 +30,7 @@ pub fn vehicle_on(scenario: &Scenario, struts: Corners<StrutModel>) -> Result<Ve
 }
 
 fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunError> {
-    let loaded = scenario.load.at_ride_height(&parameters.vehicle);
+    let loaded = carried(scenario, &parameters.vehicle);
     let step_s = loaded.solver.step_s;
     let steps = TICK_S / step_s;
     if (steps - steps.round()).abs() > 1e-9 * steps || steps < 0.5 {
@@ -41,6 +41,10 @@ fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunErr
     }
     let charged = parameters.charged(loaded.static_strut_load_n());
     let struts = Parameters::at_rest(&charged)?;
+    let unit_m = scenario
+        .imu
+        .as_ref()
+        .map(|imu| from_centre_of(&loaded, &parameters.vehicle, imu.place_m()));
     let outline_m = parameters.handling.outline.corners_m(&loaded);
     let surface = |length_m: f64| road::from_name_or_path(&scenario.road, length_m, scenario.seed);
     let Some(settings) = &scenario.course else {
@@ -52,7 +56,8 @@ fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunErr
             struts: charged,
             outline_m,
         };
-        return Ok(Vehicle::on_road(model, assembly).over_measured(measured_m));
+        let vehicle = Vehicle::on_road(model, assembly).with_inertial_unit_at(unit_m);
+        return Ok(vehicle.over_measured(measured_m));
     };
     let manoeuvre = settings
         .manoeuvre(scenario.speed_m_s, Some(scenario.duration_s()))
@@ -64,5 +69,27 @@ fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunErr
         struts: charged,
         outline_m,
     };
-    Ok(Vehicle::on_course(drive, assembly).over_measured(course.road.measured_length_m()))
+    let vehicle = Vehicle::on_course(drive, assembly).with_inertial_unit_at(unit_m);
+    Ok(vehicle.over_measured(course.road.measured_length_m()))
+}
+
+/// The vehicle that drives: with its load, and with what nobody is told.
+fn carried(scenario: &Scenario, empty: &VehicleParameters) -> VehicleParameters {
+    let mut vehicle = scenario.load.at_ride_height(empty);
+    if let Some(payload) = &scenario.payload {
+        vehicle = payload.on(&vehicle, empty);
+    }
+    match scenario.broken_anti_roll_link {
+        Some(Axle::Front) => vehicle.front_axle.anti_roll_stiffness_n_m_rad = 0.0,
+        Some(Axle::Rear) => vehicle.rear_axle.anti_roll_stiffness_n_m_rad = 0.0,
+        None => {}
+    }
+    vehicle
+}
+
+/// A place of the body that is counted from its centre of mass in running order, counted from where that is with the load, m.
+fn from_centre_of(loaded: &VehicleParameters, empty: &VehicleParameters, [x, y, z]: [f64; 3]) -> [f64; 3] {
+    let back_m = loaded.body_cg_behind_front_axle_m() - empty.body_cg_behind_front_axle_m();
+    let up_m = loaded.body_cg_height_m() - empty.body_cg_height_m();
+    [x + back_m, y, z - up_m]
 }

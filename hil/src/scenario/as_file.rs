@@ -75,6 +75,9 @@ impl Scenario {
                 .filter_map(|(key, number)| Some((key.to_owned(), number?.into())));
             table.extend(given);
         }
+        if let Some(imu) = self.imu.as_ref().and_then(|imu| Value::try_from(imu).ok()) {
+            table.insert("imu".to_owned(), imu);
+        }
         // A fault after the end of a shortened run does not happen, and a file may not name it.
         if let Some(Value::Array(faults)) = table.get_mut("fault") {
             let begin_s = |fault: &Value| match fault.get("at_s") {
@@ -105,6 +108,7 @@ mod tests {
     use super::super::file::parse;
     use super::super::{BUILT_IN, named};
     use super::*;
+    use crate::imu::ImuSettings;
 
     fn read_back(scenario: &Scenario) -> Scenario {
         let text = scenario.to_toml();
@@ -129,6 +133,7 @@ mod tests {
         let changed = Scenario {
             speed_m_s: 47.123_456_789_12 / 3.6,
             seed: u64::from(u32::MAX),
+            imu: Some(ImuSettings::at([0.1, -0.2, 0.3], ImuSettings::default())),
             course: Some(CourseSettings {
                 steer_deg: Some(3.0),
                 ..CourseSettings::new(ManoeuvreKind::StepSteer)

@@ -51,6 +51,10 @@ pub fn changes(before: &Scenario, after: &Scenario) -> Vec<String> {
         format!("damper policy {policy}"),
     );
     say(after.load != before.load, format!("load {}", after.load.key()));
+    if let Some(imu) = &after.imu {
+        let [x, y, z] = imu.place_m();
+        say(after.imu != before.imu, format!("inertial unit at {x}, {y}, {z} m"));
+    }
     for (name, new, old) in [
         ("strut", &after.strut, &before.strut),
         ("vehicle", &after.vehicle, &before.vehicle),

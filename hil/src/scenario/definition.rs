@@ -1,14 +1,16 @@
 //! A complete and valid scenario: vehicle and road, clock, faults and checks.
 
 use oleo_controller::{DamperPolicy, Strategy};
+use oleo_interface::Axle;
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::CourseSettings;
-use oleo_plant_sim::vehicle::Load;
+use oleo_plant_sim::vehicle::{Load, Payload};
 use strum::{EnumString, IntoStaticStr, VariantNames};
 
 use super::check::Check;
 use super::fault::Fault;
 use crate::bus::BusAddress;
+use crate::imu::ImuSettings;
 
 /// How time passes in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, EnumString, IntoStaticStr, VariantNames)]
@@ -70,6 +72,12 @@ pub struct Scenario {
     pub handling: String,
     /// What the vehicle carries. The controller does not know it.
     pub load: Load,
+    /// A mass that it carries besides, which neither the controller nor its model knows.
+    pub payload: Option<Payload>,
+    /// Axle whose anti-roll bar has lost a link, so that it twists no more. Neither the controller nor its model knows it.
+    pub broken_anti_roll_link: Option<Axle>,
+    /// The inertial unit that sends on the same bus; `None` without one.
+    pub imu: Option<ImuSettings>,
     /// Time at the start that does not count for ride measures, s.
     pub score_from_s: f64,
     /// Of the road and of all fault randomness.

@@ -3,13 +3,14 @@
 use oleo_controller::{DamperPolicy, Strategy};
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::{CourseChanges, CourseSettings, ManoeuvreKind};
-use oleo_plant_sim::model_file::InvalidValue;
+use oleo_plant_sim::model_file::{Checked, InvalidValue};
 use oleo_plant_sim::vehicle::Load;
 
 use super::changes::changes;
 use super::definition::{Clock, Scenario};
 use super::file::{FASTEST_KM_H, LONGEST_S};
 use crate::bus::BusAddress;
+use crate::imu::ImuSettings;
 
 /// Values that replace those of a scenario; `None` leaves one as it is.
 #[derive(Clone, Debug, Default)]
@@ -34,6 +35,8 @@ pub struct Overrides {
     pub strategy: Option<Strategy>,
     /// Rule by which the strategies `ride-handling` and `road-and-dampers` switch the dampers.
     pub damper_policy: Option<DamperPolicy>,
+    /// Place of an inertial unit ahead, left and up of the body's centre of mass in running order, m.
+    pub imu_m: Option<[f64; 3]>,
     /// Path of a strut model.
     pub strut: Option<String>,
     /// Path of vehicle parameters.
@@ -70,6 +73,13 @@ impl Overrides {
         }
         if let Some(duration_s) = self.duration_s {
             chosen.ticks = (within("duration_s", duration_s, TICK_S, LONGEST_S)? / TICK_S).round() as u32;
+        }
+        if let Some(place_m) = self.imu_m {
+            let imu = ImuSettings::at(place_m, chosen.imu.take().unwrap_or_default());
+            let [x, y, z] = place_m;
+            let refused = |invalid: InvalidValue| InvalidValue::new("imu", format!("is {x},{y},{z}: {invalid}"));
+            imu.check().map_err(refused)?;
+            chosen.imu = Some(imu);
         }
         chosen.seed = self.seed.unwrap_or(chosen.seed);
         chosen.course = self.course(chosen.course.take(), &written.name)?;

@@ -38,9 +38,9 @@ struct OnBus {
 }
 
 impl Rows {
-    /// Rows from the first tick on.
-    pub fn new(on_course: bool) -> Self {
-        let (names, quantities): (Vec<String>, Vec<OfTick>) = quantities(on_course).into_iter().unzip();
+    /// Rows from the first tick on, of a vehicle on a course or not, with an inertial unit or not.
+    pub fn new(on_course: bool, with_unit: bool) -> Self {
+        let (names, quantities): (Vec<String>, Vec<OfTick>) = quantities(on_course, with_unit).into_iter().unzip();
         let mut columns: Vec<Column> = names.into_iter().map(Column::number).collect();
         for corner in Corner::ALL {
             columns
@@ -151,6 +151,7 @@ const STATUS_COLUMNS: [&str; 4] = [
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::imu::ImuSettings;
     use crate::metrics::Metrics;
     use crate::run::{both, vehicle};
     use crate::scenario::{self, Scenario};
@@ -161,10 +162,11 @@ mod tests {
     fn rows_are_the_columns_of_the_time_series() {
         let scenario = Scenario {
             ticks: 137,
+            imu: Some(ImuSettings::default()),
             ..scenario::named("bus-silence").expect("built in")
         };
         let on_course = scenario.course.is_some();
-        let (mut live, mut found) = (Rows::new(on_course), Vec::new());
+        let (mut live, mut found) = (Rows::new(on_course, true), Vec::new());
         let outcome = both(&scenario, vehicle(&scenario).expect("a vehicle"), 1, &mut |run| {
             while let Some((tick, row)) = live.next(run.recording, run.trace, 1) {
                 found.push((tick, row.to_vec()));
@@ -173,7 +175,7 @@ mod tests {
         })
         .expect("a run");
         assert_eq!(found.len(), 129, "one less than the watch has seen");
-        let mut after = Rows::new(on_course);
+        let mut after = Rows::new(on_course, true);
         let mut all = Vec::new();
         while let Some((tick, row)) = after.next(&outcome.plant.recording, &outcome.plant.trace, 0) {
             all.push((tick, row.to_vec()));

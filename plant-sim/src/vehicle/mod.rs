@@ -4,7 +4,8 @@
 //! ```text
 //!  parameters --> equilibrium --+
 //!  road --> contact --> tyre ---+--> equations (accelerations) --> ride (fixed step) --> body, wheels, struts
-//!  signals --> suspension ------+
+//!  signals --> suspension ------+                                                            |
+//!                                                                                            +--> inertial
 //! ```
 //!
 //! Inside, the sign convention is the appendix's (extension and tension positive); everything that leaves this module
@@ -15,15 +16,19 @@
 mod contact;
 pub mod equations;
 mod gas_temperature;
+mod inertial;
 mod levelling;
 pub mod linear;
 mod load;
 mod parameters;
+mod payload;
 mod ride;
 mod seat;
 pub mod suspension;
 
 pub use gas_temperature::TemperedStrut;
+pub use inertial::InertialReading;
+pub(crate) use inertial::RigidMotion;
 pub use levelling::{LevelledStrut, Levelling, LevellingLimits};
 pub use load::Load;
 pub(crate) use load::{Cargo, put};
@@ -31,5 +36,6 @@ pub use parameters::{
     AxleParameters, BaselineParameters, BodyParameters, GRAVITY_M_S2, LayoutParameters, SeatParameters,
     SolverParameters, TyreParameters, VehicleParameters,
 };
+pub use payload::Payload;
 pub use ride::{BaselineVehicle, BodyMotion, RideError, RideModel, RideVehicle, WheelMotion};
 pub use seat::{Seat, SeatAcceleration, Seats};

@@ -20,6 +20,7 @@ use oleo_interface::{Axle, Corner, Corners, Side};
 
 use super::contact::{Contact, Tyre};
 use super::equations::{Coordinates, Equations};
+use super::inertial::{InertialReading, RigidMotion};
 use super::parameters::VehicleParameters;
 use super::suspension::{CoilElement, Motion, StrutElement, Suspension, SuspensionElement, tension_n};
 use crate::road::Road;
@@ -334,6 +335,15 @@ impl<E: SuspensionElement> RideModel<E> {
     /// centre of mass (`VehicleParameters::seat_position_m` gives a seat's).
     pub fn vertical_acceleration_at(&self, x_m: f64, y_m: f64) -> f64 {
         self.acceleration.heave - x_m * self.acceleration.pitch + y_m * self.acceleration.roll
+    }
+
+    /// What an inertial unit at a place of the body reads; the place in body axes (ahead, left, up) from its centre of mass, m. The model holds
+    /// the body against all motion ahead, sideways and in yaw: the forces that do so are in what it reads along x and y.
+    pub fn inertial_at(&self, place_m: [f64; 3]) -> InertialReading {
+        let (q, rate, acceleration) = (&self.q, &self.rate, &self.acceleration);
+        let pitch = [q.pitch, rate.pitch, acceleration.pitch];
+        let roll = [q.roll, rate.roll, acceleration.roll];
+        RigidMotion::of_heave_pitch_roll(acceleration.heave, pitch, roll).reading_at(place_m)
     }
 
     /// Generalised coordinates and their rates, as in Appendix A.

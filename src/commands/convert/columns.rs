@@ -6,12 +6,12 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 use oleo_hil::telemetry::{Column, McapFile, Value, nanoseconds};
-use oleo_interface::{Corner, Corners};
+use oleo_interface::Corner;
 use oleo_report::{CsvRows, OutputFile};
 
 use super::parquet::{self, ParquetRows};
 use crate::commands::mcap::{self, program};
-use crate::commands::vehicle_log::{Part, PartSink, StrutSample};
+use crate::commands::vehicle_log::{Part, PartSink, VehicleSample};
 use crate::failure::Failure;
 
 /// Formats of columns.
@@ -47,15 +47,16 @@ impl ColumnFormat {
         self == Self::Mcap
     }
 
-    /// Writes the columns of the drives that `read` gives, and moves the file into place. Returns its path, and what `read` says.
+    /// Writes the columns of the drives that `read` gives, with those of an inertial unit if they are wanted, and moves the file into place. Returns its path, and what `read` says.
     pub fn write(
         self,
         staged: OutputFile,
+        with_unit: bool,
         read: impl FnOnce(&mut PartSink) -> Result<String, Failure>,
     ) -> Result<(PathBuf, String), Failure> {
         let mut said = String::new();
         let path = staged.stream(|out| {
-            let mut columns = Columns::begin(self, out)?;
+            let mut columns = Columns::begin(self, with_unit, out)?;
             let mut refused = None;
             let read = read(&mut |part| match columns.take(part) {
                 Ok(()) => ControlFlow::Continue(()),
@@ -64,6 +65,10 @@ impl ColumnFormat {
                     ControlFlow::Break(())
                 }
             });
+            let read = match columns.lacks_unit() {
+                true => read.and_then(|_| Err(no_unit())),
+                false => read,
+            };
             match refused {
                 Some(error) => Err(error),
                 None => columns.finish().map(|()| read.map(|words| said = words)),
@@ -82,6 +87,8 @@ struct Columns<'f> {
     /// Number of samples of this drive.
     samples: u64,
     period_s: f64,
+    /// Whether an inertial unit is wanted, and whether it has said something.
+    unit: Option<bool>,
     row: Vec<f64>,
 }
 
@@ -93,8 +100,8 @@ enum RowFile<'f> {
 }
 
 impl<'f> Columns<'f> {
-    fn begin(format: ColumnFormat, out: &'f mut BufWriter<File>) -> io::Result<Self> {
-        let names = names();
+    fn begin(format: ColumnFormat, with_unit: bool, out: &'f mut BufWriter<File>) -> io::Result<Self> {
+        let names = names(with_unit);
         Ok(Self {
             file: match format {
                 ColumnFormat::Csv => RowFile::Csv(CsvRows::begin(out, &names)?),
@@ -105,6 +112,7 @@ impl<'f> Columns<'f> {
             drive: 0,
             samples: 0,
             period_s: 0.0,
+            unit: with_unit.then_some(false),
             row: Vec::new(),
         })
     }
@@ -124,16 +132,16 @@ impl<'f> Columns<'f> {
                     RowFile::Csv(_) | RowFile::Parquet(_) => Ok(()),
                 }
             }
-            Part::Sample(struts) => self.sample(struts),
+            Part::Sample(sample) => self.sample(sample),
         }
     }
 
-    fn sample(&mut self, struts: &Corners<StrutSample>) -> io::Result<()> {
+    fn sample(&mut self, sample: &VehicleSample) -> io::Result<()> {
         let time_s = self.samples as f64 * self.period_s;
         self.samples += 1;
         self.row.clear();
         self.row.extend([f64::from(self.drive), time_s]);
-        for strut in struts.values() {
+        for strut in sample.struts.values() {
             self.row.push(strut.displacement_m);
             self.row.extend(strut.pressure_pa);
             match strut.valves {
@@ -142,6 +150,11 @@ impl<'f> Columns<'f> {
                     .extend(signals.into_array().map(|open| f64::from(u8::from(open)))),
                 None => self.row.extend([f64::NAN; 3]),
             }
+        }
+        if let Some(heard) = &mut self.unit {
+            let read = [sample.inertial.specific_force_m_s2, sample.inertial.rate_rad_s];
+            *heard |= read.as_flattened().iter().any(|value| value.is_finite());
+            self.row.extend(read.as_flattened());
         }
         match &mut self.file {
             RowFile::Csv(file) => file.row(&self.row),
@@ -155,6 +168,11 @@ impl<'f> Columns<'f> {
         }
     }
 
+    /// Whether a unit is wanted that has said nothing.
+    fn lacks_unit(&self) -> bool {
+        self.unit == Some(false)
+    }
+
     fn finish(self) -> io::Result<()> {
         match self.file {
             RowFile::Csv(_) => Ok(()),
@@ -164,13 +182,21 @@ impl<'f> Columns<'f> {
     }
 }
 
-/// The names of the columns: number of the drive, time in it, and everything of every corner.
-fn names() -> Vec<String> {
+fn no_unit() -> Failure {
+    Failure::new("--imu: the log has no message of an inertial unit (oleo show imu-dbc): leave the option out")
+}
+
+/// The names of the columns: number of the drive, time in it, everything of every corner, and the inertial unit if it is wanted.
+fn names(with_unit: bool) -> Vec<String> {
     let mut names = vec!["drive".to_owned(), "time_s".to_owned()];
     for corner in Corner::ALL.map(Corner::key) {
         names.push(format!("displacement_{corner}_m"));
         names.extend((1..=4).map(|point| format!("p{point}_{corner}_Pa")));
         names.extend((1..=3).map(|valve| format!("valve{valve}_{corner}")));
+    }
+    if with_unit {
+        names.extend(["x", "y", "z"].map(|axis| format!("imu_specific_force_{axis}_m_s2")));
+        names.extend(["x", "y", "z"].map(|axis| format!("imu_rate_{axis}_rad_s")));
     }
     names
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use oleo_diagnose::MODEL_FILE;
-use oleo_diagnose::vehicle::{self, VehicleCampaign, VehicleDiagnosis, VehicleModel};
+use oleo_diagnose::vehicle::{self, BodyModel, VehicleCampaign, VehicleDiagnosis, VehicleModel};
 use oleo_hil::logs::Format;
 use oleo_report::Progress;
 
@@ -68,9 +68,16 @@ pub fn run(logs: &Logs, database: &DatabaseArgs, results: &ResultsArgs) -> Resul
     // Staged before the work: Ctrl-C from here on removes the folder and ends with nothing half-written.
     let folder = logs.model.parent().unwrap_or(Path::new("."));
     let struts = campaign.model.files.values().map(|file| folder.join(file));
+    let body = campaign
+        .model
+        .body
+        .as_ref()
+        .and_then(BodyModel::own_file)
+        .map(|file| folder.join(file));
     let inputs = (logs.logs.iter().cloned())
         .chain([logs.model.clone()])
         .chain(struts)
+        .chain(body)
         .chain(database.inputs());
     let name = format!("diagnose-{}", campaign.model.name);
     let mut out = results.stage("oleo diagnose", &name, inputs.collect())?;

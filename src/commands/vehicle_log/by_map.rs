@@ -6,8 +6,14 @@ use oleo_diagnose::vehicle::Resolution;
 use oleo_hil::signal_log::{self, Database, Selection, SignalAccount, SignalMap, SignalPart, Survey};
 use oleo_interface::Corners;
 
-use super::content::{Part, PartSink, StrutSample, others, plural};
+use super::content::{InertialSample, Part, PartSink, StrutSample, VehicleSample, others, plural};
 use crate::failure::Failure;
+
+/// Maps have no inertial unit.
+const NO_UNIT: InertialSample = InertialSample {
+    specific_force_m_s2: [f64::NAN; 3],
+    rate_rad_s: [f64::NAN; 3],
+};
 
 /// The signals that are taken of a log.
 pub struct ByMap(Selection);
@@ -42,11 +48,14 @@ impl ByMap {
         };
         let account = signal_log::stream(path, &self.0, &survey, &mut |part| match part {
             SignalPart::Begins(_) => sink(begins),
-            SignalPart::Sample(struts) => sink(Part::Sample(&struts.map(|strut| StrutSample {
-                displacement_m: strut.displacement_m,
-                pressure_pa: strut.pressure_pa.into_array(),
-                valves: strut.valves,
-            }))),
+            SignalPart::Sample(struts) => sink(Part::Sample(&VehicleSample {
+                struts: struts.map(|strut| StrutSample {
+                    displacement_m: strut.displacement_m,
+                    pressure_pa: strut.pressure_pa.into_array(),
+                    valves: strut.valves,
+                }),
+                inertial: NO_UNIT,
+            })),
         })?;
         Ok(in_words(&account, &survey))
     }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use oleo_diagnose::vehicle::{Drive, StrutSamples};
+use oleo_diagnose::vehicle::{Drive, InertialSamples, StrutSamples};
 use oleo_hil::logs::Account;
 use oleo_interface::{Corners, StrutValves};
 
@@ -17,11 +17,29 @@ pub enum Part<'a> {
         of_several: bool,
     },
     /// The next sample of the drive.
-    Sample(&'a Corners<StrutSample>),
+    Sample(&'a VehicleSample),
 }
 
 /// Takes the drives of a log piece by piece, and may end the reading.
 pub type PartSink<'a> = dyn FnMut(Part) -> ControlFlow<()> + 'a;
+
+/// A sample of a vehicle.
+#[derive(Clone, Copy)]
+pub struct VehicleSample {
+    /// The four struts.
+    pub struts: Corners<StrutSample>,
+    /// The inertial unit.
+    pub inertial: InertialSample,
+}
+
+/// A sample of an inertial unit, in its own axes. What was not received is NaN.
+#[derive(Clone, Copy)]
+pub struct InertialSample {
+    /// Specific force along x, y, z, m/s2.
+    pub specific_force_m_s2: [f64; 3],
+    /// Angular velocity about x, y, z, rad/s.
+    pub rate_rad_s: [f64; 3],
+}
 
 /// A sample of one strut. What was not received is NaN or `None`.
 #[derive(Clone, Copy)]
@@ -72,14 +90,21 @@ impl Collected {
                     pressure_pa: std::array::from_fn(|_| Vec::new()),
                     valves: Vec::new(),
                 }),
+                inertial: InertialSamples::default(),
             }),
-            (Part::Sample(samples), Some(drive)) => {
-                for (strut, sample) in drive.struts.values_mut().zip(samples.values()) {
+            (Part::Sample(sample), Some(drive)) => {
+                for (strut, sample) in drive.struts.values_mut().zip(sample.struts.values()) {
                     strut.displacement_m.push(sample.displacement_m);
                     for (series, value) in strut.pressure_pa.iter_mut().zip(sample.pressure_pa) {
                         series.push(value);
                     }
                     strut.valves.push(sample.valves);
+                }
+                let of_unit = (drive.inertial.specific_force_m_s2.iter_mut()).zip(sample.inertial.specific_force_m_s2);
+                for (series, value) in
+                    of_unit.chain(drive.inertial.rate_rad_s.iter_mut().zip(sample.inertial.rate_rad_s))
+                {
+                    series.push(value);
                 }
             }
             (Part::Sample(_), None) => {}

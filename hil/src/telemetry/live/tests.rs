@@ -107,7 +107,7 @@ fn a_silent_viewer_does_not_change_the_run() {
     let drive =
         |watch: crate::run::Watch| both(&scenario, vehicle(&scenario).expect("a vehicle"), 1, watch).expect("a run");
     let alone = drive(&mut |_| true);
-    let mut live = Live::begin(0, "oleo hil", Rows::new(false), false).expect("a free port");
+    let mut live = Live::begin(0, "oleo hil", Rows::new(false, false), false).expect("a free port");
     let _connected_only = TcpStream::connect(live.server.address()).expect("a server");
     let mut subscribed = connect(live.server.address(), "foxglove.websocket.v1").expect("let in");
     let all: Vec<_> = (1..8)

@@ -9,7 +9,7 @@ use crate::handling::axle_place::AxleCoordinates;
 use crate::handling::motion::HandlingMotion;
 use crate::handling::wheel::WheelState;
 use crate::vehicle::suspension::SuspensionElement;
-use crate::vehicle::{GRAVITY_M_S2, SeatAcceleration};
+use crate::vehicle::{GRAVITY_M_S2, InertialReading, RigidMotion, SeatAcceleration};
 
 impl<E: SuspensionElement> HandlingModel<E> {
     /// Time since the start, s: an exact multiple of the step.
@@ -112,13 +112,24 @@ impl<E: SuspensionElement> HandlingModel<E> {
 
     /// What an accelerometer at a place of the body reads; the place in body axes (ahead, left, up) from its centre of mass, m.
     pub fn acceleration_at(&self, place_m: [f64; 3]) -> SeatAcceleration {
-        let place = Vector3::from(place_m);
-        let w = self.angular;
-        let felt = self.acceleration.linear + self.acceleration.angular.cross(&place) + w.cross(&w.cross(&place));
+        let felt = self.rigid_motion().specific_force_at(place_m);
         SeatAcceleration {
             fore_aft_m_s2: felt.x,
             lateral_m_s2: felt.y,
             vertical_m_s2: felt.z - GRAVITY_M_S2,
+        }
+    }
+
+    /// What an inertial unit at a place of the body reads; the place in body axes (ahead, left, up) from its centre of mass, m.
+    pub fn inertial_at(&self, place_m: [f64; 3]) -> InertialReading {
+        self.rigid_motion().reading_at(place_m)
+    }
+
+    fn rigid_motion(&self) -> RigidMotion {
+        RigidMotion {
+            specific_force: self.acceleration.linear,
+            rate: self.angular,
+            acceleration: self.acceleration.angular,
         }
     }
 

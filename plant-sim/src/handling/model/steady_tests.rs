@@ -231,3 +231,50 @@ fn links_carry_their_share_of_the_load_transfer() {
         }
     }
 }
+
+/// In a steady bend a unit in the centre of mass reads gravity and `v r` together, whatever the roll, and at another place of the body
+/// `r^2` times the distance from the vertical axis less; speed and yaw rate are taken from the path through the world alone.
+#[test]
+fn an_inertial_unit_in_a_bend_reads_what_the_circle_says() {
+    let speed = 15.0;
+    let mut model = on_springs(&preset(), 4000.0, Arc::new(Flat), speed);
+    let mut path = Vec::new();
+    for step in 0..9000 {
+        let held = hold(&model, speed);
+        model.step(
+            Corners::default(),
+            Controls {
+                steer_rad: 0.06,
+                ..held
+            },
+        );
+        if step >= 8900 {
+            path.push(Vector3::from(model.motion().position_m));
+        }
+    }
+    let motion = model.motion();
+    let [before, after] = [path[98] - path[97], path[99] - path[98]];
+    let yaw_rate = before.cross(&after).z / before.norm_squared() / model.step_s();
+    let driven = after.norm() / model.step_s();
+    assert!(
+        motion.roll_rad.abs() > 0.02 && yaw_rate > 0.2,
+        "{} {yaw_rate}",
+        motion.roll_rad
+    );
+
+    let centre = Vector3::from(model.inertial_at([0.0; 3]).specific_force_m_s2);
+    let expected = libm::hypot(GRAVITY_M_S2, driven * yaw_rate);
+    assert!((centre.norm() - expected).abs() < 2e-3, "{} {expected}", centre.norm());
+    let (sin, cos) = libm::sincos(motion.roll_rad);
+    let rate = model.inertial_at([0.0; 3]).rate_rad_s;
+    assert!(
+        (rate[1] - yaw_rate * sin).abs() < 1e-3 && (rate[2] - yaw_rate * cos).abs() < 1e-3,
+        "{rate:?}"
+    );
+
+    let ahead = Vector3::from(model.inertial_at([1.4, 0.0, 0.0]).specific_force_m_s2) - centre;
+    assert!(
+        (ahead.x + 1.4 * yaw_rate * yaw_rate).abs() < 1e-3 && ahead.yz().norm() < 5e-3,
+        "{ahead}"
+    );
+}

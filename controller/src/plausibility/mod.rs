@@ -415,7 +415,7 @@ mod tests {
     #[test]
     fn valves_1_and_3_are_looked_at_in_every_second_turn_each() {
         let comes_and_goes = |tick: u32| {
-            let pressure = 2.0e6 + if tick / 8 % 2 == 0 { 0.22e6 } else { -0.22e6 };
+            let pressure = 2.0e6 + if (tick / 8).is_multiple_of(2) { 0.22e6 } else { -0.22e6 };
             let pressure = StrutPressures {
                 p3: Gauge(2.0e6),
                 p4: Gauge(2.0e6),

@@ -9,7 +9,7 @@
 //!
 //! Roads, bends and springs are [`super::road_and_cornering`]'s: a spring valve rests for 0.5 s after a change, which is beyond any forecast.
 //! The levels are both bypass valves open, valve 1 closed, and both closed. Every 20 ms, for each corner and level, the force of the strut
-//! over the next 160 ms is computed ([`super::parts::forecast`]), in which the valves act as late as they are. With `f_i(k)` the force of
+//! over the next 160 ms is computed (`parts/forecast.rs`), in which the valves act as late as they are. With `f_i(k)` the force of
 //! strut `i` beyond its load in step `k` of length `h`, a combination of levels costs
 //!
 //! ```text
@@ -22,8 +22,8 @@
 //! passes 0.4 below 2 Hz and 1 above 5 Hz. The sums over the struts of an axle are shared by all combinations. A corner whose valves have
 //! moved keeps them for 100 ms, as `dwell` would, and others change only for a cost that is less by a part.
 //!
-//! The speed of the road is found under the front wheels ([`super::parts::wheel`]), and the rear ones meet it after the delay that
-//! [`crate::wheelbase`] finds. Where no delay is known the road ahead is taken for flat. Forecasts at the front, where it always is, can be
+//! The speed of the road is found under the front wheels (`parts/wheel.rs`), and the rear ones meet it after the delay that
+//! `wheelbase.rs` finds. Where no delay is known the road ahead is taken for flat. Forecasts at the front, where it always is, can be
 //! switched on and earn nothing (`docs/controller.md`).
 //!
 //! Bounds: a decision is 12 forecasts of 16 steps and 81 costs of 16 steps, whatever the input is.

@@ -8,7 +8,7 @@
 //!
 //! What the struts push the body with is known from p1, the piston's area, the believed friction of the seal and the believed stops; what the bars
 //! do to it from the difference of two displacements. Below 6 Hz both sides of the balance are the same linear combination of smooth
-//! series, so that noise of the rates is small beside the motion although it is differentiated ([`band`]).
+//! series, so that noise of the rates is small beside the motion although it is differentiated (`band`).
 //!
 //! | file | what it holds |
 //! |---|---|

@@ -9,7 +9,7 @@
 //!   SH-ADD              the first where |a| < alpha |v|, which is near the body's resonance, else the second
 //! ```
 //!
-//! Nell & Steyn's rule looks at the body as a whole and is in [`super::nell_steyn`]; the stops are treated alike.
+//! Nell & Steyn's rule looks at the body as a whole and is in `nell_steyn.rs`; the stops are treated alike.
 //!
 //! Sources: Karnopp, Crosby & Harwood, "Vibration control using semi-active force generators", J. Eng. Ind. 96 (1974);
 //! Hoelscher & Huang as described by Nell & Steyn (report, reference 16); Savaresi & Spelta, "Mixed Sky-Hook and ADD: approaching the

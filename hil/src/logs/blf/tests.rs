@@ -155,14 +155,17 @@ fn a_file_that_was_cut_off_says_how_many_frames_were_good() {
     let objects: Vec<u8> = (0..10).flat_map(|k| classic(1, 1000 * k, 1, 0, &[k as u8])).collect();
     let first = file(&[container(&objects[..260], 2)]);
     let whole = [first.clone(), container(&objects[260..], 2)].concat();
+    // How far the container is padded depends on how well it was packed; the padding is not needed, and not always told from what follows.
+    let size = u32::from_le_bytes([first[152], first[153], first[154], first[155]]);
+    let needed = 144 + size as usize;
     for end in [whole.len() - 20, first.len() + 1, first.len() + 17] {
         let (account, frames) = read(&whole[..end]);
         let said = account.expect_err("cut off");
-        let at = format!("in its container at byte {}, after 5 whole frames; ", first.len());
-        assert!(
-            said.contains(&at) && said.contains(&format!("head -c {}", first.len())),
-            "{said}"
-        );
+        let says = |byte: usize| {
+            let at = format!("in its container at byte {byte}, after 5 whole frames; ");
+            said.contains(&at) && said.contains(&format!("head -c {byte}"))
+        };
+        assert!(says(needed) || says(first.len()), "{said}");
         assert_eq!(frames.len(), 5);
     }
     // What the advice leaves: the object that goes on in the next container is counted.

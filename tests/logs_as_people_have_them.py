@@ -343,7 +343,7 @@ def diagnosed(log, *options):
     for key in ("runtime_s", "inputs", "notes", "command"):
         report.pop(key, None)
     # A recording is called as its log.
-    return json.loads(json.dumps(report).replace(log.split(".")[0], "LOG"))
+    return json.loads(re.sub(rf"\b{log.split('.')[0]}\b", "LOG", json.dumps(report)))
 
 
 def diagnoses():

@@ -7,6 +7,10 @@ use super::drive::Drive;
 use super::model::VehicleModel;
 use crate::body::{Believed, BodyDrive, BodyEffect, BodyEffectId, BodyFindings, find};
 
+/// What a payload means for what is said of the struts, which know nothing of the balance.
+const STRUTS_UNDER_A_LOAD: &str = "What is said of the struts holds only if their files state the static pressure under this load \
+                                   (static_pressure_Pa is p1 at rest); otherwise it is the load, under other names.";
+
 /// A believed body with drives that have an inertial unit.
 pub struct BodyCampaign {
     believed: Believed,
@@ -96,9 +100,18 @@ pub fn sentence(body: &Result<BodyFindings, String>) -> String {
         }
         Ok(findings) => {
             let found: Vec<String> = findings.effects.iter().map(phrase).collect();
-            format!(" The balance of the body shows {}.", found.join("; "))
+            let struts = if has_payload(findings) {
+                format!(" {STRUTS_UNDER_A_LOAD}")
+            } else {
+                String::new()
+            };
+            format!(" The balance of the body shows {}.{struts}", found.join("; "))
         }
     }
+}
+
+fn has_payload(findings: &BodyFindings) -> bool {
+    findings.effects.iter().any(|effect| effect.id == BodyEffectId::Payload)
 }
 
 fn phrase(effect: &BodyEffect) -> String {
@@ -139,6 +152,9 @@ pub fn section(page: &mut Page, body: &Result<BodyFindings, String>) {
         page.text("Nothing is named: all differences are within what a vehicle may differ from its model by.");
         return;
     }
+    if has_payload(findings) {
+        page.text(STRUTS_UNDER_A_LOAD);
+    }
     let mut table = Table::new([
         Column::text("Found"),
         Column::text("Place"),
@@ -158,4 +174,23 @@ pub fn section(page: &mut Page, body: &Result<BodyFindings, String>) {
         }
     }
     page.table(table);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use oleo_interface::Axle;
+
+    #[test]
+    fn a_payload_comes_with_a_warning_about_the_struts() {
+        let found = |id: BodyEffectId| {
+            Ok(BodyFindings {
+                effects: vec![BodyEffect { id, parameters: vec![] }],
+                used_s: 60.0,
+                residual_rms: [1.0; 3],
+            })
+        };
+        assert!(sentence(&found(BodyEffectId::Payload)).contains("static_pressure_Pa"));
+        assert!(!sentence(&found(BodyEffectId::AntiRollBar(Axle::Rear))).contains("static_pressure_Pa"));
+    }
 }

@@ -239,6 +239,7 @@ fn found_from(candidate: &Candidate, least_sizes: &[LeastSize]) -> String {
         let number = &candidate.parameters[least.parameter];
         let (key, value) = number.as_reported(least.value);
         let (name, unit) = words::parameter(key);
+        let unit = unit.replace("relative", "");
         let bound = if number.inverse_of.is_some() {
             "at most"
         } else {

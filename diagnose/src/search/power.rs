@@ -208,12 +208,19 @@ mod tests {
         );
     }
 
-    /// A number without a size has none, and one that changes nothing is shown by nothing.
     #[test]
-    fn what_the_recordings_do_not_answer_to_is_shown_at_no_size() {
-        let fragile = least_sizes(FRAGILE, &[]);
-        assert!(fragile.iter().all(|size| size.value.is_none()), "{fragile:?}");
-        assert!(least_sizes(VIBRATION, &[]).len() <= 1);
+    fn what_changes_nothing_is_shown_at_no_size_and_a_frequency_is_none() {
+        let shown = least_sizes(FRAGILE, &[]);
+        assert_eq!(
+            shown,
+            [LeastSize {
+                parameter: 0,
+                value: None
+            }]
+        );
+        // An amplitude is a size, and the frequency beside it is not.
+        let of_vibration: Vec<usize> = least_sizes(VIBRATION, &[]).iter().map(|size| size.parameter).collect();
+        assert_eq!(of_vibration, [0]);
     }
 
     #[test]

@@ -37,48 +37,58 @@ pub struct Contract {
     pub timeout_ticks: u8,
 }
 
-const fn contract(number: u16, name: &'static str, id: u16, period_ms: u32) -> Contract {
-    let mut data_ids = [0; 16];
-    let mut counter = 0;
-    // Distinct between messages at the same counter, and between neighbouring counters of a message; below 251, which
-    // the profile recommends for lists.
-    while counter < 16 {
-        data_ids[counter as usize] = ((3 + 17 * number + 29 * counter) % 251) as u8;
-        counter += 1;
-    }
-    Contract {
-        name,
-        id,
-        length: FRAME_BYTES,
-        period_ms,
-        data_ids,
-        max_delta: 3,
-        timeout_ticks: 4,
+impl Contract {
+    /// The contract of the message of a number, counted from 0 over all databases of a bus, from which its data identifiers follow.
+    ///
+    /// ```
+    /// use oleo_controller::can::Contract;
+    /// const RATES: Contract = Contract::numbered(10, "IMU_RATE", 0x121, 5);
+    /// assert_eq!((RATES.id, RATES.data_ids[0]), (0x121, 173));
+    /// ```
+    #[must_use]
+    pub const fn numbered(number: u16, name: &'static str, id: u16, period_ms: u32) -> Self {
+        let mut data_ids = [0; 16];
+        let mut counter = 0;
+        // Distinct between messages at the same counter, and between neighbouring counters of a message; below 251, which
+        // the profile recommends for lists.
+        while counter < 16 {
+            data_ids[counter as usize] = ((3 + 17 * number + 29 * counter) % 251) as u8;
+            counter += 1;
+        }
+        Self {
+            name,
+            id,
+            length: FRAME_BYTES,
+            period_ms,
+            data_ids,
+            max_delta: 3,
+            timeout_ticks: 4,
+        }
     }
 }
 
 /// Pressures p1 to p4 of the strut at each corner.
 pub const PRESSURE: Corners<Contract> = Corners::from_array([
-    contract(0, "PRESSURE_FRONT_LEFT", 0x110, TICK_MS),
-    contract(1, "PRESSURE_FRONT_RIGHT", 0x111, TICK_MS),
-    contract(2, "PRESSURE_REAR_LEFT", 0x112, TICK_MS),
-    contract(3, "PRESSURE_REAR_RIGHT", 0x113, TICK_MS),
+    Contract::numbered(0, "PRESSURE_FRONT_LEFT", 0x110, TICK_MS),
+    Contract::numbered(1, "PRESSURE_FRONT_RIGHT", 0x111, TICK_MS),
+    Contract::numbered(2, "PRESSURE_REAR_LEFT", 0x112, TICK_MS),
+    Contract::numbered(3, "PRESSURE_REAR_RIGHT", 0x113, TICK_MS),
 ]);
 
 /// Displacements of the two struts of each axle, and the sender's tick.
 pub const DISPLACEMENT: Axles<Contract> = Axles::new(
-    contract(4, "DISPLACEMENT_FRONT", 0x114, TICK_MS),
-    contract(5, "DISPLACEMENT_REAR", 0x115, TICK_MS),
+    Contract::numbered(4, "DISPLACEMENT_FRONT", 0x114, TICK_MS),
+    Contract::numbered(5, "DISPLACEMENT_REAR", 0x115, TICK_MS),
 );
 
 /// The valve command, from the controller to the output stage.
-pub const COMMAND: Contract = contract(6, "COMMAND", 0x0A0, TICK_MS);
+pub const COMMAND: Contract = Contract::numbered(6, "COMMAND", 0x0A0, TICK_MS);
 
 /// The controller's state, for people and loggers.
-pub const STATUS: Contract = contract(7, "STATUS", 0x300, 100);
+pub const STATUS: Contract = Contract::numbered(7, "STATUS", 0x300, 100);
 
 /// The state of the controller's board, for people and loggers. A simulated controller has none and does not send it.
-pub const BOARD: Contract = contract(8, "BOARD", 0x301, 1000);
+pub const BOARD: Contract = Contract::numbered(8, "BOARD", 0x301, 1000);
 
 /// Everything on the bus: what sensors send, in sending order, then the controller's three messages.
 pub const MESSAGES: [Contract; 9] = {

@@ -4,31 +4,16 @@
 //! the controller waits for waits for them longer than one frame takes.
 
 use oleo_controller::can::bus_load::{BIT_RATES, bits_a_second};
-use oleo_controller::can::{Contract, FRAME_BYTES, MESSAGES as OF_SUSPENSION};
+use oleo_controller::can::{Contract, MESSAGES as OF_SUSPENSION};
 use oleo_interface::tick::TICK_MS;
 
+/// Numbers go on where those of the suspension's messages end.
+const FIRST: u16 = OF_SUSPENSION.len() as u16;
 /// Three specific forces, then three rates.
-pub const MESSAGES: [Contract; 2] = [contract(0, "IMU_SPECIFIC_FORCE", 0x120), contract(1, "IMU_RATE", 0x121)];
-
-/// The lists of data identifiers go on where those of the suspension's messages end.
-const fn contract(number: u16, name: &'static str, id: u16) -> Contract {
-    let number = OF_SUSPENSION.len() as u16 + number;
-    let mut data_ids = [0; 16];
-    let mut counter = 0;
-    while counter < 16 {
-        data_ids[counter as usize] = ((3 + 17 * number + 29 * counter) % 251) as u8;
-        counter += 1;
-    }
-    Contract {
-        name,
-        id,
-        length: FRAME_BYTES,
-        period_ms: TICK_MS,
-        data_ids,
-        max_delta: 3,
-        timeout_ticks: 4,
-    }
-}
+pub const MESSAGES: [Contract; 2] = [
+    Contract::numbered(FIRST, "IMU_SPECIFIC_FORCE", 0x120, TICK_MS),
+    Contract::numbered(FIRST + 1, "IMU_RATE", 0x121, TICK_MS),
+];
 
 /// Position in [`MESSAGES`] of the message with a standard identifier, if it is one of the unit's.
 pub fn of_unit(id: Option<u16>) -> Option<usize> {

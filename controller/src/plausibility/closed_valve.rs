@@ -4,9 +4,9 @@
 //! valve that is stuck open, or that has been opened by somebody else, lets p4 follow p3.
 //!
 //! *Valve 1.* All oil that changes p2 has gone through damper 1 or past it. The pack takes 0.3 MPa in jounce and 0.6 MPa in rebound
-//! where the strut moves at 0.1 m/s, and the open bypass 0.01 MPa (`oleo rig damping`). So p1 - p2 swings at least as far as p2
+//! where the strut moves at 0.1 m/s, and the open bypass 0.01 MPa (`oleo rig damping`). So p1 - p2 swings as a rule about as far as p2
 //! changes from one look to the next, and by a tenth of that where the oil goes past the pack. At the speeds of wheels on very rough
-//! roads both come closer to each other, hence the many windows. A pack that has lost two thirds of its damping is found as well.
+//! roads both come closer to each other, hence the many windows. A pack that leaks as much as an open valve is found as well.
 //!
 //! Spans are compared in windows of 0.5 s, each of which begins when the valve has been closed for 0.3 s at least:
 //!

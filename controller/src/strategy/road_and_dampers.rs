@@ -127,4 +127,22 @@ mod tests {
             );
         }
     }
+
+    #[test]
+    fn every_value_has_its_range() {
+        assert_eq!(RoadAndDampers::check(&Tuning::default()), Ok(()));
+        let name = |change: fn(&mut Tuning)| {
+            let mut tuning = Tuning::default();
+            change(&mut tuning);
+            RoadAndDampers::check(&tuning).map_err(|error| error.name)
+        };
+        assert_eq!(
+            name(|tuning| tuning.road.rough_m_s2.begin = 11.0),
+            Err("tuning.strategy.road_and_cornering.rough_m_s2")
+        );
+        assert_eq!(
+            name(|tuning| tuning.dampers.body_acceleration_share = -1.0),
+            Err("tuning.strategy.ride_handling.dampers.body_acceleration_share")
+        );
+    }
 }

@@ -169,7 +169,12 @@ mod tests {
     }
 
     /// What is set after a second in which the struts are compressed at these speeds, m/s, while heave, roll and pitch accelerate.
-    fn settled(speed_m_s: Corners<f32>, [heave, roll, pitch]: Motions) -> [bool; 4] {
+    fn settled(speed_m_s: Corners<f32>, motions: Motions) -> [bool; 4] {
+        settled_on(0.0, speed_m_s, motions)
+    }
+
+    /// The same on a road of this mean square of the vertical acceleration, m2/s4.
+    fn settled_on(mean_square: f32, speed_m_s: Corners<f32>, [heave, roll, pitch]: Motions) -> [bool; 4] {
         let (c, mut state) = (parameters(), State::INITIAL);
         let estimate = Estimate {
             strut_speed_m_s: speed_m_s,
@@ -177,6 +182,7 @@ mod tests {
             roll_acceleration_rad_s2: roll,
             pitch_acceleration_rad_s2: pitch,
             static_load_n: Corners::splat(LOAD_N),
+            vertical_mean_square: mean_square,
             ..Estimate::default()
         };
         let trusted = Trusted {
@@ -215,6 +221,34 @@ mod tests {
         assert_eq!(settled(compressed, [0.0, 0.0, -2.0]), [false, false, true, true]);
     }
 
+    /// The body rests below 2.2 times the running RMS: at an RMS of 2 m/s2 below 4.4 m/s2, and at one of 1 m/s2 below 2.2.
+    #[test]
+    fn more_is_left_alone_on_a_rougher_road() {
+        let compressed = Corners::splat(0.2);
+        assert_eq!(settled_on(4.0, compressed, [-3.8, 0.0, 0.0]), [false; 4]);
+        assert_eq!(settled_on(1.0, compressed, [-3.8, 0.0, 0.0]), [true; 4]);
+    }
+
+    /// A strut that does not move would have the force that it has at either setting, whatever its sensor reads too much.
+    #[test]
+    fn the_offset_of_a_sensor_is_no_force() {
+        let mut state = State::INITIAL;
+        let mut trusted = Trusted {
+            pressure: Corners::splat(StrutPressures::splat(Gauge(2.0e6))),
+            charge: Corners::splat(Absolute(2.101_325e6)),
+            p1_offset_pa: Corners::splat(1.0e5),
+            ..Trusted::default()
+        };
+        trusted
+            .pressure
+            .values_mut()
+            .for_each(|pressure| pressure.p1 = Gauge(2.1e6));
+        state.step(&parameters(), &Estimate::default(), &trusted);
+        for more_n in state.more_n.values() {
+            assert!(more_n.iter().all(|more_n| more_n.abs() < 0.1), "{more_n:?} N");
+        }
+    }
+
     /// One cost by hand: 1 m/s2 of heave, 2 m/s upwards, and 100 N more at one strut in 16,000 N.
     #[test]
     fn the_cost_is_the_sum_of_squares_of_the_three_motions() {
@@ -248,5 +282,23 @@ mod tests {
         };
         assert_eq!((with(40.0, 0), with(40.0, 15)), (0, 15), "9.0 against 8.4 m2/s4");
         assert_eq!((with(200.0, 0), with(-200.0, 15)), (15, 0), "9.0 against 6.3 m2/s4");
+    }
+
+    /// Of combinations that cost the same the one with fewer high dampers is taken, and below the least cost, 0.25 m2/s4, none is high,
+    /// however good it would be.
+    #[test]
+    fn no_damper_is_set_high_for_nothing() {
+        let (c, per_mass) = (parameters(), GRAVITY_M_S2 / (4.0 * LOAD_N));
+        let with = |heave_m_s2: f32, more_n: [f32; 4]| {
+            let mut state = State {
+                acceleration_m_s2: [heave_m_s2, 0.0, 0.0],
+                ..State::INITIAL
+            };
+            state.more_n = Corners::from_array(more_n.map(|more_n| [0.0, more_n]));
+            state.least(&c, per_mass, LEAST_2)
+        };
+        assert_eq!(with(-3.0, [200.0; 4]), 0b1111);
+        assert_eq!(with(-3.0, [200.0, 200.0, 0.0, 0.0]), 0b0011, "struts that stand still");
+        assert_eq!((with(-0.49, [50.0; 4]), with(-0.5, [50.0; 4])), (0, 0b1111));
     }
 }

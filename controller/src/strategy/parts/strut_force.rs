@@ -217,6 +217,53 @@ mod tests {
         }
     }
 
+    /// At rest it is laminar: `dd / dq = sqrt(p_t) / c`, by hand 141.4 / 3.2e-6 Pa s/m3.
+    #[test]
+    fn the_orifice_is_laminar_at_rest() {
+        let (drop, slope) = orifice(BYPASS_2, 0.0);
+        assert_eq!(drop, 0.0);
+        assert!((slope / 4.419e7 - 1.0).abs() < 1e-3, "{slope} Pa s/m3");
+    }
+
+    /// No step is too long: at its end the pressures are those that let the oil flow as it does, so that the force there is that of the gases
+    /// as they are then. The oil that has come in is in the two gases, `V k dp / p^2` each.
+    #[test]
+    fn a_long_step_ends_in_balance() {
+        let strut = StrutForce::new(&VehicleDescription::default());
+        for (p2, p4) in [(2.0e6, 2.0e6), (2.6e6, 1.9e6), (1.7e6, 2.3e6)] {
+            for (speed_m_s, open) in [
+                (0.0, [true, true]),
+                (0.03, [true, true]),
+                (-0.05, [false, true]),
+                (0.08, [false, false]),
+            ] {
+                let pressure = StrutPressures {
+                    p1: Gauge(0.0),
+                    p2: Gauge(p2),
+                    p3: Gauge(0.0),
+                    p4: Gauge(p4),
+                };
+                let before = Gases::measured(&pressure, Absolute(2.101_325e6));
+                let mut gases = before;
+                let force_n = strut.step(&mut gases, speed_m_s, open, 0.1);
+                let then_n = strut.step(&mut gases.clone(), speed_m_s, open, 0.0);
+                assert!(
+                    (force_n - then_n).abs() < 2.0,
+                    "{force_n} N, {then_n} N at {speed_m_s} m/s from {p2} and {p4} Pa"
+                );
+                let oil_m3 = |volume_m3: f32, gas: usize| {
+                    let (from_pa, to_pa) = (before.pressure_pa[gas], gases.pressure_pa[gas]);
+                    volume_m3 * 2.101_325e6 * (to_pa - from_pa) / (from_pa * from_pa)
+                };
+                let oil_m3 = oil_m3(1.0e-4, 0) + oil_m3(4.0e-4, 1);
+                assert!(
+                    (oil_m3 - AREA * speed_m_s * 0.1).abs() < 1e-8,
+                    "{oil_m3} m3 at {speed_m_s} m/s"
+                );
+            }
+        }
+    }
+
     /// A slow compression by 10 mm with all valves open: both gases share one pressure, `p = k V / (V - A x)`.
     #[test]
     fn slow_compression_is_that_of_both_gases() {

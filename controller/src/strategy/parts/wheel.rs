@@ -150,6 +150,24 @@ mod tests {
         );
     }
 
+    /// A body that is pulled up at 2 m/s2 extends its strut. The wheel stays where it is as long as the body has no speed, and is lifted off its
+    /// tyre by one that has: by hand in 10 ms, at 1 m/s of both together, 10 mm.
+    #[test]
+    fn a_wheel_moves_with_strut_and_body() {
+        let mut wheel = Wheel::INITIAL;
+        let rising = Acting {
+            body_m_s2: 2.0,
+            ..STILL
+        };
+        wheel.advance(&rising, 0.01);
+        assert!((wheel.strut_m_s + 0.02).abs() < 1e-6, "{wheel:?}");
+        let mut wheel = Wheel::INITIAL;
+        let lifted = Acting { body_m_s: 1.0, ..STILL };
+        wheel.advance(&lifted, 0.01);
+        assert_eq!((wheel.strut_m_s, wheel.strut_m), (0.0, 0.0));
+        assert!((wheel.tyre_m + 0.01).abs() < 1e-6, "{wheel:?}");
+    }
+
     /// A tyre off the ground pulls with nothing: what is left is the weight of the wheel and of what stands on it.
     #[test]
     fn a_lifted_wheel_falls() {

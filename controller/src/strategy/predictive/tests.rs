@@ -65,6 +65,102 @@ fn forces_become_motions_at_the_seats() {
     assert_eq!(c.cost.of(&sums, [1, 1], [1, 1], [0.0; 3], [0.0; 3]), 0.0);
 }
 
+/// Equal forces at all four struts lift the body and hardly pitch it, and a body that falls as fast as they lift it comes to rest: by hand
+/// 0.98 m/s2, 0.157 m/s in 160 ms. Then velocities cost nothing, and else three times their square.
+#[test]
+fn forces_of_all_struts_add_up_and_brake_the_body() {
+    let c = strategy(&Tuning::default());
+    let courses = Corners::splat([[392.7; STEPS]; LEVELS.len()]);
+    let sums = Sums::of(&courses, &c.levers, GRAVITY_M_S2 / (4.0 * 2.0e6 * AREA_M2));
+    let cost = |heave_m_s: f32| c.cost.of(&sums, [1, 1], [1, 1], [heave_m_s, 0.0, 0.0], [0.0; 3]);
+    let lifted_m_s = 0.980_7 * 0.16;
+    let at_rest = cost(-lifted_m_s);
+    for heave_m_s in [-0.5, 0.0, 0.5] {
+        let end_m_s = heave_m_s + lifted_m_s;
+        let velocities = cost(heave_m_s) - at_rest;
+        assert!(
+            (velocities - 3.0 * end_m_s * end_m_s).abs() < 1e-3,
+            "{velocities} m2/s3 at {heave_m_s} m/s"
+        );
+    }
+    let (front, rear) = (sums.axles[0][1][1][0], sums.axles[1][1][1][0]);
+    assert!((front[0] - 0.490_3).abs() < 1e-3 && (rear[0] - 0.490_3).abs() < 1e-3);
+    assert!(front[1].abs() < 1e-6 && rear[1].abs() < 1e-6, "no roll");
+}
+
+/// A place on the left rises in a positive roll, and one ahead falls in a positive pitch.
+#[test]
+fn places_of_the_body_move_with_it() {
+    for (place_m, expected) in [
+        ((1.4, 0.5), 0.1 + 0.5 * 0.2 - 1.4 * 0.3),
+        ((1.4, -0.5), 0.1 - 0.5 * 0.2 - 1.4 * 0.3),
+        ((-1.4, 0.5), 0.1 + 0.5 * 0.2 + 1.4 * 0.3),
+        ((0.0, 0.0), 0.1),
+    ] {
+        let found: f32 = over(place_m, [0.1, 0.2, 0.3]);
+        assert!((found - expected).abs() < 1e-6, "{found} m/s, expected {expected}");
+    }
+}
+
+/// Speed of the road that the front wheels met in the last tick, m/s.
+fn met(state: &State) -> [f32; 2] {
+    state.met_m_s.each_ref().map(|Ring(ring)| ring[state.now])
+}
+
+/// Struts that rest 10 mm in their stops, 2,100 N, on tyres that are compressed by that (8.75 mm) with a sensor that reads 0.1 MPa too
+/// much: nothing moves, and no road is met.
+#[test]
+fn a_wheel_in_balance_meets_no_road() {
+    let (c, mut state) = (strategy(&Tuning::default()), Predictive::INITIAL);
+    let mut trusted = trusted();
+    for corner in Corner::ALL {
+        trusted.pressure[corner].p1 = Gauge(2.1e6);
+    }
+    trusted.p1_offset_pa = Corners::splat(1.0e5);
+    trusted.displacement_m = Corners::splat(0.09);
+    for wheel in state.wheels.values_mut() {
+        (wheel.strut_m, wheel.tyre_m) = (0.09, 2_100.0 / 2.4e5);
+    }
+    let balanced = state.wheels;
+    c.observe(&mut state, &on(2.0), &trusted);
+    for (corner, wheel) in state.wheels.iter() {
+        assert!((wheel.strut_m_s - balanced[corner].strut_m_s).abs() < 1e-3, "{wheel:?}");
+    }
+    assert!(met(&state).into_iter().all(|met_m_s| met_m_s.abs() < 1e-3));
+}
+
+/// A strut that is found 1 mm shorter than it was to be is a road of 7.795 * 1 mm / 5 ms, which is kept for the side of a front wheel.
+#[test]
+fn roads_are_kept_for_the_side_that_met_them() {
+    let c = strategy(&Tuning::default());
+    for (corner, expected) in [
+        (Corner::FrontLeft, [1.559, 0.0]),
+        (Corner::FrontRight, [0.0, 1.559]),
+        (Corner::RearLeft, [0.0, 0.0]),
+    ] {
+        let (mut state, mut trusted) = (Predictive::INITIAL, trusted());
+        trusted.displacement_m[corner] = 0.001;
+        c.observe(&mut state, &on(2.0), &trusted);
+        for (found, expected) in met(&state).into_iter().zip(expected) {
+            assert!((found - expected).abs() < 5e-3, "{found} m/s, expected {expected}");
+        }
+    }
+}
+
+/// Valve 2 was told to close 8 ticks, 40 ms, ago: it acts in the second step.
+#[test]
+fn a_change_is_known_by_its_age() {
+    let (c, mut state) = (strategy(&Tuning::default()), Predictive::INITIAL);
+    let corner = Corner::RearLeft;
+    state.wheels[corner].strut_m_s = 0.5;
+    (state.before[corner], state.level[corner], state.held[corner]) = (1, 2, HOLD_TICKS - 8);
+    let course = |state: &State| c.courses(state, &Corners::splat(false), &on(2.0), &trusted())[corner][0];
+    let moving = course(&state);
+    state.level[corner] = 1;
+    let settled = course(&state);
+    assert_eq!(moving.into_iter().zip(settled).position(|(a, b)| a != b), Some(1));
+}
+
 /// What the front wheel met 30 ticks ago is what the rear one meets now; what comes after the delay is not known.
 #[test]
 fn the_road_ahead_of_the_rear_wheel_is_that_behind_the_front_one() {
@@ -123,6 +219,73 @@ fn rear_valves_move_at_most_every_100_ms_and_front_ones_not_at_all() {
         before = Some(rear);
     }
     assert!(changes > 2, "{changes} changes");
+}
+
+/// Whatever a valve would be allowed to do in between: it is decided every fourth tick.
+#[test]
+fn decisions_are_20_ms_apart() {
+    let (c, mut state) = (strategy(&Tuning::default()), Predictive::INITIAL);
+    let (mut before, mut changes) = (state.level, [0; 4]);
+    for tick in 0..400_u16 {
+        let wave = 0.06 * libm::sinf(2.0 * core::f32::consts::PI * 3.0 * f32::from(tick) * 0.005);
+        let mut trusted = trusted();
+        trusted.displacement_m = Corners::splat(wave);
+        state.held = Corners::splat(0);
+        c.step(&mut state, &on(2.0), &trusted);
+        changes[usize::from(tick % 4)] += u32::from(state.level != before);
+        before = state.level;
+    }
+    assert_eq!(
+        changes.into_iter().filter(|changes| *changes > 0).count(),
+        1,
+        "{changes:?}"
+    );
+    assert!(changes.into_iter().sum::<u32>() > 10, "{changes:?}");
+}
+
+/// What is decided for all four dampers of a body with these velocities over wheels that stand still, if little but the velocities at the
+/// end counts.
+fn braking(velocity: Motions) -> [u8; 4] {
+    let c = strategy(&Tuning {
+        velocity_cost_per_s: 1000.0,
+        front: true,
+        ..Tuning::default()
+    });
+    let mut state = Predictive::INITIAL;
+    state.velocity = velocity;
+    for (corner, wheel) in state.wheels.iter_mut() {
+        wheel.strut_m_s = -over(c.places_m[corner], velocity);
+    }
+    c.decide(&mut state, &on(2.0), &trusted());
+    state.level.into_array()
+}
+
+/// A strut that is moved by the body over it brakes it whichever way it goes, and most with high damping. So one damper of each axle is high
+/// at least; both would now and then turn the motion round.
+#[test]
+fn a_body_that_moves_is_braked_at_both_axles() {
+    for sign in [-1.0, 1.0] {
+        for velocity in [[0.2, 0.0, 0.0], [0.0, 0.3, 0.0], [0.0, 0.0, 0.4]] {
+            let [fl, fr, rl, rr] = braking(velocity.map(|velocity| sign * velocity));
+            assert_eq!(
+                (fl.max(fr), rl.max(rr)),
+                (2, 2),
+                "{sign} of {velocity:?}: {fl} {fr} {rl} {rr}"
+            );
+        }
+    }
+}
+
+/// Nothing is to be gained where nothing moves, not even if the least gain is enough.
+#[test]
+fn at_rest_no_valve_moves() {
+    let tuning = Tuning {
+        less_share: 0.0,
+        ..Tuning::default()
+    };
+    let (c, mut state) = (strategy(&tuning), Predictive::INITIAL);
+    c.decide(&mut state, &on(2.0), &trusted());
+    assert_eq!(state.level, Corners::splat(FIRM));
 }
 
 /// The wave is under the front wheel alone: with preview the rear damper of that side moves, and without it has no reason to.

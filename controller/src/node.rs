@@ -478,6 +478,25 @@ mod tests {
         }
     }
 
+    /// A tool that looks on sees the readings as the bus carried them, the tick of which they are, and what has not come.
+    #[test]
+    fn a_tool_sees_what_the_node_was_told() {
+        let mut pair = Pair::settled();
+        let late = SensorMessage::Pressure(Corner::FrontRight);
+        for _ in 0..8 {
+            let moved = |inputs: &mut Inputs| inputs.displacement[Corner::RearLeft] = Reading::new(-0.023_4);
+            pair.step(moved, |message| message != late);
+        }
+        let inputs = pair.node.inputs();
+        let read = |corner| inputs.displacement[corner].value().expect("a reading");
+        assert!((read(Corner::RearLeft) + 0.023_4).abs() < 1e-5 && (read(Corner::FrontLeft) - 0.01).abs() < 1e-5);
+        let mut lost = MessageSet::EMPTY;
+        lost.insert(late);
+        assert_eq!(inputs.lost_messages, lost);
+        assert!(!inputs.pressure[Corner::FrontRight].p1.is_valid());
+        assert_eq!(u16::from(pair.node.plant_tick()), pair.tick - 1);
+    }
+
     /// Each 100 ms; what it says is what the tick decided.
     #[test]
     fn the_status_says_what_was_decided() {

@@ -148,6 +148,17 @@ mod tests {
         );
     }
 
+    /// By hand, of the tenth message: 3 + 17 * 10 = 173 at counter 0, 29 more at each, modulo 251.
+    #[test]
+    fn a_number_makes_a_contract() {
+        let number = core::hint::black_box(10);
+        let contract = Contract::numbered(number, "IMU_RATE", 0x121, 5);
+        assert_eq!((contract.name, contract.id, contract.period_ms), ("IMU_RATE", 0x121, 5));
+        assert_eq!((contract.length, contract.max_delta, contract.timeout_ticks), (8, 3, 4));
+        assert_eq!(contract.data_ids[..4], [173, 202, 231, 9]);
+        assert_eq!(contract.data_ids[15], 106, "3 + 170 + 435 = 608");
+    }
+
     #[test]
     fn data_ids_tell_messages_and_counters_apart() {
         for counter in 0..16 {

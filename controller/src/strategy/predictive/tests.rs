@@ -63,6 +63,11 @@ fn forces_become_motions_at_the_seats() {
     let cost = c.cost.of(&sums, [1, 1], [2, 0], [0.0; 3], [0.0; 3]);
     assert!((cost / expected - 1.0).abs() < 1e-3, "{cost}, expected {expected}");
     assert_eq!(c.cost.of(&sums, [1, 1], [1, 1], [0.0; 3], [0.0; 3]), 0.0);
+    assert_eq!(
+        c.cost.of(&sums, [1, 1], [0, 3], [0.0; 3], [0.0; 3]),
+        f32::MAX,
+        "a level that there is not is never the best"
+    );
 }
 
 /// Equal forces at all four struts lift the body and hardly pitch it, and a body that falls as fast as they lift it comes to rest: by hand

@@ -1,6 +1,7 @@
 //! Tests of damper switching in ride mode.
 
 use super::*;
+use oleo_interface::Axles;
 
 fn settled(policy: DamperPolicy, extension_m_s: f32, velocity: f32, acceleration: f32, x_m: f32) -> bool {
     let parameters = parameters(policy);
@@ -121,6 +122,43 @@ fn near_each_stop_the_damping_is_high_while_the_strut_moves_on_towards_it() {
             "{x_m} m, {extension_m_s} m/s"
         );
     }
+}
+
+/// A strut that stands still, or only reaches the limit, is not braked.
+#[test]
+fn a_strut_must_be_beyond_the_limit_and_move_on() {
+    let (jounce, rebound) = NEAR_STOP_M;
+    for (x_m, speed_m_s) in [(0.07, 0.0), (-0.12, 0.0), (jounce, 0.3), (-rebound, -0.3)] {
+        assert!(!near_stop(x_m, speed_m_s), "{x_m} m, {speed_m_s} m/s");
+    }
+}
+
+/// Whatever the combination says: of a body at rest it sets no damper high, and near a stop one is.
+#[test]
+fn stops_come_before_the_combination() {
+    let (parameters, mut state) = (parameters(DamperPolicy::NellSteyn), State::INITIAL);
+    let trusted = Trusted {
+        displacement_m: Corners::from_array([0.07, 0.0, -0.12, 0.07]),
+        ..Trusted::default()
+    };
+    let estimate = Estimate {
+        strut_speed_m_s: Corners::from_array([0.3, 0.3, -0.3, -0.3]),
+        ..Estimate::default()
+    };
+    let low = state.step(&parameters, &estimate, &trusted);
+    assert_eq!(low.into_array(), [false, true, false, true]);
+}
+
+/// Each strut stands half the spacing of its axle from the middle, the front ones ahead of the centre of gravity.
+#[test]
+fn struts_stand_where_the_vehicle_has_them() {
+    let vehicle = VehicleDescription {
+        axle_distance_m: Axles::new(1.2, 1.6),
+        strut_spacing_m: Axles::new(0.8, 1.4),
+        ..VehicleDescription::default()
+    };
+    let expected = [(1.2, 0.4), (1.2, -0.4), (-1.6, 0.7), (-1.6, -0.7)];
+    assert_eq!(places_m(&vehicle).into_array(), expected);
 }
 
 /// Within 0.02 m/s nothing changes, and beyond it on the other side the damping is low again.

@@ -38,8 +38,8 @@ pub fn wire_bits(frame: &Frame) -> u32 {
     for byte in frame.data() {
         stream.push(u32::from(*byte), 8);
     }
-    stream.push(u32::from(stream.crc), 15);
-    stream.bits + stream.stuffed + UNSTUFFED_BITS
+    stream.push(u32::from(stream.crc()), 15);
+    stream.count + stream.stuff_bits() + UNSTUFFED_BITS
 }
 
 /// Length of every frame of a trace, bit times.
@@ -47,36 +47,73 @@ pub fn trace_bits(trace: &[TraceEntry]) -> Vec<u32> {
     trace.iter().map(|entry| wire_bits(&entry.frame)).collect()
 }
 
-/// Counts bits and stuff bits, and keeps the CRC of x^15+x^14+x^10+x^8+x^7+x^4+x^3+1.
-#[derive(Default)]
+/// The stuffed part of a frame, at most 118 bits, the last one sent in the lowest place.
+#[derive(Clone, Copy, Default)]
 struct BitStream {
-    bits: u32,
-    stuffed: u32,
-    last: u32,
-    run: u32,
-    crc: u16,
+    bits: u128,
+    count: u32,
 }
 
 impl BitStream {
     fn push(&mut self, value: u32, count: u32) {
-        for place in (0..count).rev() {
-            let bit = (value >> place) & 1;
-            self.bits += 1;
-            let invert = bit as u16 ^ (self.crc >> 14);
-            self.crc = (self.crc << 1) & 0x7FFF ^ if invert & 1 == 1 { 0x4599 } else { 0 };
-            if self.bits > 1 && bit == self.last {
-                self.run += 1;
+        self.bits = self.bits << count | u128::from(value);
+        self.count += count;
+    }
+
+    /// CRC of the bits so far. Zeros before them change nothing, since it begins with zero: whole bytes are taken.
+    fn crc(self) -> u16 {
+        let unused = 16 - self.count.div_ceil(8) as usize;
+        (self.bits.to_be_bytes().iter().skip(unused)).fold(0, |crc: u16, byte| {
+            let index = (crc >> 7) as u8 ^ byte;
+            (crc << 8 ^ CRC_OF_BYTE[usize::from(index)]) & 0x7FFF
+        })
+    }
+
+    /// Number of stuff bits: one of the other value after every five equal bits, itself among them.
+    fn stuff_bits(self) -> u32 {
+        // The first bit sent in the highest place; a bit is set where it and the bit after it are equal.
+        let bits = self.bits << (u128::BITS - self.count);
+        let equal = !(bits ^ bits << 1);
+        let four = equal & equal << 1 & equal << 2;
+        // Four equal pairs end within the bits if they begin no later than this.
+        let five = four & equal << 3 & !(u128::MAX >> self.count.saturating_sub(4));
+        let bit = |place: u32| bits << place >> (u128::BITS - 1);
+        let (mut stuffed, mut from, mut inserted) = (0, 0, None);
+        while from < self.count {
+            let with_inserted = from + 4 <= self.count && four << from >> (u128::BITS - 1) == 1;
+            let last = if with_inserted && inserted == Some(bit(from)) {
+                from + 3
             } else {
-                (self.run, self.last) = (1, bit);
-            }
-            if self.run == 5 {
-                // The inserted bit is the opposite and starts a run of its own.
-                self.stuffed += 1;
-                (self.run, self.last) = (1, 1 - bit);
-            }
+                let next = five & u128::MAX >> from;
+                if next == 0 {
+                    break;
+                }
+                next.leading_zeros() + 4
+            };
+            stuffed += 1;
+            inserted = Some(1 - bit(last));
+            from = last + 1;
         }
+        stuffed
     }
 }
+
+/// The CRC of every byte: x^15+x^14+x^10+x^8+x^7+x^4+x^3+1.
+const CRC_OF_BYTE: [u16; 256] = {
+    let mut table = [0; 256];
+    let mut byte = 0;
+    while byte < 256 {
+        let mut crc = (byte as u16) << 7;
+        let mut bit = 0;
+        while bit < 8 {
+            crc = (crc << 1) ^ if crc & 0x4000 != 0 { 0x4599 } else { 0 };
+            bit += 1;
+        }
+        table[byte] = crc & 0x7FFF;
+        byte += 1;
+    }
+    table
+};
 
 /// Latency of one message at one bit rate, from ready to sent, microseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -242,10 +279,37 @@ mod tests {
         // CRC-15/CAN of reveng's catalogue: check value of "123456789" is 0x059E.
         let mut stream = BitStream::default();
         b"123456789".iter().for_each(|byte| stream.push(u32::from(*byte), 8));
-        assert_eq!(stream.crc, 0x059E);
+        assert_eq!(stream.crc(), 0x059E);
+    }
+
+    /// CRC and stuff bits of bits that are sent one after the other, as the standard describes it.
+    fn one_by_one(stream: BitStream) -> (u16, u32) {
+        let (mut crc, mut stuffed, mut run, mut last) = (0_u16, 0, 0, None);
+        for place in (0..stream.count).rev() {
+            let bit = (stream.bits >> place) as u16 & 1;
+            let invert = bit ^ crc >> 14;
+            crc = crc << 1 & 0x7FFF ^ if invert == 1 { 0x4599 } else { 0 };
+            run = if last == Some(bit) { run + 1 } else { 1 };
+            last = Some(bit);
+            if run == 5 {
+                stuffed += 1;
+                (run, last) = (1, Some(1 - bit));
+            }
+        }
+        (crc, stuffed)
     }
 
     proptest! {
+        #[test]
+        fn bits_at_once_are_as_bits_one_by_one(parts in prop::collection::vec((any::<bool>(), 1_u32..9), 1..14), flips in any::<u32>()) {
+            let mut stream = BitStream::default();
+            for (k, (ones, count)) in parts.into_iter().enumerate() {
+                let run = if ones { (1 << count) - 1 } else { 0 };
+                stream.push(run ^ u32::from(flips >> k & 3 == 0) & ((1 << count) - 1), count);
+            }
+            prop_assert_eq!((stream.crc(), stream.stuff_bits()), one_by_one(stream));
+        }
+
         #[test]
         fn never_longer_than_the_worst_case(frame in any_frame()) {
             prop_assume!(!frame.is_extended());

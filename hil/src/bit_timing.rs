@@ -8,11 +8,15 @@
 //! Davis, Burns, Bril & Lukkien, "Controller Area Network (CAN) schedulability analysis: refuted, revisited and revised",
 //! Real-Time Systems 35 (2007), equation 14: `w = max(B, C_m) + sum over higher priorities of ceil((w + tau) / T_k) C_k`.
 
+use crc::{CRC_15_CAN, Crc};
 use oleo_controller::can::bus_load::worst_case_bits;
 use oleo_controller::can::{Contract, MESSAGES};
 
 use crate::bus::{Direction, TraceEntry};
 use crate::{Frame, imu};
+
+/// x^15+x^14+x^10+x^8+x^7+x^4+x^3+1.
+const CRC: Crc<u16> = Crc::<u16>::new(&CRC_15_CAN);
 
 /// Bits after the stuffed part: CRC delimiter, ACK slot, ACK delimiter, 7 EOF, 3 interframe space.
 const UNSTUFFED_BITS: u32 = 13;
@@ -63,13 +67,10 @@ impl BitStream {
     /// CRC of the bits so far. Zeros before them change nothing, since it begins with zero: whole bytes are taken.
     fn crc(self) -> u16 {
         let unused = 16 - self.count.div_ceil(8) as usize;
-        (self.bits.to_be_bytes().iter().skip(unused)).fold(0, |crc: u16, byte| {
-            let index = (crc >> 7) as u8 ^ byte;
-            (crc << 8 ^ CRC_OF_BYTE[usize::from(index)]) & 0x7FFF
-        })
+        CRC.checksum(&self.bits.to_be_bytes()[unused..])
     }
 
-    /// Number of stuff bits: one of the other value after every five equal bits, itself among them.
+    /// Number of stuff bits: one of the other value after every five equal bits, of which an earlier stuff bit can be the first.
     fn stuff_bits(self) -> u32 {
         // The first bit sent in the highest place; a bit is set where it and the bit after it are equal.
         let bits = self.bits << (u128::BITS - self.count);
@@ -97,23 +98,6 @@ impl BitStream {
         stuffed
     }
 }
-
-/// The CRC of every byte: x^15+x^14+x^10+x^8+x^7+x^4+x^3+1.
-const CRC_OF_BYTE: [u16; 256] = {
-    let mut table = [0; 256];
-    let mut byte = 0;
-    while byte < 256 {
-        let mut crc = (byte as u16) << 7;
-        let mut bit = 0;
-        while bit < 8 {
-            crc = (crc << 1) ^ if crc & 0x4000 != 0 { 0x4599 } else { 0 };
-            bit += 1;
-        }
-        table[byte] = crc & 0x7FFF;
-        byte += 1;
-    }
-    table
-};
 
 /// Latency of one message at one bit rate, from ready to sent, microseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]

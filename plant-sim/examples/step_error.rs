@@ -3,7 +3,7 @@
 //! `cargo run --release -p oleo-plant-sim --example step_error`
 //!
 //! Commands are given in advance, at ticks of 5 ms, so that every step meets the same ones. A deviation is the RMS over the ticks
-//! of all four corners (both seats), over the RMS of the quantity itself about its mean.
+//! and, but for the driver's acceleration, the four corners, over the RMS of the quantity itself about its mean.
 
 use std::error::Error;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ const STEPS_S: [f64; 4] = [0.0005, 0.001, 0.0025, 0.005];
 enum Commands {
     Soft,
     Stiff,
-    /// A valve of a corner changes now and then, some ten times a second in all.
+    /// A valve of a corner changes now and then, some fifteen times a second in all.
     Switched,
 }
 

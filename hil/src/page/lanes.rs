@@ -15,7 +15,7 @@ pub(super) fn lanes(scenario: &Scenario, outcome: &Outcome, metrics: &Metrics, t
     let samples = &outcome.plant.recording.samples;
     let mut lanes = Lanes::new("What happened", time.axis());
     lanes.link(LINK).caption(&format!(
-        "Mode and fault are what the controller said in its frames. The bus is red where no valid command \
+        "Mode and fault are what the controller said in its frames. The bus is marked where no valid command \
          reaches the valves. A valve is energised open where its lane is blue.{}",
         if time.is_zoomed() {
             " The figures over time begin at the first fault; a double click shows the whole run."

@@ -329,19 +329,16 @@ fn page(
             let name = setting.name();
             let ride = comparison::mean_ratio(&means.ride, number, soft);
             let roll = comparison::mean_ratio(&flat_and_c, number, stiff);
+            let of_running_rms = |names: &str| name.starts_with(RUNNING_RMS) && names.starts_with(RUNNING_RMS);
             // A closed valve 3 takes no flow, so that valve 2 makes no difference behind it; others are as good as equal.
-            let beside = |(_, x, y): &&mut (String, Vec<f64>, Vec<f64>)| {
-                (x[0] - ride).abs() < ONE_LABEL && (y[0] - roll).abs() < ONE_LABEL
-            };
-            if let Some((names, x, y)) = drawn.iter_mut().find(beside) {
-                *names = format!("{names}, {name}");
-                x.push(ride);
-                y.push(roll);
-            } else if let Some((names, x, y)) = drawn
-                .iter_mut()
-                .find(|(names, ..)| name.starts_with(RUNNING_RMS) && names.starts_with(RUNNING_RMS))
+            let beside = |x: &[f64], y: &[f64]| (x[0] - ride).abs() < ONE_LABEL && (y[0] - roll).abs() < ONE_LABEL;
+            if let Some((names, x, y)) = (drawn.iter_mut()).find(|(names, x, y)| of_running_rms(names) || beside(x, y))
             {
-                *names = format!("{RUNNING_RMS} with five damper policies");
+                *names = if of_running_rms(names) {
+                    format!("{RUNNING_RMS} with five damper policies")
+                } else {
+                    format!("{names}, {name}")
+                };
                 x.push(ride);
                 y.push(roll);
             } else {

@@ -4,8 +4,8 @@ use oleo_plant_sim::strut::LawArgument::{Displacement, Flow, FlowRate, PressureD
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
-use crate::effect::unlisted::forms::{Bell, Factor, ProportionalAmount, Rising, SettlingFactor, SettlingLevel};
-use crate::effect::unlisted::knots::{FLOW_M3_S, FLOW_RATE_M3_S2, GROOVE_M, PACK_PA, STROKE_M, TIME_S};
+use crate::effect::unlisted::forms::{Bell, Factor, Power, ProportionalAmount, Rising, SettlingFactor, SettlingLevel};
+use crate::effect::unlisted::knots::{FLOW_FINE_M3_S, FLOW_M3_S, FLOW_RATE_M3_S2, GROOVE_M, PACK_PA, STROKE_M, TIME_S};
 use crate::vocabulary::{Branch, Site};
 
 pub(super) const LAWS: &[Law] = &[
@@ -23,6 +23,22 @@ pub(super) const LAWS: &[Law] = &[
         (LawPlace::Path2, Flow),
         &Rising,
         FLOW_M3_S,
+        1e4,
+    ),
+    law(
+        "series drop over flow, a power, path 1",
+        Site::Path(Branch::First),
+        (LawPlace::Path1, Flow),
+        &Power("drop_at_2_l_s_Pa"),
+        FLOW_FINE_M3_S,
+        1e4,
+    ),
+    law(
+        "series drop over flow, a power, path 2",
+        Site::Path(Branch::Second),
+        (LawPlace::Path2, Flow),
+        &Power("drop_at_2_l_s_Pa"),
+        FLOW_FINE_M3_S,
         1e4,
     ),
     law(

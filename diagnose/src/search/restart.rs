@@ -1,13 +1,23 @@
 //! Starting again: a model that is not complete, and to which nothing can be added, may have ended in a local minimum.
 
+use nalgebra::DVector;
+
 use super::selector::Selector;
 use super::sizes::starting_sizes;
 use crate::effect::Candidate;
 use crate::error::DiagnoseError;
+use crate::estimation::bounded_step::bounded_step;
+use crate::estimation::normal_equations::{assemble, sum};
 use crate::estimation::{Fit, Point, fit};
 
 /// Moves of one fitted number, in coordinates of order one.
 const MOVED: [f64; 6] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0];
+/// Steps in which the sizes of a start are fitted: what they change is nearly in proportion to them.
+const STEPS_OF_SIZES: usize = 2;
+/// Damping of these steps, against rounding only.
+const DAMPING_OF_SIZES: f64 = 1e-9;
+/// Starts whose cost differs by less from that of the fit, as a part of it, are where the fit is.
+const SAME_COST: f64 = 1e-3;
 /// Numbers that differ by less, in coordinates of order one, are about the same.
 const SAME_SHAPE: f64 = 0.3;
 
@@ -82,11 +92,52 @@ impl Selector<'_, '_> {
                     Err(other) => return Err(other),
                 }
             }
-            starts.extend(least.filter(|(cost, _)| *cost < without));
+            if let Some((_, point)) = least {
+                starts.push(self.best_sizes(point, position)?);
+            }
         }
+        // What differs only in a number that the recordings do not determine would lead back, and would keep others from being tried.
+        let is_other = |cost: f64| cost < without && (cost / best.cost - 1.0).abs() > SAME_COST;
+        starts.retain(|(cost, _)| is_other(*cost));
         starts.sort_by(|a, b| a.0.total_cmp(&b.0));
         starts.truncate(self.criteria().screening.shapes_restarted);
         Ok(starts.into_iter().map(|(_, point)| point).collect())
+    }
+}
+
+impl Selector<'_, '_> {
+    /// The point with the sizes of one of its effects fitted and all else as it is, where that lowers the cost; with its cost. The sizes that were tried keep one
+    /// proportion, while the stiffness of a stop may be large and its progression small: such a start would lead back to where the fit came from.
+    fn best_sizes(&self, start: Point, position: usize) -> Result<(f64, Point), DiagnoseError> {
+        let (specimen, problem) = (self.specimen(), self.problem);
+        let own = start.coordinates_of(specimen, position);
+        let parameters = &self.candidate(start.effects[position]).parameters;
+        let sizes: Vec<usize> = (own.zip(parameters))
+            .filter(|(_, p)| p.is_size)
+            .map(|(k, _)| k)
+            .collect();
+        let ranges = start.ranges(specimen);
+        let ranges: Vec<(f64, f64)> = sizes.iter().map(|&k| ranges[k]).collect();
+        let mut best = (problem.cost_at(&start)?, start);
+        for _ in 0..STEPS_OF_SIZES {
+            let answers = problem.evaluation.sensitivities(&best.1, &sizes, None)?;
+            let none = DVector::zeros(sizes.len());
+            let z: Vec<f64> = sizes.iter().map(|&k| best.1.z[k]).collect();
+            let (h, g) = sum(&assemble(&problem.blocks, &answers), &none, &z);
+            let Some(step) = bounded_step(&h, &g, DAMPING_OF_SIZES, &z, &ranges) else {
+                break;
+            };
+            let mut trial = best.1.clone();
+            for ((&k, step), range) in sizes.iter().zip(step.iter()).zip(&ranges) {
+                trial.z[k] = (trial.z[k] + step).clamp(range.0, range.1);
+            }
+            match problem.cost_at(&trial) {
+                Ok(cost) if cost < best.0 => best = (cost, trial),
+                Ok(_) | Err(DiagnoseError::Simulation { .. }) => break,
+                Err(other) => return Err(other),
+            }
+        }
+        Ok(best)
     }
 }
 

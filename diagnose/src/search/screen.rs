@@ -198,9 +198,13 @@ impl<'p, 'a> Screen<'p, 'a> {
                 shapes.push(shape);
             }
         }
+        // A law of the instrument of the displacement works the motion out anew, which rounds otherwise: by as much as a slow law changes in a
+        // derivative, so that this starts from what is simulated with the law.
+        let changes_motion = specimen.candidates()[candidate].place.sensor() == Some(&Column::DISPLACEMENT);
+        let known = (!changes_motion).then_some(self.truths.as_slice());
         let mut best: Option<(f64, Vec<f64>, Linearised)> = None;
         for shape in shapes {
-            let begun = self.at(fit.point.with_effect(specimen, candidate, &shape), Some(&self.truths))?;
+            let begun = self.at(fit.point.with_effect(specimen, candidate, &shape), known)?;
             let left = self.left_by_linear_step(&begun.candidate);
             if best.as_ref().is_none_or(|(least, ..)| left < *least) {
                 best = Some((left, shape, begun));

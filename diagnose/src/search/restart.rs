@@ -160,7 +160,7 @@ fn shapes(candidate: &Candidate, fitted: Vec<f64>) -> Vec<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analytic::{CUBIC, RUN, Recipe, VIBRATION};
+    use crate::analytic::{CUBIC, FRICTION_OF_BOTH, RUN, Recipe, VIBRATION};
     use crate::estimation::LeastSquares;
 
     /// The fit of a vibration of 2.3 rad/s from another frequency, started again: frequencies before and after.
@@ -191,6 +191,26 @@ mod tests {
     fn a_fit_that_is_at_the_lowest_stays() {
         let (before, after) = started_again(2.29, vec![vec![0.0, 1.0]]);
         assert!((before - 2.3).abs() < 0.003 && after.is_none(), "{before} {after:?}");
+    }
+
+    #[test]
+    fn sizes_of_a_start_need_not_keep_its_proportion() {
+        let specimen = Recipe {
+            truth: vec![(FRICTION_OF_BOTH, vec![0.15, 0.01])],
+            ..Recipe::default()
+        }
+        .make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let selector = Selector::new(&problem);
+        let start = Point::nominal(&specimen).with_effect(&specimen, FRICTION_OF_BOTH, &[0.05, 0.05]);
+        let before = problem.cost_at(&start).expect("a cost");
+        let (cost, point) = selector.best_sizes(start, 0).expect("a start");
+        let sizes = &point.hypothesis(&specimen).effects[0].1;
+        assert!(
+            (sizes[0] - 0.15).abs() < 0.01 && (sizes[1] - 0.01).abs() < 0.01,
+            "{sizes:?}"
+        );
+        assert!(cost < before && problem.cost_at(&point).expect("a cost") == cost);
     }
 
     #[test]

@@ -325,6 +325,35 @@ mod tests {
     }
 
     #[test]
+    fn a_name_that_came_before_laws_gives_way_to_the_law_that_explains_more() {
+        let mut specimen = Recipe {
+            truth: vec![(CUBIC, vec![0.4])],
+            candidates: vec![CUBIC, FRICTION],
+            ..Recipe::default()
+        }
+        .make();
+        specimen.take_name(CUBIC, Site::Mount);
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut selector = Selector::new(&problem);
+        let calibrated = selector.fitted(Point::nominal(&specimen)).expect("a fit");
+        let start = Point::nominal(&specimen).with_effect(&specimen, FRICTION, &[0.1]);
+        let best = selector.fitted(start).expect("a fit");
+        let mut anew = |open: Open| {
+            let grown = Grown {
+                best: best.clone(),
+                screened: vec![],
+                scores: vec![],
+                open,
+                law_pairs: LawPairs::NotTried,
+            };
+            let other = grown_with_laws_first(&mut selector, &calibrated, &best, &grown, &|_, _| {}).expect("fits");
+            other.map(|(_, fit)| fit.point.effects)
+        };
+        assert_eq!(anew(Open::Laws), Some(vec![CUBIC]));
+        assert_eq!(anew(Open::Names), None);
+    }
+
+    #[test]
     fn nothing_is_found_where_nothing_is_missing() {
         for seed in 0..12 {
             let s = selected(&Recipe {

@@ -55,3 +55,42 @@ impl Selector<'_, '_> {
         Some(parts)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analytic::{CUBIC, FIRST_OF_PAIR, NEARLY_CUBIC, RUN, Recipe};
+    use crate::estimation::LeastSquares;
+    use crate::vocabulary::{Branch, Site};
+
+    /// Effects of the model with the cubic law of both accumulators after it was split into a nearly cubic one of the first and a vibration of the
+    /// second.
+    fn split(truth: &[(usize, f64)], keys: [&str; 2]) -> Option<Vec<usize>> {
+        let mut specimen = Recipe {
+            truth: truth.iter().map(|&(law, size)| (law, vec![size])).collect(),
+            candidates: vec![CUBIC, NEARLY_CUBIC, FIRST_OF_PAIR],
+            ..Recipe::default()
+        }
+        .make();
+        specimen.take_name(CUBIC, Site::Accumulators);
+        for ((part, branch), key) in [NEARLY_CUBIC, FIRST_OF_PAIR].into_iter().zip(Branch::ALL).zip(keys) {
+            specimen.take_name(part, Site::Accumulator(branch));
+            specimen.take_key(part, key);
+        }
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut selector = Selector::new(&problem);
+        let start = Point::nominal(&specimen).with_effect(&specimen, CUBIC, &[0.1]);
+        let best = selector.fitted(start).expect("a fit");
+        selector.split(&best).expect("fits").map(|fit| fit.point.effects)
+    }
+
+    #[test]
+    fn a_law_of_two_parts_is_split_where_they_differ_and_only_there() {
+        let differing = [(NEARLY_CUBIC, 0.3), (FIRST_OF_PAIR, 0.5)];
+        let parts = Some(vec![NEARLY_CUBIC, FIRST_OF_PAIR]);
+        assert_eq!(split(&differing, ["cubic"; 2]), parts);
+        assert_eq!(split(&[(CUBIC, 0.3)], ["cubic"; 2]), None);
+        // What has other numbers is another law.
+        assert_eq!(split(&differing, ["cubic", "vibration"]), None);
+    }
+}

@@ -120,7 +120,10 @@ impl Selector<'_, '_> {
         let ranges: Vec<(f64, f64)> = sizes.iter().map(|&k| ranges[k]).collect();
         let mut best = (problem.cost_at(&start)?, start);
         for _ in 0..STEPS_OF_SIZES {
-            let answers = problem.evaluation.sensitivities(&best.1, &sizes, None)?;
+            let answers = match problem.evaluation.sensitivities(&best.1, &sizes, None) {
+                Err(DiagnoseError::Simulation { .. }) => break,
+                answers => answers?,
+            };
             let none = DVector::zeros(sizes.len());
             let z: Vec<f64> = sizes.iter().map(|&k| best.1.z[k]).collect();
             let (h, g) = sum(&assemble(&problem.blocks, &answers), &none, &z);

@@ -125,9 +125,16 @@ impl<'p, 'a> Screen<'p, 'a> {
         let all = self.specimen().candidates();
         let swings = (candidates.iter().any(|&c| all[c].oscillates)).then(|| self.swings());
         (candidates.par_iter())
-            .map(|&c| match &swings {
-                Some(swings) if all[c].oscillates => self.begin_oscillation(c, swings),
-                _ => self.begin(c),
+            .map(|&c| {
+                let begun = match &swings {
+                    Some(swings) if all[c].oscillates => self.begin_oscillation(c, swings),
+                    _ => self.begin(c),
+                };
+                // What cannot be simulated near the model so far is no candidate, and no failure of the diagnosis.
+                match begun {
+                    Err(DiagnoseError::Simulation { .. }) => Ok(None),
+                    other => other,
+                }
             })
             .collect()
     }
@@ -143,7 +150,11 @@ impl<'p, 'a> Screen<'p, 'a> {
         let promising: Vec<&mut ScreenedCandidate> = promising.flatten().collect();
         (promising.into_par_iter()).try_for_each(|candidate| {
             candidate.advanced = true;
-            self.advance(candidate, self.problem.criteria.screening.more_steps)
+            // A candidate whose derivatives cannot be simulated stays where its last step led.
+            match self.advance(candidate, self.problem.criteria.screening.more_steps) {
+                Err(DiagnoseError::Simulation { .. }) => Ok(()),
+                other => other,
+            }
         })
     }
 

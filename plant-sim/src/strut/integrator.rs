@@ -3,6 +3,7 @@
 //! Steps end at kinks of the valves' movements, so that no stage integrates across one. What is stiff is solved one level down, by
 //! [`hydraulics`](super::hydraulics).
 
+mod oil_swing;
 mod snapshot;
 
 use oleo_interface::{StrutValves, Valve};
@@ -21,6 +22,7 @@ use super::rod_state::{Acceleration, RodState};
 use super::terms::{LawArgument, LawPlace, ValveTransition, law_at, longest_step_s, total_response_s};
 use super::valve::ValveMotion;
 
+use oil_swing::OilSwing;
 pub use snapshot::StrutSnapshot;
 
 /// Longest step while something moves fast, s.
@@ -89,6 +91,8 @@ pub struct Strut {
     /// Longest step that follows the unmodelled laws which repeat, s.
     longest_step_s: f64,
     transition: Option<ValveTransition>,
+    /// The oil column of line 2, where it has mass.
+    swing: Option<OilSwing>,
 
     time_s: f64,
     actuator_m: f64,
@@ -133,6 +137,7 @@ impl Strut {
         let hydraulics = Hydraulics::of(model);
         let state = hydraulics.network.at_rest(displacement_m, model.gas.temperature_k);
         Ok(Self {
+            swing: OilSwing::of(&hydraulics.network, &state),
             hydraulics,
             rod: RodForces::of(effects),
             response_polynomial_s: model.response_polynomial_s(),
@@ -214,13 +219,15 @@ impl Strut {
             segment, duration_s, ..
         } = *by;
         let (from_m_s, to_m_s) = (segment.from_m_s, segment.to_m_s);
+        let swing = self.swing.as_ref();
+        let kicked_s = swing.map_or(f64::INFINITY, |swing| swing.longest_step_of_kick_s(to_m_s - from_m_s));
         let fast = from_m_s.abs() > SLOW_M_S || to_m_s.abs() > SLOW_M_S || (to_m_s - from_m_s).abs() > SLOW_M_S;
         Interval {
             start_s: self.time_s,
             duration_s,
             segment,
             motion: Cubic::through(self.actuator_m, &segment, duration_s),
-            longest_step_s: if fast { FAST_STEP_S } else { duration_s },
+            longest_step_s: if fast { FAST_STEP_S } else { duration_s }.min(kicked_s),
             done_s: 0.0,
         }
     }
@@ -258,6 +265,9 @@ impl Strut {
         self.time_s = step.begins_s + step.duration_s;
         self.actuator_m = end_m;
         self.speed_m_s = end_m_s;
+        if let Some(swing) = &mut self.swing {
+            swing.follow(step.duration_s, self.flowing.state.q2_m3_s);
+        }
         let rod = self.rod_state();
         self.rod.follow(stroke_m, step.duration_s, &rod);
         if let Some(course) = &mut self.course {
@@ -281,7 +291,8 @@ impl Strut {
     /// valve's movement.
     fn step_length(&self, now_s: f64, left_s: f64, limit_s: f64) -> f64 {
         let valves = || self.valves.iter().map(|(_, valve)| valve);
-        let limit_s = limit_s.min(self.longest_step_s);
+        let swing_s = (self.swing.as_ref()).map_or(f64::INFINITY, OilSwing::longest_step_s);
+        let limit_s = limit_s.min(self.longest_step_s).min(swing_s);
         if valves().all(|valve| valve.has_settled(now_s)) {
             return if left_s <= limit_s {
                 left_s

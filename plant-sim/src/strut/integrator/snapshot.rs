@@ -4,6 +4,7 @@ use oleo_interface::StrutValves;
 use serde::{Deserialize, Serialize};
 
 use super::Strut;
+use super::oil_swing::SwingCourse;
 use crate::model_file::InvalidValue;
 use crate::strut::hydraulics::Flowing;
 use crate::strut::model::StrutModel;
@@ -25,6 +26,7 @@ pub struct StrutSnapshot {
     pressure_pa: [f64; 4],
     valves: [ValveMotion; 3],
     friction_n: f64,
+    swing: SwingCourse,
 }
 
 impl Strut {
@@ -55,6 +57,10 @@ impl Strut {
             pressure_pa: self.flowing.pressure_pa,
             valves: self.valves.into_array(),
             friction_n: self.rod.friction_n(),
+            swing: self
+                .swing
+                .as_ref()
+                .map_or_else(SwingCourse::default, |swing| swing.course),
         }
     }
 
@@ -72,6 +78,9 @@ impl Strut {
         };
         self.valves = StrutValves::from_array(kept.valves);
         self.rod.set_friction_n(kept.friction_n);
+        if let Some(swing) = &mut self.swing {
+            swing.course = kept.swing;
+        }
     }
 
     /// A strut of another model in the present state of this one: oil, gas, valves and friction stay as they are, and the laws change.

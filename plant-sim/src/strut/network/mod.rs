@@ -33,6 +33,6 @@ mod stage_end;
 mod state;
 
 pub(super) use last_solution::LastSolution;
-pub(super) use layout::Network;
+pub(super) use layout::{ColumnOscillator, Network};
 pub(super) use stage_end::StageEnd;
 pub(super) use state::State;

@@ -26,7 +26,7 @@ use oil_swing::OilSwing;
 pub use snapshot::StrutSnapshot;
 
 /// Longest step while something moves fast, s.
-const FAST_STEP_S: f64 = 2.5e-3;
+const FAST_STEP_S: f64 = 1.25e-3;
 /// Longest step while a valve moves, s: the openings are followed, not only their ends.
 const VALVE_STEP_S: f64 = 2e-3;
 /// Shortest step, s: a sliver shorter than this is not worth a step of its own.
@@ -219,8 +219,9 @@ impl Strut {
             segment, duration_s, ..
         } = *by;
         let (from_m_s, to_m_s) = (segment.from_m_s, segment.to_m_s);
-        let swing = self.swing.as_ref();
-        let kicked_s = swing.map_or(f64::INFINITY, |swing| swing.longest_step_of_kick_s(to_m_s - from_m_s));
+        // A corner of the motion is a jump between two intervals.
+        let change_m_s = (from_m_s - self.speed_m_s).abs() + (to_m_s - from_m_s).abs();
+        let kicked_s = (self.swing.as_ref()).map_or(f64::INFINITY, |swing| swing.longest_step_of_kick_s(change_m_s));
         let fast = from_m_s.abs() > SLOW_M_S || to_m_s.abs() > SLOW_M_S || (to_m_s - from_m_s).abs() > SLOW_M_S;
         Interval {
             start_s: self.time_s,

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::strut::network::{ColumnOscillator, Network, State};
 
-/// Length of a step while the column swings, rad of its oscillation: SDIRK2 then loses 0.2 % of a period in each.
+/// Length of a step while the column swings, rad of its oscillation. SDIRK2 then is behind by 0.3 % of the phase.
 const STEP_RAD: f64 = 0.25;
 /// Shortest step for the sake of the column, s. What swings faster is damped by the packs within a few milliseconds.
 const LEAST_STEP_S: f64 = 1e-4;
@@ -58,11 +58,11 @@ impl OilSwing {
         }
     }
 
-    /// Longest step of an interval in which the piston's speed changes by so much (m/s), s: whether that sets the column
+    /// Longest step of an interval in or before which the piston's speed changes by so much (m/s), s: whether that sets the column
     /// swinging.
     #[inline]
     pub fn longest_step_of_kick_s(&self, speed_change_m_s: f64) -> f64 {
-        let kick_pa = self.oscillator.kick_pa_s_m * speed_change_m_s.abs();
+        let kick_pa = self.oscillator.kick_pa_s_m * speed_change_m_s;
         if kick_pa > AT_REST_PA {
             self.step_s
         } else {

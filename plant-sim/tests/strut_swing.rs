@@ -89,7 +89,7 @@ fn samples_far_apart_show_the_same_ringing() {
             .iter()
             .map(|p| (p - fine[fine.len() - 1]).abs())
             .fold(0.0, f64::max);
-        // The integrator is behind by a quarter per cent of the phase, and the grid of 0.5 ms by less.
-        assert!(worst < 0.03 * swing, "{interval} s: {worst} of {swing} Pa");
+        // The integrator is behind by a quarter per cent of the phase, which adds up over the twenty periods.
+        assert!(worst < 0.05 * swing, "{interval} s: {worst} of {swing} Pa");
     }
 }

@@ -26,7 +26,10 @@ use oil_swing::OilSwing;
 pub use snapshot::StrutSnapshot;
 
 /// Longest step while something moves fast, s.
-const FAST_STEP_S: f64 = 1.25e-3;
+const FAST_STEP_S: f64 = 2.5e-3;
+/// The same while a bypass valve is closed, s: behind a damper pack the main chamber takes about 4 ms to settle, which is
+/// neither long nor short beside a step, so that the step's error is largest there.
+const DAMPED_STEP_S: f64 = 1.25e-3;
 /// Longest step while a valve moves, s: the openings are followed, not only their ends.
 const VALVE_STEP_S: f64 = 2e-3;
 /// Shortest step, s: a sliver shorter than this is not worth a step of its own.
@@ -228,7 +231,12 @@ impl Strut {
             duration_s,
             segment,
             motion: Cubic::through(self.actuator_m, &segment, duration_s),
-            longest_step_s: if fast { FAST_STEP_S } else { duration_s }.min(kicked_s),
+            longest_step_s: match fast {
+                false => duration_s,
+                true if by.signals[Valve::Bypass1] && by.signals[Valve::Bypass2] => FAST_STEP_S,
+                true => DAMPED_STEP_S,
+            }
+            .min(kicked_s),
             done_s: 0.0,
         }
     }

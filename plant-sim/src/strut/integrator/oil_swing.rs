@@ -1,6 +1,6 @@
 //! How finely time is cut while the oil column of line 2 swings.
 //!
-//! The column's mass and the volumes that its ends can take up are an oscillator of 10 to 250 Hz, which rings after every
+//! The column's mass and the volumes that its ends can take up are an oscillator of 10 to 200 Hz, which rings after every
 //! sudden change of speed or valve. A step of a recording's sampling interval (2 to 50 ms) would lose the ringing's phase
 //! or the ringing itself. So steps are a quarter of a radian while the column swings, and as long as ever while it rests
 //! or follows a slow flow.
@@ -13,8 +13,9 @@ use crate::strut::network::{ColumnOscillator, Network, State};
 
 /// Length of a step while the column swings, rad of its oscillation. SDIRK2 then is behind by 0.3 % of the phase.
 const STEP_RAD: f64 = 0.25;
-/// Shortest step for the sake of the column, s. What swings faster is damped by the packs within a few milliseconds.
-const LEAST_STEP_S: f64 = 1e-4;
+/// Shortest step for the sake of the column, s. One that would need shorter ones (above 200 Hz, of a few decimetres of line) is
+/// damped by the packs within a few milliseconds and is left to the integrator, which is L-stable.
+const LEAST_STEP_S: f64 = 2e-4;
 /// A column whose swing is below this pressure is at rest, Pa: a twentieth of a usual sensor's noise.
 const AT_REST_PA: f64 = 300.0;
 
@@ -38,12 +39,13 @@ pub(super) struct SwingCourse {
 }
 
 impl OilSwing {
-    /// The column of a network at rest; none if its oil has no mass.
+    /// The column of a network at rest; none if its oil has no mass, or so little that it need not be followed.
     pub fn of(network: &Network, rest: &State) -> Option<Self> {
         let oscillator = network.column_oscillator(rest)?;
-        Some(Self {
-            step_s: (STEP_RAD / oscillator.frequency_rad_s).max(LEAST_STEP_S),
+        let step_s = STEP_RAD / oscillator.frequency_rad_s;
+        (step_s >= LEAST_STEP_S).then(|| Self {
             oscillator,
+            step_s,
             course: SwingCourse::default(),
         })
     }

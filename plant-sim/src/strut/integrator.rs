@@ -44,12 +44,24 @@ pub(super) struct Interval {
     motion: Cubic,
     longest_step_s: f64,
     done_s: f64,
+    /// The same as a fraction of the interval.
+    done: f64,
 }
 
 impl Interval {
     #[inline(always)]
     pub fn is_over(&self) -> bool {
-        self.done_s / self.duration_s > 1.0 - NOTHING_LEFT
+        self.done > 1.0 - NOTHING_LEFT
+    }
+
+    /// A time since its beginning (s) as a fraction. Most intervals are one step, which needs no division.
+    #[inline(always)]
+    fn fraction(&self, since_start_s: f64) -> f64 {
+        if since_start_s == self.duration_s {
+            1.0
+        } else {
+            since_start_s / self.duration_s
+        }
     }
 }
 
@@ -222,6 +234,7 @@ impl Strut {
             motion: Cubic::through(self.actuator_m, &segment, duration_s),
             longest_step_s: if fast { FAST_STEP_S } else { duration_s },
             done_s: 0.0,
+            done: 0.0,
         }
     }
 
@@ -230,7 +243,7 @@ impl Strut {
     pub(super) fn next_step(&self, interval: &Interval) -> Step {
         let Interval { duration_s, done_s, .. } = *interval;
         let h = self.step_length(interval.start_s + done_s, duration_s - done_s, interval.longest_step_s);
-        let (from, to) = (done_s / duration_s, (done_s + h) / duration_s);
+        let (from, to) = (interval.done, interval.fraction(done_s + h));
         let (middle_m, middle_m_s) = interval.motion.at(from + GAMMA * (to - from));
         let (end_m, end_m_s) = if to > 1.0 - NOTHING_LEFT {
             (interval.segment.to_m, interval.segment.to_m_s)
@@ -264,6 +277,7 @@ impl Strut {
             course.push_step(stroke_m, step.duration_s, rod);
         }
         interval.done_s += step.duration_s;
+        interval.done = interval.fraction(interval.done_s);
     }
 
     /// Ends an interval that is over.

@@ -52,9 +52,11 @@ mod nitrogen;
 mod orifice;
 mod pressure;
 mod replay;
+mod replay_abreast;
 mod rod_course;
 mod rod_forces;
 mod rod_state;
+mod run;
 mod smoothing;
 mod terms;
 mod valve;
@@ -72,7 +74,9 @@ pub use motion::{Motion, Segment, StrutMove};
 pub use nitrogen::Nitrogen;
 pub use pressure::ATMOSPHERE_PA;
 pub use replay::{Inputs, Prediction, replay, replay_with_course};
+pub use replay_abreast::{Replay, replay_all};
 pub use rod_course::RodCourse;
+pub use run::Replayed;
 pub use smoothing::{FreeMotion, smooth_displacement, smooth_free_motion, smooth_uneven_displacement};
 pub use terms::{
     AccumulatorPistonFriction, BumpStop, COLUMNS, DamperLeakage, DampingFade, Effects, EntrainedAir, Equation,

@@ -4,13 +4,12 @@ use oleo_interface::StrutValves;
 
 use crate::model_file::InvalidValue;
 
-use super::instruments::{record_column, true_motion};
-use super::integrator::{Strut, StrutOutput};
+use super::integrator::StrutOutput;
 use super::model::StrutModel;
 use super::motion::Motion;
 use super::rod_course::RodCourse;
+use super::run::{Replayed, Run};
 use super::smoothing::{smooth_displacement, smooth_uneven_displacement};
-use super::terms::COLUMNS;
 
 /// Inputs of a recording: time, actuator motion, switching signals.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,14 +69,14 @@ pub struct Prediction {
 }
 
 impl Prediction {
-    fn with_capacity(samples: usize) -> Self {
+    pub(super) fn with_capacity(samples: usize) -> Self {
         Self {
             force_n: Vec::with_capacity(samples),
             pressure_pa: std::array::from_fn(|_| Vec::with_capacity(samples)),
         }
     }
 
-    fn push(&mut self, output: StrutOutput) {
+    pub(super) fn push(&mut self, output: StrutOutput) {
         self.force_n.push(output.force_n);
         for (column, pressure) in self.pressure_pa.iter_mut().zip(output.pressure_pa) {
             column.push(pressure);
@@ -104,7 +103,9 @@ impl Prediction {
 /// # Errors
 /// Impossible values in the model.
 pub fn replay(model: &StrutModel, inputs: &Inputs) -> Result<Prediction, InvalidValue> {
-    Ok(replayed(model, inputs, false)?.0)
+    let mut run = Run::begin(model, inputs)?;
+    run.go_on_to_the_end();
+    Ok(run.into_replayed().prediction)
 }
 
 /// The same with what the rod went through, which takes about 200 bytes a sample.
@@ -112,47 +113,8 @@ pub fn replay(model: &StrutModel, inputs: &Inputs) -> Result<Prediction, Invalid
 /// # Errors
 /// Impossible values in the model.
 pub fn replay_with_course(model: &StrutModel, inputs: &Inputs) -> Result<(Prediction, RodCourse), InvalidValue> {
-    let (prediction, strut) = replayed(model, inputs, true)?;
-    Ok((prediction, strut.into_course().unwrap_or_default()))
-}
-
-/// Prediction of a recording, and the strut at its end.
-fn replayed(model: &StrutModel, inputs: &Inputs, with_course: bool) -> Result<(Prediction, Strut), InvalidValue> {
-    let effects = &model.effects;
-    let truth = true_motion(effects, &inputs.time_s, &inputs.motion);
-    let motion = truth.as_ref().unwrap_or(&inputs.motion);
-    let signals = inputs.signals.first().copied().unwrap_or_default();
-    let mut strut = Strut::at_rest_at(model, signals, motion.start_m)?;
-    if with_course {
-        strut.begin_course();
-    }
-    let mut out = Prediction::with_capacity(inputs.time_s.len());
-    if !inputs.time_s.is_empty() {
-        out.push(strut.output());
-        strut.note_sample();
-    }
-    for ((segment, time), signals) in motion
-        .segments
-        .iter()
-        .zip(inputs.time_s.windows(2))
-        .zip(&inputs.signals)
-    {
-        let (duration, at) = (time[1] - time[0], strut.displacement_m());
-        let (begins, takes) = segment.moves_within(at, duration);
-        if begins > 0.0 {
-            strut.advance(at, begins, *signals);
-        }
-        let mut output = strut.advance_with_speeds(segment.to_m, segment.from_m_s, segment.to_m_s, takes, *signals);
-        if begins + takes < duration {
-            output = strut.advance(segment.to_m, duration - (begins + takes), *signals);
-        }
-        out.push(output);
-        strut.note_sample();
-    }
-    let [_, force, pressures @ ..] = COLUMNS;
-    record_column(effects, force, &inputs.time_s, &mut out.force_n);
-    for (column, signal) in pressures.iter().zip(&mut out.pressure_pa) {
-        record_column(effects, column, &inputs.time_s, signal);
-    }
-    Ok((out, strut))
+    let mut run = Run::begin(model, inputs)?.with_course();
+    run.go_on_to_the_end();
+    let Replayed { prediction, course } = run.into_replayed();
+    Ok((prediction, course.unwrap_or_default()))
 }

@@ -106,11 +106,32 @@ impl Step<[f64; LANES]> {
         for i in 0..2 {
             self.middle[i][lane] = step.middle[i];
             self.end[i][lane] = step.end[i];
-            for valve in Valve::ALL {
-                self.opening[i][valve][lane] = step.opening[i][valve];
-            }
+            self.opening[i][Valve::Bypass1][lane] = step.opening[i][Valve::Bypass1];
+            self.opening[i][Valve::Bypass2][lane] = step.opening[i][Valve::Bypass2];
+            self.opening[i][Valve::Spring][lane] = step.opening[i][Valve::Spring];
         }
         self.friction_n[lane] = step.friction_n;
+    }
+
+    /// What stands in a lane.
+    #[inline(always)]
+    pub fn part(&self, lane: usize) -> Step {
+        let opening = |i: usize| {
+            StrutValves::new(
+                self.opening[i][Valve::Bypass1][lane],
+                self.opening[i][Valve::Bypass2][lane],
+                self.opening[i][Valve::Spring][lane],
+            )
+        };
+        Step {
+            begins_s: self.begins_s[lane],
+            duration_s: self.duration_s[lane],
+            from_m: self.from_m[lane],
+            middle: [self.middle[0][lane], self.middle[1][lane]],
+            end: [self.end[0][lane], self.end[1][lane]],
+            opening: [opening(0), opening(1)],
+            friction_n: self.friction_n[lane],
+        }
     }
 
     /// The lanes in vectors, `like` any number of their kind.

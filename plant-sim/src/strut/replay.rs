@@ -76,6 +76,7 @@ impl Prediction {
         }
     }
 
+    #[inline(always)]
     pub(super) fn push(&mut self, output: StrutOutput) {
         self.force_n.push(output.force_n);
         for (column, pressure) in self.pressure_pa.iter_mut().zip(output.pressure_pa) {

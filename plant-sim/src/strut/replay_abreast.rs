@@ -132,14 +132,13 @@ impl<'r, 'a, S: Simd> Seats<'r, 'a, S> {
         };
         let mut flowing = Flowing::side_by_side(&each_lane(|lane| &seated[computed[lane]].strut.flowing), like);
         let mut steps = Step::<[f64; LANES]>::default();
-        let mut taken = [Step::default(); LANES];
         'steps: loop {
             for (lane, run) in seated.iter_mut().enumerate() {
                 let Some(step) = run.next_step() else { break 'steps };
-                taken[lane] = step;
+                steps.put(lane, &step);
             }
-            for (lane, computed) in computed.into_iter().enumerate() {
-                steps.put(lane, &taken[computed]);
+            for lane in seated.len()..LANES {
+                steps.put(lane, &steps.part(computed[lane]));
             }
             self.simd.vectorize(TakeStep {
                 hydraulics: &hydraulics,
@@ -149,7 +148,7 @@ impl<'r, 'a, S: Simd> Seats<'r, 'a, S> {
             });
             for (lane, run) in seated.iter_mut().enumerate() {
                 run.strut.flowing.pressure_pa = flowing.pressure_in(lane);
-                run.conclude(&taken[lane]);
+                run.conclude(&steps.part(lane));
             }
         }
         for (lane, run) in seated.iter_mut().enumerate() {

@@ -33,8 +33,10 @@ pub(super) struct Run<'a> {
     /// Number of sampling intervals, and of those that have been begun.
     intervals: usize,
     begun: usize,
-    /// The move that is being made; none before the first.
-    interval: Option<Interval>,
+    /// The move that is being made, or was made last.
+    interval: Interval,
+    /// Whether one is being made.
+    moves: bool,
     /// Moves that the present sampling interval still has, the next one last.
     to_come: Vec<StrutMove>,
     prediction: Prediction,
@@ -64,7 +66,8 @@ impl<'a> Run<'a> {
                 .min(inputs.signals.len()),
             motion,
             begun: 0,
-            interval: None,
+            interval: Interval::over(),
+            moves: false,
             to_come: Vec::with_capacity(2),
             prediction,
         })
@@ -89,10 +92,8 @@ impl<'a> Run<'a> {
     #[inline(always)]
     pub fn next_step(&mut self) -> Option<Step> {
         loop {
-            if let Some(interval) = &self.interval
-                && !interval.is_over()
-            {
-                return Some(self.strut.next_step(interval));
+            if !self.interval.is_over() {
+                return Some(self.strut.next_step(&self.interval));
             }
             if !self.begin_next() {
                 return None;
@@ -103,20 +104,19 @@ impl<'a> Run<'a> {
     /// Goes on after a step that the hydraulics have taken.
     #[inline(always)]
     pub fn conclude(&mut self, step: &Step) {
-        if let Some(interval) = &mut self.interval {
-            self.strut.conclude(step, interval);
-        }
+        self.strut.conclude(step, &mut self.interval);
     }
 
     /// Ends the move that is over and begins the next one; whether there is one.
     #[inline(always)]
     fn begin_next(&mut self) -> bool {
-        let output = self.interval.take().map(|interval| self.strut.finish(&interval));
-        if let Some(next) = self.to_come.pop() {
-            self.interval = Some(self.strut.begin(&next));
-            return true;
-        }
-        if let Some(output) = output {
+        if self.moves {
+            let output = self.strut.finish(&self.interval);
+            if let Some(next) = self.to_come.pop() {
+                self.interval = self.strut.begin(&next);
+                return true;
+            }
+            self.moves = false;
             self.prediction.push(output);
             self.strut.note_sample();
         }
@@ -127,7 +127,8 @@ impl<'a> Run<'a> {
         self.begun += 1;
         let duration_s = self.inputs.time_s[k + 1] - self.inputs.time_s[k];
         let first = self.first_move(self.motion.segments[k], duration_s, self.inputs.signals[k]);
-        self.interval = Some(self.strut.begin(&first));
+        self.interval = self.strut.begin(&first);
+        self.moves = true;
         true
     }
 

@@ -7,8 +7,8 @@
 use pulp::Simd;
 
 use super::hydraulics::{Flowing, Hydraulics, Step};
+use super::inputs::Inputs;
 use super::model::StrutModel;
-use super::replay::Inputs;
 use super::run::{Replayed, Run};
 use crate::lanes::{Four, LANES, each_lane, vectors};
 use crate::model_file::InvalidValue;

@@ -7,11 +7,12 @@ use oleo_interface::StrutValves;
 use crate::model_file::InvalidValue;
 
 use super::hydraulics::Step;
+use super::inputs::Inputs;
 use super::instruments::{record_column, true_motion};
 use super::integrator::{Interval, Strut};
 use super::model::StrutModel;
 use super::motion::{Motion, Segment, StrutMove};
-use super::replay::{Inputs, Prediction};
+use super::prediction::Prediction;
 use super::rod_course::RodCourse;
 use super::terms::COLUMNS;
 

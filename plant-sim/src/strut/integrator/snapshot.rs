@@ -3,8 +3,8 @@
 use oleo_interface::StrutValves;
 use serde::{Deserialize, Serialize};
 
-use super::Strut;
 use super::oil_swing::SwingCourse;
+use super::{Strut, settled_s};
 use crate::model_file::InvalidValue;
 use crate::strut::hydraulics::Flowing;
 use crate::strut::model::StrutModel;
@@ -77,6 +77,7 @@ impl Strut {
             supplied_m: kept.supplied_m,
         };
         self.valves = StrutValves::from_array(kept.valves);
+        self.settled_s = settled_s(&self.valves);
         self.rod.set_friction_n(kept.friction_n);
         if let Some(swing) = &mut self.swing {
             swing.course = kept.swing;

@@ -137,8 +137,8 @@ impl<'r, 'a, S: Simd> Seats<'r, 'a, S> {
                 let Some(step) = run.next_step() else { break 'steps };
                 steps.put(lane, &step);
             }
-            for lane in seated.len()..LANES {
-                steps.put(lane, &steps.part(computed[lane]));
+            for (lane, &run) in computed.iter().enumerate().skip(seated.len()) {
+                steps.put(lane, &steps.part(run));
             }
             self.simd.vectorize(TakeStep {
                 hydraulics: &hydraulics,

@@ -50,7 +50,7 @@ enum Plan {
     /// From a simulation that is remembered.
     Known(Arc<Kept>),
     /// From a simulation without the rod forces, which is kept if it is wanted again.
-    Bare { bare: StrutModel, is_kept: bool },
+    Bare { bare: Box<StrutModel>, is_kept: bool },
     /// From that of another one that is wanted at the same time.
     SameAs(usize),
 }
@@ -88,7 +88,7 @@ pub fn replay_all(wanted: &[Wanted<'_>]) -> Vec<Result<Prediction, InvalidValue>
                 Ok(Replayed { prediction, course }) => {
                     let course = course.unwrap_or_default();
                     let kept = Arc::new(Kept {
-                        bare,
+                        bare: *bare,
                         prediction,
                         course,
                     });
@@ -132,7 +132,7 @@ fn planned(wanted: &[Wanted<'_>]) -> Vec<Result<Plan, InvalidValue>> {
         }
         let found = this.memory.find(&bare);
         let earlier = (plans.iter_mut().zip(wanted).enumerate()).find_map(|(k, (plan, other))| match plan {
-            Ok(Plan::Bare { bare: same, is_kept }) if std::ptr::eq(other.memory, this.memory) && *same == bare => {
+            Ok(Plan::Bare { bare: same, is_kept }) if std::ptr::eq(other.memory, this.memory) && **same == bare => {
                 *is_kept = true;
                 Some(k)
             }
@@ -142,7 +142,7 @@ fn planned(wanted: &[Wanted<'_>]) -> Vec<Result<Plan, InvalidValue>> {
             (Found::Known(kept), _) => Plan::Known(kept),
             (_, Some(earlier)) => Plan::SameAs(earlier),
             (found, None) => Plan::Bare {
-                bare,
+                bare: Box::new(bare),
                 is_kept: matches!(found, Found::Again),
             },
         }));

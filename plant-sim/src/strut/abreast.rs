@@ -67,13 +67,10 @@ impl<S: Simd> SideBySide<S> {
 
     fn advance(&self, mut struts: [&mut Strut; LANES], moves: &[StrutMove; LANES]) -> [StrutOutput; LANES] {
         let mut intervals = each_lane(|lane| struts[lane].begin(&moves[lane]));
-        let mut steps = Step::<[f64; LANES]>::default();
         while let Some(first) = intervals.iter().position(|interval| !interval.is_over()) {
             // Where a strut has arrived, the first that has not is computed once more, and nothing is kept of it.
             let computed = each_lane(|lane| if intervals[lane].is_over() { first } else { lane });
-            for (lane, &strut) in computed.iter().enumerate() {
-                steps.put(lane, &struts[strut].next_step(&intervals[strut]));
-            }
+            let steps = each_lane(|lane| struts[computed[lane]].next_step(&intervals[computed[lane]]));
             self.simd.vectorize(TakeStep {
                 hydraulics: &self.hydraulics,
                 like: Four::zero(self.simd),
@@ -82,7 +79,7 @@ impl<S: Simd> SideBySide<S> {
                 computed,
             });
             for lane in (0..LANES).filter(|lane| computed[*lane] == *lane) {
-                struts[lane].conclude(&steps.part(lane), &mut intervals[lane]);
+                struts[lane].conclude(&steps[lane], &mut intervals[lane]);
             }
         }
         each_lane(|lane| struts[lane].finish(&intervals[lane]))
@@ -94,7 +91,7 @@ struct TakeStep<'a, 'b, S: Simd> {
     hydraulics: &'a Hydraulics<Four<S>>,
     like: Four<S>,
     struts: &'a mut [&'b mut Strut; LANES],
-    steps: &'a Step<[f64; LANES]>,
+    steps: &'a [Step; LANES],
     /// Which strut each lane computes.
     computed: [usize; LANES],
 }
@@ -111,7 +108,7 @@ impl<S: Simd> pulp::NullaryFnOnce for TakeStep<'_, '_, S> {
             steps,
             computed,
         } = self;
-        let step = steps.in_vectors(like);
+        let step = Step::side_by_side(&each_lane(|lane| &steps[lane]), like);
         let mut flowing = Flowing::side_by_side(&each_lane(|lane| &struts[computed[lane]].flowing), like);
         hydraulics.step(&mut flowing, &step);
         for lane in 0..LANES {

@@ -189,30 +189,21 @@ mod tests {
 
     const SEAL: &str = "seal_friction = { coulomb_force_N = 300.0, breakaway_force_N = 400.0, stribeck_speed_m_s = 0.02, \
                         presliding_stiffness_N_m = 2e6 }";
-    const REAL_AND_WARM: &str = r#"
-        oil_compressibility = { bulk_modulus_Pa = 1.4e9 }
-        entrained_air = { volume_fraction = 0.005, polytropic_exponent = 1.2 }
-        gas_heat_transfer = { time_constant_1_s = 2.6, time_constant_2_s = 6.5 }
-        real_gas = { equation = "reference" }
-        accumulator_piston_friction = { pressure_1_Pa = 3e4, pressure_2_Pa = 2e4 }
-        damper_leakage = { flow_coefficient_1 = 8e-8, flow_coefficient_2 = 5e-8 }
-        line_inertance = { inertance_2_kg_m4 = 5e6 }
-        valve_delay = { response_polynomial_s = [0.04, 0.002, 0.0001] }
-        valve_transition = { shape = "linear" }
-        mount_compliance = { stiffness_N_m = 5e6 }
-        damping_fade = { fade_1_per_J = 1e-4, fade_2_per_J = 1e-4, cooling_time_s = 60.0 }
-        sensor_lag = { p2_Pa = 0.004, displacement_m = 0.001 }
-        sensor_offset = { p1_Pa = 1000.0 }
-        "#;
-    const WITHOUT_A_NAME: &str = r#"
-        oil_compressibility = { bulk_modulus_Pa = 1.4e9 }
-        [[unlisted]]
-        place = "accumulator-1"
-        depends_on = "volume_change"
-        argument = [-1.0, 0.0, 1.0]
-        value = [1.2, 1.0, 0.8]
-        time_constant_s = 3.0
-        "#;
+
+    /// Every term that can be in a lane.
+    fn every_term() -> Effects {
+        Effects {
+            unlisted: vec![],
+            ..Effects::every_term()
+        }
+    }
+
+    fn laws_without_a_name() -> Effects {
+        Effects {
+            unlisted: Effects::every_term().unlisted,
+            ..Effects::default()
+        }
+    }
 
     /// Stretches of rest between stretches of sines, whose ends lie between samples, with valves that switch.
     fn inputs(samples: usize, random: &mut ChaCha8Rng) -> Inputs {
@@ -257,9 +248,9 @@ mod tests {
         }
     }
 
-    fn model(effects: &str, random: &mut ChaCha8Rng) -> StrutModel {
+    fn model(effects: Effects, random: &mut ChaCha8Rng) -> StrutModel {
         let mut model = StrutModel::defender110(random.random_range(3500.0..9000.0));
-        model.effects = toml::from_str::<Effects>(effects).unwrap();
+        model.effects = effects;
         model.gas.temperature_k = random.random_range(250.0..330.0);
         model.valve[2].flow_coefficient *= random.random_range(0.5..2.0);
         model
@@ -269,14 +260,20 @@ mod tests {
         let mut random = ChaCha8Rng::seed_from_u64(11);
         let inputs = [1, 500, 180, 700, 330, 2, 420, 600].map(|samples| inputs(samples, &mut random));
         // More of some kinds than there are lanes, one that is alone, and one that cannot be in a lane.
-        let mut models: Vec<StrutModel> = [SEAL; 2]
-            .into_iter()
-            .chain([REAL_AND_WARM; 3])
-            .map(|e| model(e, &mut random))
-            .collect();
-        models.push(model("", &mut random));
+        let seal = || toml::from_str::<Effects>(SEAL).unwrap();
+        let mut models: Vec<StrutModel> = [
+            seal(),
+            seal(),
+            every_term(),
+            every_term(),
+            every_term(),
+            Effects::default(),
+        ]
+        .into_iter()
+        .map(|effects| model(effects, &mut random))
+        .collect();
         models[5].effects.gas_heat_transfer = models[2].effects.gas_heat_transfer.clone();
-        models.push(model(WITHOUT_A_NAME, &mut random));
+        models.push(model(laws_without_a_name(), &mut random));
         let mut impossible = models[0].clone();
         impossible.cylinder.bore_m = -1.0;
         models.push(impossible);

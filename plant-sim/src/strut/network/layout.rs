@@ -2,7 +2,6 @@
 
 use super::chamber::Chamber;
 use super::path::Path;
-use super::state::State;
 use crate::lanes::Number;
 use crate::strut::characteristic::Characteristic;
 use crate::strut::flow_path::FlowPath;
@@ -34,17 +33,6 @@ pub(in crate::strut) struct Network<N: Number = f64> {
     pub(super) has_unlisted_laws: bool,
 }
 
-/// The oil column of line 2 between the main chamber and accumulator 2: a mass between two springs.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::strut) struct ColumnOscillator {
-    /// Inertance of the line, kg/m4.
-    pub inertance_kg_m4: f64,
-    /// Natural angular frequency without damping, rad/s.
-    pub frequency_rad_s: f64,
-    /// Amplitude of the pressure after a sudden change of the piston's speed, Pa s/m.
-    pub kick_pa_s_m: f64,
-}
-
 impl Network {
     /// The network of a model.
     pub fn of(model: &StrutModel) -> Self {
@@ -68,25 +56,6 @@ impl Network {
             transition_pa: model.orifice.transition_pressure_pa,
             has_unlisted_laws: !effects.unlisted.is_empty(),
         }
-    }
-
-    /// The oil column of line 2 as an oscillator around a state of rest; none if its oil has no mass.
-    pub fn column_oscillator(&self, rest: &State) -> Option<ColumnOscillator> {
-        let inertance_kg_m4 = self.inertance_kg_m4;
-        if inertance_kg_m4 <= 0.0 {
-            return None;
-        }
-        // By Boyle's law, which is soft enough: gas takes up so much more than oil that its exponent hardly matters.
-        let [gas_1, gas_2] = [0, 1].map(|i| rest.gas[i].volume_m3 / self.paths[i].gas.pressure(rest.gas[i]).pa());
-        // Rigid oil takes up nothing; behind it is the other accumulator.
-        let held = self.chamber.taken_up(rest, rest.p1_pa, 0.0).slope;
-        let chamber = if held > 0.0 { held } else { gas_1 };
-        let volume_per_pressure = 1.0 / (1.0 / chamber + 1.0 / gas_2);
-        Some(ColumnOscillator {
-            inertance_kg_m4,
-            frequency_rad_s: 1.0 / (inertance_kg_m4 * volume_per_pressure).sqrt(),
-            kick_pa_s_m: self.chamber.area_m2 * (inertance_kg_m4 / volume_per_pressure).sqrt(),
-        })
     }
 
     /// The networks of several struts side by side, `like` any number of their kind; none where they differ in kind, or where one has a

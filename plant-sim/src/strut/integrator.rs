@@ -175,7 +175,7 @@ impl Strut {
         let hydraulics = Hydraulics::of(model);
         let state = hydraulics.network.at_rest(displacement_m, model.gas.temperature_k);
         Ok(Self {
-            swing: OilSwing::of(&hydraulics.network, &state),
+            swing: OilSwing::of(&hydraulics.network, model.gas.temperature_k),
             hydraulics,
             rod: RodForces::of(effects),
             response_polynomial_s: model.response_polynomial_s(),

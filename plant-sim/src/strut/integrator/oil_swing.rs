@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
-use crate::strut::network::{ColumnOscillator, Network, State};
+use crate::strut::network::{ColumnOscillator, Network};
 
 /// Length of a step while the column swings, rad of its oscillation. SDIRK2 then is behind by 0.3 % of the phase.
 const STEP_RAD: f64 = 0.25;
@@ -40,8 +40,10 @@ pub(super) struct SwingCourse {
 
 impl OilSwing {
     /// The column of a network at rest; none if its oil has no mass, or so little that it need not be followed.
-    pub fn of(network: &Network, rest: &State) -> Option<Self> {
-        let oscillator = network.column_oscillator(rest)?;
+    /// It is looked at where the strut stands unmoved, wherever it starts: a strut that goes on from a state of another one must take the same
+    /// steps.
+    pub fn of(network: &Network, ambient_k: f64) -> Option<Self> {
+        let oscillator = network.column_oscillator(&network.at_rest(0.0, ambient_k))?;
         let step_s = STEP_RAD / oscillator.frequency_rad_s;
         (step_s >= LEAST_STEP_S).then(|| Self {
             oscillator,

@@ -55,6 +55,8 @@ pub struct Generated {
     pub recordings: Vec<Recording>,
     /// Recordings that the diagnosis does not get, on which it is judged.
     pub unseen: Vec<Recording>,
+    /// The complete model, with the effects and the true values of everything that is believed within a tolerance.
+    pub complete: StrutModel,
     /// True values of the concealed parameters.
     pub truth: Vec<Truth>,
     /// Size of each concealed effect: RMS over all channels and samples of what it changes, over the noise, after the best
@@ -117,6 +119,7 @@ pub fn generate(
         given,
         recordings,
         unseen,
+        complete: truth_model,
         truth,
         sizes,
     })

@@ -3,7 +3,7 @@
 use oleo_report::{Axis, Column, Curves, Field, FieldStyle, Page, Style, Table, Verdict, significant};
 
 use super::plan::SIZES;
-use super::summary::{Rate, Summary};
+use super::summary::{Nameless, Rate, Summary};
 use crate::effect::in_struts;
 use crate::vocabulary::EffectId;
 
@@ -23,8 +23,11 @@ pub fn tables(s: &Summary) -> Vec<(&'static str, Table)> {
     if !s.confusion.is_empty() {
         all.push(("Confusion: reported effects by concealed effect", confusion_table(s)));
     }
-    if s.false_alarms.of + s.pairs_exact.of > 0 {
+    if s.false_alarms.of + s.pairs_exact.of + s.triples_exact.of > 0 {
         all.push(("Rates", rates_table(s)));
+    }
+    if !s.several.is_empty() {
+        all.push(("Several effects at once, by size in units of noise", several_table(s)));
     }
     if !s.coverage.is_empty() {
         all.push((
@@ -126,12 +129,35 @@ fn rates_table(s: &Summary) -> Table {
         ("two concealed effects: exactly these two are reported", s.pairs_exact),
         ("two concealed effects: each of them is found", s.pairs_found),
         (
+            "three concealed effects: exactly these three are reported",
+            s.triples_exact,
+        ),
+        ("three concealed effects: each of them is found", s.triples_found),
+        (
             "unseen recordings are predicted better with the found effects",
             s.unseen_better,
         ),
         ("the true size is inside its 95 % interval", s.size_coverage),
     ] {
         table.row([name.to_owned(), fraction(rate), with_interval(rate)]);
+    }
+    table
+}
+
+fn several_table(s: &Summary) -> Table {
+    let mut table = Table::new([
+        Column::number("Concealed effects"),
+        Column::number("Size"),
+        Column::number("Found, of the effects of this size"),
+        Column::number("Exact, of the campaigns whose smallest effect has this size"),
+    ]);
+    for row in &s.several {
+        table.row([
+            row.concealed.to_string(),
+            row.size.to_string(),
+            fraction(row.found),
+            fraction(row.exact),
+        ]);
     }
     table
 }
@@ -182,6 +208,8 @@ fn nameless_table(s: &Summary) -> Table {
         Column::number("Under another name"),
         Column::number("Noise ratio on unseen recordings before"),
         Column::number("Noise ratio on unseen recordings after"),
+        Column::number("Of the true model"),
+        Column::number("Within 1.2 times that"),
         Column::text("Reported places"),
     ]);
     for n in &s.nameless {
@@ -193,7 +221,28 @@ fn nameless_table(s: &Summary) -> Table {
             fraction(n.misnamed),
             significant(n.before, 3),
             significant(n.after, 3),
+            significant(n.floor, 3),
+            fraction(n.near_floor),
             places.join(", "),
+        ]);
+    }
+    if s.nameless.len() > 1 {
+        let sum = |rate: fn(&Nameless) -> Rate| {
+            fraction((s.nameless.iter()).fold(Rate::default(), |sum, n| Rate {
+                hits: sum.hits + rate(n).hits,
+                of: sum.of + rate(n).of,
+            }))
+        };
+        table.row([
+            "all".to_owned(),
+            sum(|n| n.unlisted),
+            sum(|n| n.placed),
+            sum(|n| n.misnamed),
+            String::new(),
+            String::new(),
+            String::new(),
+            sum(|n| n.near_floor),
+            String::new(),
         ]);
     }
     table

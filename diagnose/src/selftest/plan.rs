@@ -19,10 +19,14 @@ const NAMELESS_SIZES: [f64; 2] = [3.0, 10.0];
 const COMPLETE_PER_ROUND: usize = 8;
 /// Campaigns with two effects in a round.
 const PAIRS_PER_ROUND: usize = 4;
+/// Campaigns with three effects in a round.
+const TRIPLES_PER_ROUND: usize = 4;
 /// Name of a campaign in which nothing is concealed.
 pub const COMPLETE: &str = "none";
 /// Name of a campaign in which two effects are.
 pub const PAIR: &str = "pair";
+/// Name of a campaign in which three effects are.
+pub const TRIPLE: &str = "triple";
 
 /// Name of a campaign in which a law that swings in time is.
 pub const PERIODIC: &str = "periodic";
@@ -75,6 +79,8 @@ pub enum Subject {
     Complete,
     /// Two concealed effects.
     Pair,
+    /// Three concealed effects.
+    Triple,
     /// A law without a name that swings in time.
     Periodic,
     /// Two laws without a name at different places.
@@ -89,7 +95,7 @@ pub struct UnknownTerm(String);
 /// The terms, and which was probably meant.
 fn suggested(text: &str) -> String {
     let effects = in_struts().into_iter().map(EffectId::as_str);
-    let known: Vec<&str> = effects.chain([COMPLETE, PAIR, PERIODIC, TWO_LAWS]).collect();
+    let known: Vec<&str> = effects.chain([COMPLETE, PAIR, TRIPLE, PERIODIC, TWO_LAWS]).collect();
     suggestion(text, &known, "terms")
 }
 
@@ -100,6 +106,7 @@ impl FromStr for Subject {
         match text {
             COMPLETE => Ok(Self::Complete),
             PAIR => Ok(Self::Pair),
+            TRIPLE => Ok(Self::Triple),
             PERIODIC => Ok(Self::Periodic),
             TWO_LAWS => Ok(Self::TwoLaws),
             _ => (in_struts().into_iter().find(|term| term.as_str() == text))
@@ -171,21 +178,11 @@ impl Plan {
             self.two_laws(round, cases);
         }
         if wanted(Subject::Pair) {
-            for k in 0..PAIRS_PER_ROUND {
-                let name = format!("{seed}:{PAIR}:{round}.{k}");
-                let mut draw = Draw::named(&name);
-                // Two different terms of one to thirty times the noise.
-                let first = draw.index(terms.len());
-                let second = (first + 1 + draw.index(terms.len() - 1)) % terms.len();
-                let hidden = [first, second].map(|t| (terms[t], SIZES[2 + draw.index(4)]));
-                cases.push(Case {
-                    name,
-                    hidden: hidden.to_vec(),
-                    variants: vec![],
-                    left_out: None,
-                    flaw: None,
-                });
-            }
+            cases.extend((0..PAIRS_PER_ROUND).map(|k| several::<2>(format!("{seed}:{PAIR}:{round}.{k}"))));
+        }
+        // Among the others they would move the campaigns of all later rounds, and published figures would be of other ones.
+        if self.subjects.contains(&Subject::Triple) {
+            cases.extend((0..TRIPLES_PER_ROUND).map(|k| several::<3>(format!("{seed}:{TRIPLE}:{round}.{k}"))));
         }
     }
 
@@ -238,6 +235,25 @@ impl Plan {
     }
 }
 
+/// Different effects at once, each of one to thirty times the noise.
+fn several<const N: usize>(name: String) -> Case {
+    let mut draw = Draw::named(&name);
+    let mut left = in_struts();
+    let terms = [(); N].map(|()| {
+        // Turned, so that a pair is the same two as before there were triples.
+        let at = draw.index(left.len());
+        left.rotate_left(at);
+        left.remove(0)
+    });
+    Case {
+        hidden: terms.map(|term| (term, SIZES[2 + draw.index(4)])).to_vec(),
+        name,
+        variants: vec![],
+        left_out: None,
+        flaw: None,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -272,6 +288,39 @@ mod tests {
             for size in SIZES {
                 assert!(all.iter().any(|c| c.hidden == [(term, size)]), "{term} {size}");
             }
+        }
+    }
+
+    #[test]
+    fn triples_are_three_different_effects_and_leave_all_other_campaigns_as_they_are() {
+        let triples = plan(24, &["triple"]).cases();
+        assert_eq!(triples.len(), 24);
+        for case in &triples {
+            let mut terms: Vec<EffectId> = case.hidden.iter().map(|(term, _)| *term).collect();
+            terms.sort_unstable();
+            terms.dedup();
+            assert_eq!(terms.len(), 3, "{case:?}");
+            assert!(
+                case.hidden.iter().all(|(_, size)| (1.0..=30.0).contains(size)),
+                "{case:?}"
+            );
+        }
+        let all = plan(200, &[]).cases();
+        assert!(all.iter().all(|case| case.hidden.len() < 3));
+    }
+
+    #[test]
+    fn pairs_are_those_of_the_published_figures() {
+        let terms = in_struts();
+        for case in plan(40, &["pair"]).cases() {
+            // As they were drawn before there were triples.
+            let mut draw = Draw::named(&case.name);
+            let first = draw.index(terms.len());
+            let second = (first + 1 + draw.index(terms.len() - 1)) % terms.len();
+            assert_eq!(
+                case.hidden,
+                [first, second].map(|t| (terms[t], SIZES[2 + draw.index(4)]))
+            );
         }
     }
 

@@ -12,7 +12,7 @@ use super::flaw::Flaw;
 use super::plan::{COMPLETE, SIZES};
 use super::trial::{Trial, covers};
 use crate::effect::in_struts;
-use crate::vocabulary::{EffectId, Place};
+use crate::vocabulary::EffectId;
 
 /// A part of a number of trials.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
@@ -74,6 +74,19 @@ pub struct Power {
     pub false_beside: Rate,
 }
 
+/// What became of campaigns with several concealed effects, by size.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Several {
+    /// Number of effects that each of the campaigns conceals.
+    pub concealed: usize,
+    /// Size on the grid, in units of noise.
+    pub size: f64,
+    /// Concealed effects of about this size: those that were found.
+    pub found: Rate,
+    /// Campaigns whose smallest concealed effect has about this size: those in which exactly the concealed effects were reported.
+    pub exact: Rate,
+}
+
 /// How often intervals hold the truth.
 #[derive(Debug, Clone, Serialize)]
 pub struct Coverage {
@@ -107,7 +120,7 @@ pub struct Nameless {
     pub term: EffectId,
     /// Campaigns in which `unlisted` was reported instead.
     pub unlisted: Rate,
-    /// With a law at the place of the effect.
+    /// With a law at the place of the effect, or laws at its parts.
     pub placed: Rate,
     /// Another name reported instead or beside.
     pub misnamed: Rate,
@@ -115,6 +128,10 @@ pub struct Nameless {
     pub before: f64,
     /// The same with what was reported.
     pub after: f64,
+    /// The same of the true model.
+    pub floor: f64,
+    /// Campaigns in which what was reported predicts unseen recordings to within [`NEAR_FLOOR`] times what the true model reaches.
+    pub near_floor: Rate,
     /// Places reported, with counts.
     pub places: BTreeMap<String, usize>,
 }
@@ -160,6 +177,12 @@ pub struct Summary {
     pub pairs_exact: Rate,
     /// Effects that were found in campaigns with two concealed effects.
     pub pairs_found: Rate,
+    /// Three concealed: exactly those three reported.
+    pub triples_exact: Rate,
+    /// Effects that were found in campaigns with three concealed effects.
+    pub triples_found: Rate,
+    /// The same by number of concealed effects and by size.
+    pub several: Vec<Several>,
     /// Coverage of the confidence intervals, by parameter.
     pub coverage: Vec<Coverage>,
     /// Intervals of the sizes (the first number of each effect).
@@ -176,6 +199,8 @@ pub struct Summary {
     pub unseen_better: Rate,
 }
 
+/// A model predicts unseen recordings as well as can be asked if it comes within this multiple of the true model.
+pub const NEAR_FLOOR: f64 = 1.2;
 /// Edges of confidence in the table.
 const CONFIDENCE: [f64; 6] = [0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
 /// Said where nothing is reported.
@@ -191,23 +216,18 @@ impl Summary {
             .collect();
         let sound: Vec<&Trial> = trials.iter().filter(|t| t.failed.is_none()).collect();
         let named: Vec<&Trial> = sound.iter().copied().filter(|t| t.left_out.is_none()).collect();
-        let mut false_alarms = Rate::default();
-        let (mut pairs_exact, mut pairs_found, mut unseen_better) = (Rate::default(), Rate::default(), Rate::default());
+        let (mut false_alarms, mut unseen_better) = (Rate::default(), Rate::default());
         for t in &named {
-            match t.hidden.len() {
-                0 => false_alarms.count(!t.reported.is_empty()),
-                1 => {}
-                _ => {
-                    let [hidden, reported] = t.concealed_and_reported();
-                    pairs_exact.count(hidden == reported);
-                    hidden.iter().for_each(|one| pairs_found.count(reported.contains(one)));
-                }
+            if t.hidden.is_empty() {
+                false_alarms.count(!t.reported.is_empty());
             }
             if t.reported.iter().any(|r| r.gain.is_some()) {
                 unseen_better.count(t.unseen.1 < t.unseen.0);
             }
         }
         let (coverage, size_coverage) = coverage(&named);
+        let several = several(&named);
+        let [pairs, triples] = [2, 3].map(|concealed| of_all_sizes(&several, concealed));
         Self {
             seed,
             trials: trials.len(),
@@ -216,8 +236,11 @@ impl Summary {
             false_alarm_interval: false_alarms.interval(),
             power: power(&named),
             confusion: confusion(&named),
-            pairs_exact,
-            pairs_found,
+            pairs_exact: pairs.exact,
+            pairs_found: pairs.found,
+            triples_exact: triples.exact,
+            triples_found: triples.found,
+            several,
             coverage,
             size_coverage,
             reliability: reliability(&named),
@@ -264,6 +287,52 @@ fn nearest_size(size: f64) -> f64 {
         .into_iter()
         .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
         .unwrap_or(1.0)
+}
+
+fn several(trials: &[&Trial]) -> Vec<Several> {
+    let most = trials.iter().map(|t| t.hidden.len()).max().unwrap_or(0);
+    let mut rows = Vec::new();
+    for concealed in 2..=most {
+        for size in SIZES {
+            let mut row = Several {
+                concealed,
+                size,
+                found: Rate::default(),
+                exact: Rate::default(),
+            };
+            for t in trials.iter().filter(|t| t.hidden.len() == concealed) {
+                let each = t.each_found();
+                for (_, found) in each.iter().filter(|(reached, _)| nearest_size(*reached) == size) {
+                    row.found.count(*found);
+                }
+                let smallest = each.iter().map(|(reached, _)| *reached).fold(f64::INFINITY, f64::min);
+                if nearest_size(smallest) == size {
+                    let [hidden, reported] = t.concealed_and_reported();
+                    row.exact.count(hidden == reported);
+                }
+            }
+            if row.found.of > 0 {
+                rows.push(row);
+            }
+        }
+    }
+    rows
+}
+
+/// The rows of one number of concealed effects, added.
+fn of_all_sizes(rows: &[Several], concealed: usize) -> Several {
+    let sum = |rate: &dyn Fn(&Several) -> Rate| {
+        (rows.iter().filter(|row| row.concealed == concealed)).fold(Rate::default(), |sum, row| Rate {
+            hits: sum.hits + rate(row).hits,
+            of: sum.of + rate(row).of,
+        })
+    };
+    Several {
+        concealed,
+        size: f64::NAN,
+        found: sum(&|row| row.found),
+        exact: sum(&|row| row.exact),
+    }
 }
 
 fn power(trials: &[&Trial]) -> Vec<Power> {
@@ -388,12 +457,13 @@ fn nameless(trials: &[&Trial]) -> Vec<Nameless> {
                 places: BTreeMap::new(),
                 before: median(own.iter().map(|t| t.unseen.0).collect()),
                 after: median(own.iter().map(|t| t.unseen.1).collect()),
+                floor: median(own.iter().map(|t| t.unseen_floor).collect()),
+                near_floor: Rate::default(),
             };
             for t in own {
-                let at = |place: &Place| t.truth.iter().any(|truth| truth.place == *place);
                 row.unlisted.count(t.found(EffectId::Unlisted));
-                row.placed
-                    .count(t.reported.iter().any(|r| r.id == EffectId::Unlisted && at(&r.place)));
+                row.placed.count(t.law_is_placed());
+                row.near_floor.count(t.unseen.1 <= NEAR_FLOOR * t.unseen_floor);
                 row.misnamed
                     .count(t.reported.iter().any(|r| r.id != EffectId::Unlisted));
                 for r in &t.reported {
@@ -413,7 +483,7 @@ mod tests {
     use super::super::trial::{Number, Reported};
     use super::*;
     use crate::search::LawPairs;
-    use crate::vocabulary::Site;
+    use crate::vocabulary::{Branch, Site};
 
     fn trial(hidden: EffectId, value: f64, reported: EffectId, interval: (f64, f64)) -> Trial {
         let truth = Truth {
@@ -448,6 +518,7 @@ mod tests {
             residuals: 1000,
             noise_ratio: (1.2, 1.0),
             unseen: (1.2, 1.0),
+            unseen_floor: 1.0,
             law_pairs: LawPairs::NotTried,
             simulated: 0,
             incomplete: false,
@@ -474,6 +545,85 @@ mod tests {
         assert_eq!(s.confusion[term.as_str()]["seal_friction"], 1);
         assert_eq!(s.size_coverage, Rate { hits: 1, of: 2 });
         assert_eq!(s.reliability[0].there, Rate { hits: 2, of: 3 });
+    }
+
+    #[test]
+    fn several_effects_are_counted_each_by_its_size_and_together_by_the_smallest() {
+        let (one, two, three) = (EffectId::SideLoadFriction, EffectId::SealFriction, EffectId::BumpStop);
+        let with = |hidden: &[(EffectId, f64)], reported: &[EffectId]| {
+            let mut t = trial(one, 0.02, one, (0.019, 0.022));
+            let (truth, found) = (t.truth[0].clone(), t.reported[0].clone());
+            t.hidden = hidden.iter().map(|&(id, size)| (id, size, size)).collect();
+            t.truth = (t.hidden.iter())
+                .map(|&(id, ..)| Truth { id, ..truth.clone() })
+                .collect();
+            t.reported = (reported.iter()).map(|&id| Reported { id, ..found.clone() }).collect();
+            t
+        };
+        let s = Summary::of(
+            1,
+            &[
+                with(&[(one, 1.0), (two, 9.0), (three, 11.0)], &[three, two, one]),
+                with(&[(one, 1.1), (two, 10.0), (three, 30.0)], &[one, two]),
+                with(
+                    &[(one, 10.0), (two, 10.0), (three, 10.0)],
+                    &[one, two, three, EffectId::Unlisted],
+                ),
+                with(&[(one, 3.0), (two, 3.0)], &[one, two]),
+            ],
+        );
+        let rate = |hits, of| Rate { hits, of };
+        let row = |concealed, size, found, exact| Several {
+            concealed,
+            size,
+            found,
+            exact,
+        };
+        assert_eq!(
+            s.several,
+            [
+                row(2, 3.0, rate(2, 2), rate(1, 1)),
+                row(3, 1.0, rate(2, 2), rate(1, 2)),
+                row(3, 10.0, rate(6, 6), rate(0, 1)),
+                row(3, 30.0, rate(0, 1), rate(0, 0)),
+            ]
+        );
+        assert_eq!((s.pairs_found, s.pairs_exact), (rate(2, 2), rate(1, 1)));
+        assert_eq!((s.triples_found, s.triples_exact), (rate(8, 9), rate(1, 3)));
+    }
+
+    #[test]
+    fn a_law_is_placed_by_the_parts_of_its_place() {
+        let first = Site::Accumulator(Branch::First);
+        let second = Site::Accumulator(Branch::Second);
+        let without = |truly: &[&Site], reported: &[&Site], unseen: f64| {
+            let mut t = trial(EffectId::RealGas, 0.02, EffectId::Unlisted, (0.019, 0.022));
+            let (truth, found) = (t.truth[0].clone(), t.reported[0].clone());
+            let place = |site: &&Site| (*site).clone().into();
+            t.left_out = Some(EffectId::RealGas);
+            t.truth = (truly.iter())
+                .map(|s| Truth {
+                    place: place(s),
+                    ..truth.clone()
+                })
+                .collect();
+            t.reported = (reported.iter())
+                .map(|s| Reported {
+                    place: place(s),
+                    ..found.clone()
+                })
+                .collect();
+            t.unseen.1 = unseen;
+            t
+        };
+        let placed = |truly: &[&Site], reported: &[&Site]| without(truly, reported, 1.0).law_is_placed();
+        let both = &Site::Accumulators;
+        assert!(placed(&[both], &[both]) && placed(&[both], &[&first, &second]) && placed(&[&first, &second], &[both]));
+        assert!(placed(&[&first, &second], &[&first]) && placed(&[&first], &[&first, &Site::MainSeal]));
+        assert!(!placed(&[both], &[&first]) && !placed(&[&first], &[both]) && !placed(&[&first], &[&second]));
+        let s = Summary::of(1, &[without(&[both], &[both], 1.19), without(&[both], &[&first], 1.21)]);
+        let row = &s.nameless[0];
+        assert_eq!((row.placed.hits, row.near_floor.hits, row.near_floor.of), (1, 1, 2));
     }
 
     #[test]

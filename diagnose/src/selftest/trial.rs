@@ -18,7 +18,7 @@ use crate::recording::Recording;
 use crate::search::LawPairs;
 use crate::specimen::strut::TwoStageStrut;
 use crate::specimen::{Hypothesis, Specimen};
-use crate::vocabulary::{EffectId, Place};
+use crate::vocabulary::{EffectId, Place, Site};
 
 /// A fitted number of a reported effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -80,6 +80,9 @@ pub struct Trial {
     pub noise_ratio: (f64, f64),
     /// The same on recordings that the diagnosis never saw.
     pub unseen: (f64, f64),
+    /// The same of the true model, which is driven by the recorded displacement like the others: the floor.
+    #[serde(default)]
+    pub unseen_floor: f64,
     /// Whether laws without a name were tried in pairs.
     #[serde(default)]
     pub law_pairs: LawPairs,
@@ -108,6 +111,7 @@ pub fn run(case: &Case, stop: &AtomicBool) -> Result<Trial, DiagnoseError> {
         residuals: 0,
         noise_ratio: (0.0, 0.0),
         unseen: (0.0, 0.0),
+        unseen_floor: 0.0,
         law_pairs: LawPairs::NotTried,
         simulated: 0,
         incomplete: false,
@@ -151,10 +155,13 @@ fn diagnose(case: &Case, stop: &AtomicBool, trial: &mut Trial) -> Result<(), Dia
         .specimen
         .model_toml(&calibrated)
         .map_err(DiagnoseError::Output)?;
+    let read =
+        |text: &str| StrutModel::from_toml(text, "improved model").map_err(|e| DiagnoseError::Model(e.to_string()));
     trial.unseen = (
-        noise_ratio(&before, &generated.unseen)?,
-        noise_ratio(&diagnosis.model_toml, &generated.unseen)?,
+        noise_ratio(read(&before)?, &generated.unseen)?,
+        noise_ratio(read(&diagnosis.model_toml)?, &generated.unseen)?,
     );
+    trial.unseen_floor = noise_ratio(generated.complete, &generated.unseen)?;
     Ok(())
 }
 
@@ -190,9 +197,8 @@ fn reported(campaign: &Campaign, effect: &Effect) -> Reported {
     }
 }
 
-/// Noise ratio of a model file on recordings.
-fn noise_ratio(model_toml: &str, recordings: &[Recording]) -> Result<f64, DiagnoseError> {
-    let model = StrutModel::from_toml(model_toml, "improved model").map_err(|e| DiagnoseError::Model(e.to_string()))?;
+/// Noise ratio of a model on recordings.
+fn noise_ratio(model: StrutModel, recordings: &[Recording]) -> Result<f64, DiagnoseError> {
     let strut = TwoStageStrut::new(model, recordings.to_vec()).map_err(DiagnoseError::Model)?;
     let as_given = Hypothesis {
         calibration: vec![0.0; strut.calibration().len()],
@@ -235,10 +241,45 @@ impl Trial {
         })
     }
 
+    /// Size reached of each concealed effect, and whether it is reported; of several laws each at its place.
+    pub fn each_found(&self) -> Vec<(f64, bool)> {
+        let laws = self.hidden.iter().filter(|(id, ..)| *id == EffectId::Unlisted).count();
+        let mut places: Vec<&Place> = (self.truth.iter())
+            .filter(|t| t.id == EffectId::Unlisted)
+            .map(|t| &t.place)
+            .collect();
+        places.dedup();
+        let mut places = places.into_iter();
+        let mut at_its_place = |id: EffectId| {
+            let place = places.next();
+            self.reported.iter().any(|r| r.id == id && Some(&r.place) == place)
+        };
+        (self.hidden.iter())
+            .map(|&(id, _, size)| match id == EffectId::Unlisted && laws > 1 {
+                true => (size, at_its_place(id)),
+                false => (size, self.found(id)),
+            })
+            .collect()
+    }
+
     /// Whether an id is reported.
     #[must_use]
     pub fn found(&self, id: EffectId) -> bool {
         self.reported.iter().any(|r| r.id == id)
+    }
+
+    /// Whether laws without a name are reported at the whole place of a concealed effect. Combined places count by their parts: a law of both
+    /// accumulators is where an effect of each of them is, and a law of each is where an effect of both is.
+    #[must_use]
+    pub fn law_is_placed(&self) -> bool {
+        let parts = |place: &Place| place.site.parts();
+        let truly: Vec<Site> = self.truth.iter().flat_map(|t| parts(&t.place)).collect();
+        let laws = self.reported.iter().filter(|r| r.id == EffectId::Unlisted);
+        let there: Vec<Site> = (laws.map(|r| parts(&r.place)))
+            .filter(|own| own.iter().all(|site| truly.contains(site)))
+            .flatten()
+            .collect();
+        !there.is_empty() && (self.truth.iter()).any(|t| parts(&t.place).iter().all(|site| there.contains(site)))
     }
 
     /// Whether an id is reported at every one of its places and nowhere else.

@@ -99,6 +99,11 @@ impl<T> StrutValves<T> {
         self.0
     }
 
+    /// The values in the same order, where they are.
+    pub const fn as_array(&self) -> &[T; 3] {
+        &self.0
+    }
+
     /// References to the values, to change them.
     pub fn each_mut(&mut self) -> StrutValves<&mut T> {
         StrutValves(self.0.each_mut())

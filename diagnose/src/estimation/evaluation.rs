@@ -72,10 +72,10 @@ impl<'a> Evaluation<'a> {
     /// A model that cannot be simulated; [`DiagnoseError::Interrupted`] once the caller asked to stop.
     pub fn truths(&self, point: &Point) -> Result<Vec<Series>, DiagnoseError> {
         let hypothesis = point.hypothesis(self.specimen);
-        (0..self.specimen.recordings().len())
-            .into_par_iter()
-            .map(|r| self.simulate(&hypothesis, r))
-            .collect()
+        let wanted: Vec<(&Hypothesis, usize)> = (0..self.specimen.recordings().len())
+            .map(|r| (&hypothesis, r))
+            .collect();
+        self.simulate_all(&wanted)
     }
 
     /// What the instruments show of given true quantities at a point.
@@ -130,14 +130,13 @@ impl<'a> Evaluation<'a> {
         let shown = self.observed(point, truths);
         let moved: Vec<Moved> = coordinates.iter().map(|&k| self.moved(point, k)).collect();
         // All (recording, coordinate) pairs at once keep every core busy; collect restores their order.
-        let pairs: Vec<(usize, usize)> = (0..truths.len())
-            .flat_map(|r| (0..moved.len()).map(move |k| (r, k)))
+        let pairs: Vec<(usize, &Moved)> = (0..truths.len())
+            .flat_map(|r| moved.iter().map(move |moved| (r, moved)))
             .collect();
-        let derivatives: Vec<Series> = pairs
-            .par_iter()
-            .map(|&(r, k)| self.derivative(&moved[k], r, &truths[r], &shown[r]))
+        let derivatives: Vec<Vec<Series>> = (pairs.par_chunks(self.at_once(pairs.len())))
+            .map(|pairs| self.derivatives(pairs, truths, &shown))
             .collect::<Result<_, _>>()?;
-        let mut derivatives = derivatives.into_iter();
+        let mut derivatives = derivatives.into_iter().flatten();
         Ok((shown.iter().enumerate())
             .map(|(r, shown)| Sensitivity {
                 residual: self.residual(r, shown),
@@ -160,38 +159,67 @@ impl<'a> Evaluation<'a> {
         }
     }
 
-    fn derivative(
+    /// Derivatives of recordings along coordinates, those that need a simulation by simulations together.
+    fn derivatives(
         &self,
-        moved: &Moved,
-        recording: usize,
-        truth: &Series,
-        shown: &Series,
-    ) -> Result<Series, DiagnoseError> {
-        let there = if moved.instrument_only {
-            self.specimen.observe(&moved.hypothesis, recording, truth)
-        } else {
-            let truth = self.simulate(&moved.hypothesis, recording)?;
-            self.specimen.observe(&moved.hypothesis, recording, &truth)
-        };
+        pairs: &[(usize, &Moved)],
+        truths: &[Series],
+        shown: &[Series],
+    ) -> Result<Vec<Series>, DiagnoseError> {
+        let wanted: Vec<(&Hypothesis, usize)> = (pairs.iter())
+            .filter(|(_, moved)| !moved.instrument_only)
+            .map(|&(recording, moved)| (&moved.hypothesis, recording))
+            .collect();
+        let mut simulated = self.simulate_these(&wanted)?.into_iter();
+        Ok((pairs.iter())
+            .map(|&(recording, moved)| {
+                let simulated = if moved.instrument_only { None } else { simulated.next() };
+                let truth = simulated.as_ref().unwrap_or(&truths[recording]);
+                self.derivative(moved, recording, truth, &shown[recording])
+            })
+            .collect())
+    }
+
+    /// What the readings change by along a coordinate, where the true quantities there are known.
+    fn derivative(&self, moved: &Moved, recording: usize, truth: &Series, shown: &Series) -> Series {
+        let there = self.specimen.observe(&moved.hypothesis, recording, truth);
         let weight = |c: usize| 1.0 / (self.specimen.channels()[c].noise * moved.step);
-        Ok((there.iter().zip(shown).enumerate())
+        (there.iter().zip(shown).enumerate())
             .map(|(c, (a, b))| {
                 let changes = (a.iter().zip(b).zip(self.specimen.measured(recording, c)))
                     .map(|((a, b), measured)| if measured.is_nan() { 0.0 } else { (a - b) * weight(c) });
                 self.weighed(recording, c, changes.collect())
             })
-            .collect())
+            .collect()
     }
 
-    fn simulate(&self, hypothesis: &Hypothesis, recording: usize) -> Result<Series, DiagnoseError> {
+    /// How many of so many simulations one thread is given at once: all threads have some, and none so many that a wish to stop waits for long.
+    fn at_once(&self, simulations: usize) -> usize {
+        let share = simulations.div_ceil(rayon::current_num_threads());
+        share.clamp(1, self.specimen.simulations_at_once())
+    }
+
+    fn simulate_all(&self, wanted: &[(&Hypothesis, usize)]) -> Result<Vec<Series>, DiagnoseError> {
+        let simulated: Vec<Vec<Series>> = (wanted.par_chunks(self.at_once(wanted.len())))
+            .map(|wanted| self.simulate_these(wanted))
+            .collect::<Result<_, _>>()?;
+        Ok(simulated.into_iter().flatten().collect())
+    }
+
+    /// Simulations on this thread.
+    fn simulate_these(&self, wanted: &[(&Hypothesis, usize)]) -> Result<Vec<Series>, DiagnoseError> {
         if self.stop.load(Ordering::Relaxed) {
             return Err(DiagnoseError::Interrupted);
         }
-        self.simulated.fetch_add(1, Ordering::Relaxed);
-        (self.specimen.simulate(hypothesis, recording)).map_err(|what| DiagnoseError::Simulation {
-            recording: self.specimen.recording_name(recording).to_owned(),
-            what,
-        })
+        self.simulated.fetch_add(wanted.len(), Ordering::Relaxed);
+        (self.specimen.simulate_all(wanted).into_iter().zip(wanted))
+            .map(|(simulated, &(_, recording))| {
+                simulated.map_err(|what| DiagnoseError::Simulation {
+                    recording: self.specimen.recording_name(recording).to_owned(),
+                    what,
+                })
+            })
+            .collect()
     }
 
     fn residual(&self, recording: usize, predicted: &Series) -> Series {

@@ -17,6 +17,7 @@
 pub mod blocks;
 pub mod bounded_step;
 pub mod covariance;
+mod dot;
 pub mod evaluation;
 pub mod fit;
 pub mod gauss_newton;

@@ -3,10 +3,11 @@
 //! They are kept for each block, because leaving out blocks, for held-out figures and for intervals, is then a matter of
 //! not adding them.
 
-use nalgebra::{DMatrix, DVector, DVectorView};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::blocks::{Block, Blocks};
+use super::dot::dot;
 use super::evaluation::Sensitivity;
 use crate::specimen::Series;
 
@@ -77,17 +78,68 @@ pub fn with_residuals(blocks: &Blocks, old: &[NormalEquations], sensitivities: &
         .collect()
 }
 
+/// What is known of sensitivities before others are added to them: the coordinates by which each channel changes within each block, and the products
+/// with its residual. Both mean reading all columns, which takes as long as a simulation, and screening extends the same ones hundreds of times. A
+/// candidate leaves most channels as they are if it is at an instrument or at the rod.
+#[derive(Debug)]
+pub struct Answering {
+    /// By block, then by channel.
+    by_block: Vec<Vec<Answers>>,
+}
+
+/// The coordinates by which a channel changes within a block, each with the product of its column and the residual.
+type Answers = Vec<(usize, f64)>;
+
+impl Answering {
+    /// Looks through all columns.
+    #[must_use]
+    pub fn of(blocks: &Blocks, sensitivities: &[Sensitivity]) -> Self {
+        let by_block = (blocks.as_slice().par_iter())
+            .map(|b| {
+                let s = &sensitivities[b.recording];
+                (s.residual.iter().enumerate())
+                    .map(|(c, residual)| {
+                        (answers(b, &s.columns, c).into_iter())
+                            .map(|(k, column)| (k, dot(column, b.of(residual))))
+                            .collect()
+                    })
+                    .collect()
+            })
+            .collect();
+        Self { by_block }
+    }
+}
+
+/// Adds the products of a channel's columns with a residual to `g`. Where the residual is the one that they are known of, nothing is read anew.
+fn add_products(
+    g: &mut DVector<f64>,
+    answers: &[(usize, f64)],
+    (block, base, channel): (&Block, &Sensitivity, usize),
+    residual: &[f64],
+) {
+    if are_same(residual, block.of(&base.residual[channel])) {
+        for &(k, product) in answers {
+            g[k] += product;
+        }
+    } else {
+        for &(k, _) in answers {
+            g[k] += dot(block.of(&base.columns[k][channel]), residual);
+        }
+    }
+}
+
 /// Normal equations of old coordinates, whose sensitivities and products stay as they are, together with those of added
-/// coordinates. The residuals are those of `added`.
+/// coordinates. The residuals are those of `added`; `answering` is what is known of `base`.
 #[must_use]
 pub fn extended(
     blocks: &Blocks,
     old: &[NormalEquations],
     base: &[Sensitivity],
+    answering: &Answering,
     added: &[Sensitivity],
 ) -> Vec<NormalEquations> {
-    (blocks.as_slice().iter().zip(old))
-        .map(|(b, old)| {
+    (blocks.as_slice().iter().zip(old).zip(&answering.by_block))
+        .map(|((b, old), answering)| {
             let (base, added) = (&base[b.recording], &added[b.recording]);
             let before = old.g.len();
             let p = before + added.columns.len();
@@ -97,14 +149,12 @@ pub fn extended(
             for (c, residual) in added.residual.iter().enumerate() {
                 let r = b.of(residual);
                 cost += dot(r, r);
-                let (known, new) = (answers(b, &base.columns, c), answers(b, &added.columns, c));
-                for &(k, column) in &known {
-                    g[k] += dot(column, r);
-                }
+                let new = answers(b, &added.columns, c);
+                add_products(&mut g, &answering[c], (b, base, c), r);
                 for (at, &(i, own)) in new.iter().enumerate() {
                     g[before + i] += dot(own, r);
-                    for &(k, other) in &known {
-                        let value = dot(own, other);
+                    for &(k, _) in &answering[c] {
+                        let value = dot(own, b.of(&base.columns[k][c]));
                         h[(before + i, k)] += value;
                         h[(k, before + i)] += value;
                     }
@@ -128,18 +178,17 @@ pub fn extended_with_residuals(
     blocks: &Blocks,
     old: &[NormalEquations],
     base: &[Sensitivity],
+    answering: &Answering,
     added: &[Sensitivity],
 ) -> Vec<NormalEquations> {
-    (blocks.as_slice().iter().zip(old))
-        .map(|(b, old)| {
+    (blocks.as_slice().iter().zip(old).zip(&answering.by_block))
+        .map(|((b, old), answering)| {
             let (base, added) = (&base[b.recording], &added[b.recording]);
             let (mut g, mut cost) = (DVector::zeros(old.g.len()), 0.0);
             for (c, residual) in added.residual.iter().enumerate() {
                 let r = b.of(residual);
                 cost += dot(r, r);
-                for (k, column) in answers(b, &base.columns, c) {
-                    g[k] += dot(column, r);
-                }
+                add_products(&mut g, &answering[c], (b, base, c), r);
                 for (k, column) in answers(b, &added.columns, c) {
                     g[base.columns.len() + k] += dot(column, r);
                 }
@@ -180,13 +229,23 @@ pub fn total_cost(blocks: &[NormalEquations]) -> f64 {
 /// channel, and a law over a quantity only what happens where the quantity is: most products would be of zeros.
 fn answers<'s>(block: &Block, columns: &'s [Series], channel: usize) -> Vec<(usize, &'s [f64])> {
     (columns.iter().map(|column| block.of(&column[channel])).enumerate())
-        .filter(|(_, column)| column.iter().any(|v| *v != 0.0))
+        .filter(|(_, column)| changes(column))
         .collect()
 }
 
-/// nalgebra adds eight sums side by side, which one processor does at once; one sum after the other took a quarter of a diagnosis.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    DVectorView::from_slice(a, a.len()).dot(&DVectorView::from_slice(b, b.len()))
+/// Whether anything in a series is not zero. Many at once are looked at, without their signs: a channel that does not answer is looked through to its end.
+fn changes(series: &[f64]) -> bool {
+    let (many, left) = series.as_chunks::<16>();
+    let any = |values: &[f64]| values.iter().fold(0, |bits, v| bits | (v.to_bits() << 1)) != 0;
+    many.iter().any(|values| any(values)) || any(left)
+}
+
+/// Whether two series of the same length have the same bits.
+fn are_same(one: &[f64], other: &[f64]) -> bool {
+    let ((many, left), (many_other, left_other)) = (one.as_chunks::<16>(), other.as_chunks::<16>());
+    let differ =
+        |a: &[f64], b: &[f64]| (a.iter().zip(b)).fold(0, |bits, (a, b)| bits | (a.to_bits() ^ b.to_bits())) != 0;
+    !many.iter().zip(many_other).any(|(a, b)| differ(a, b)) && !differ(left, left_other)
 }
 
 #[cfg(test)]
@@ -215,7 +274,8 @@ mod tests {
         let whole = assemble(blocks, &all);
         // Old coordinates frozen, new ones added.
         let base = at(&[0, 1]);
-        let grown = extended(blocks, &assemble(blocks, &base), &base, &at(&[2, 3]));
+        let answering = Answering::of(blocks, &base);
+        let grown = extended(blocks, &assemble(blocks, &base), &base, &answering, &at(&[2, 3]));
         assert!(whole.iter().zip(&grown).all(|(a, b)| close(a, b)));
         // New residuals, the same sensitivities.
         let mut moved = all.clone();
@@ -228,8 +288,17 @@ mod tests {
         for s in &mut added {
             s.residual.iter_mut().flatten().for_each(|r| *r += 0.3);
         }
-        let renewed = extended_with_residuals(blocks, &grown, &base, &added);
+        let renewed = extended_with_residuals(blocks, &grown, &base, &answering, &added);
         assert!(assemble(blocks, &moved).iter().zip(&renewed).all(|(a, b)| close(a, b)));
+        // The old residuals, whose products are known, and the same with one sample changed.
+        let mut added = at(&[2, 3]);
+        for changed in [0.0, 0.5] {
+            added[0].residual[0][5] += changed;
+            let mut moved = all.clone();
+            moved[0].residual[0][5] += changed;
+            let renewed = extended_with_residuals(blocks, &grown, &base, &answering, &added);
+            assert!(assemble(blocks, &moved).iter().zip(&renewed).all(|(a, b)| close(a, b)));
+        }
     }
 
     #[test]

@@ -15,7 +15,7 @@ use super::sizes::starting_sizes;
 use crate::criteria::Screening;
 use crate::error::DiagnoseError;
 use crate::estimation::bounded_step::bounded_step;
-use crate::estimation::normal_equations::{extended, extended_with_residuals, sum, total_cost};
+use crate::estimation::normal_equations::{Answering, extended, extended_with_residuals, sum, total_cost};
 use crate::estimation::{Fit, LeastSquares, NormalEquations, Point, Sensitivity};
 use crate::specimen::{Series, Specimen};
 use crate::vocabulary::Column;
@@ -38,6 +38,8 @@ pub struct Screen<'p, 'a> {
     problem: &'p LeastSquares<'a>,
     fit: &'p Fit,
     base: Arc<Vec<Sensitivity>>,
+    /// What is known of `base`.
+    answering: Answering,
     truths: Vec<Series>,
 }
 
@@ -88,6 +90,7 @@ impl<'p, 'a> Screen<'p, 'a> {
         Ok(Self {
             problem,
             fit,
+            answering: Answering::of(&problem.blocks, &base),
             base,
             truths,
         })
@@ -493,7 +496,8 @@ impl<'p, 'a> Screen<'p, 'a> {
                         s.residual = residual;
                     }
                     let (blocks, base) = (&self.problem.blocks, &self.base);
-                    candidate.normals = extended_with_residuals(blocks, &candidate.normals, base, &begun.added);
+                    candidate.normals =
+                        extended_with_residuals(blocks, &candidate.normals, base, &self.answering, &begun.added);
                     (candidate.response, _) = self.response(&trial, &candidate.normals);
                     candidate.arrived = candidate.cost - tried.cost < TOLERANCE * tried.cost;
                     candidate.damping = (candidate.damping * DAMPING_DOWN).max(DAMPING.1);
@@ -542,7 +546,13 @@ impl<'p, 'a> Screen<'p, 'a> {
 
     /// Normal equations of the model's coordinates, frozen, and the candidate's together.
     fn extended(&self, added: &[Sensitivity]) -> Vec<NormalEquations> {
-        extended(&self.problem.blocks, &self.fit.normals, &self.base, added)
+        extended(
+            &self.problem.blocks,
+            &self.fit.normals,
+            &self.base,
+            &self.answering,
+            added,
+        )
     }
 }
 

@@ -130,7 +130,7 @@ pub struct Nameless {
     pub after: f64,
     /// The same of the true model.
     pub floor: f64,
-    /// Campaigns in which what was reported predicts unseen recordings to within 1.2 times what the true model reaches.
+    /// Campaigns in which what was reported predicts unseen recordings to within [`NEAR_FLOOR`] times what the true model reaches.
     pub near_floor: Rate,
     /// Places reported, with counts.
     pub places: BTreeMap<String, usize>,

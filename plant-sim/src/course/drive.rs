@@ -42,6 +42,8 @@ pub struct NotFinite {
 /// A vehicle with its driver on a course.
 pub struct Drive<E> {
     model: HandlingModel<E>,
+    /// Its motion now, which is asked for many times a step.
+    motion: HandlingMotion,
     manoeuvre: Manoeuvre,
     track: Track,
     driver: Driver,
@@ -80,6 +82,7 @@ impl<E: SuspensionElement> Drive<E> {
             outline_m: handling.outline.corners_m(vehicle),
             ticks: 0,
             last_tick: (duration_s / TICK_S).round() as u32,
+            motion: model.motion(),
             model,
             manoeuvre,
             track,
@@ -100,10 +103,11 @@ impl<E: SuspensionElement> Drive<E> {
         for _ in 0..self.steps_a_tick {
             let controls = self.controls(step_s);
             self.model.step(signals, controls);
+            self.motion = self.model.motion();
             every_step(&self.model);
         }
         self.ticks += 1;
-        let motion = self.model.motion();
+        let motion = self.motion;
         let [_, lateral_m, heave_m] = motion.position_m;
         if (heave_m + lateral_m + motion.yaw_rad + motion.roll_rad).is_finite() {
             Ok(())
@@ -115,7 +119,7 @@ impl<E: SuspensionElement> Drive<E> {
     }
 
     fn controls(&mut self, step_s: f64) -> Controls {
-        let motion = self.model.motion();
+        let motion = self.motion;
         let time_s = self.model.time_s();
         let drive = &self.handling.drive;
         let speed_m_s = motion.speed_m_s;
@@ -166,7 +170,7 @@ impl<E: SuspensionElement> Drive<E> {
 
     /// How the drive has ended, if it has.
     pub fn ending(&self) -> Option<Ending> {
-        let motion = self.model.motion();
+        let motion = self.motion;
         let time_s = self.model.time_s();
         if motion.roll_rad.abs() >= core::f64::consts::FRAC_PI_2 {
             return Some(Ending::RolledOver(time_s));
@@ -185,7 +189,7 @@ impl<E: SuspensionElement> Drive<E> {
     }
 
     fn is_behind_cones(&self) -> bool {
-        let [station_m, ..] = self.model.motion().position_m;
+        let [station_m, ..] = self.motion.position_m;
         self.track.end_m().is_some_and(|end_m| station_m > end_m)
     }
 
@@ -204,7 +208,7 @@ impl<E: SuspensionElement> Drive<E> {
     /// How far the body's centre of mass is from the line that the driver follows, m, positive where it is right of the line;
     /// `None` while the steering wheel is held.
     pub fn path_deviation_m(&self) -> Option<f64> {
-        let [station_m, lateral_m, _] = self.model.motion().position_m;
+        let [station_m, lateral_m, _] = self.motion.position_m;
         (self.manoeuvre.is_guided(self.model.time_s())).then(|| self.track.error_m(station_m, lateral_m))
     }
 
@@ -216,7 +220,7 @@ impl<E: SuspensionElement> Drive<E> {
     /// Everything measured now; `valves` are the signals that hold from now on.
     pub fn sample(&self, valves: Signals) -> Sample {
         let model = &self.model;
-        let motion = model.motion();
+        let motion = self.motion;
         let (front_axle_heave_m, front_axle_roll_rad) = model.axle_heave_roll(Axle::Front);
         Sample {
             time_s: model.time_s(),
@@ -252,7 +256,7 @@ impl<E: SuspensionElement> Drive<E> {
     /// Room between the body's outline and the nearest cones beside it now, m; negative where one is hit; `None` where there
     /// are none.
     pub fn cone_margin_m(&self) -> Option<f64> {
-        let motion = self.model.motion();
+        let motion = self.motion;
         let (sin, cos) = libm::sincos(motion.yaw_rad);
         let [x, y, _] = motion.position_m;
         let margins = self.outline_m.iter().filter_map(|[along, across]| {

@@ -16,7 +16,7 @@ use oleo_interface::{Axle, Axles, Corner, Corners, Side};
 use super::assembly::masses;
 use super::attitude::Attitude;
 use super::axle_place::{AxleCoordinates, AxlePlace};
-use super::dynamics::{Accelerations, Loads, Masses, Velocities};
+use super::dynamics::{Accelerations, Loads, Masses, Velocities, Wrench};
 use super::ground::Probe;
 use super::motion::Controls;
 use super::parameters::HandlingParameters;
@@ -175,7 +175,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
         model.rest_height_m += datum_m;
         model.position.z = model.rest_height_m;
         let velocities = model.velocities();
-        model.acceleration = model.accelerate(&velocities, Controls::default());
+        model.acceleration = model.accelerate(&model.places(), &velocities, Controls::default());
         Ok(model)
     }
 
@@ -216,7 +216,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
             }
         }
         self.suspension.advance(&motions, &signals);
-        self.acceleration = self.accelerate(&predicted, controls);
+        self.acceleration = self.accelerate(&places, &predicted, controls);
         self.steering
             .give_way(&self.handling.steering, self.swivel_torque_n_m(), h);
         self.kick(half);
@@ -273,9 +273,9 @@ impl<E: SuspensionElement> HandlingModel<E> {
         Corners::from_axles(axis)
     }
 
-    fn accelerate(&mut self, velocities: &Velocities, controls: Controls) -> Accelerations {
-        let places = self.places();
-        let axes = self.wheel_axes(&places);
+    /// Accelerations at the present places of the axles.
+    fn accelerate(&mut self, places: &Axles<AxlePlace>, velocities: &Velocities, controls: Controls) -> Accelerations {
+        let axes = self.wheel_axes(places);
         let pushes = self.suspension.force_n();
         let mut loads = Loads::default();
         let (stiffness, damping) = (
@@ -300,18 +300,15 @@ impl<E: SuspensionElement> HandlingModel<E> {
                 drive_n_m: share(drive.front_share) * controls.drive_force_n,
                 brake_n_m: share(drive.brake_front_share) * controls.brake_force_n,
             };
-            let [left, right] = Side::ALL.map(|side| {
-                let corner = index.corner(side);
-                let wheel = self.roll_wheel(corner, place, axes[corner], velocities, torque);
-                self.wheels[corner] = wheel.state;
-                loads.spin[corner] = wheel.spin_torque_n_m;
-                wheel
-            });
-            loads.add_pair(index, &left.wrench, &right.wrench);
+            let (left, right) = (index.corner(Side::Left), index.corner(Side::Right));
+            let left = self.roll_wheel(left, place, axes[left], velocities, torque, &mut loads.spin);
+            let right = self.roll_wheel(right, place, axes[right], velocities, torque, &mut loads.spin);
+            loads.add_pair(index, &left, &right);
         }
-        self.masses.accelerations(&places, velocities, &loads, &axes)
+        self.masses.accelerations(places, velocities, &loads, &axes)
     }
 
+    /// Lets a wheel roll: what its tyre does to the axle. Its state is kept, and the torque on its spin noted.
     fn roll_wheel(
         &mut self,
         corner: Corner,
@@ -319,7 +316,8 @@ impl<E: SuspensionElement> HandlingModel<E> {
         axis: Vector3<f64>,
         velocities: &Velocities,
         torque: WheelTorque,
-    ) -> WheelLoads {
+        spin_torque_n_m: &mut Corners<f64>,
+    ) -> Wrench {
         let index = corner.axle();
         let axle = &self.masses.axles[index];
         let centre = place.mass_centre + place.left * (sign(corner.side()) * axle.half_track_m);
@@ -341,7 +339,11 @@ impl<E: SuspensionElement> HandlingModel<E> {
             height_m: world.z,
             ..motion
         };
-        self.tyres[index].roll(
+        let WheelLoads {
+            state,
+            wrench,
+            spin_torque_n_m: spin,
+        } = self.tyres[index].roll(
             &self.handling.tyre,
             &mut self.contacts[corner],
             &motion,
@@ -350,7 +352,10 @@ impl<E: SuspensionElement> HandlingModel<E> {
             (place, &axle.guide),
             torque,
             self.step_s,
-        )
+        );
+        self.wheels[corner] = state;
+        spin_torque_n_m[corner] = spin;
+        wrench
     }
 
     /// Puts the body into a motion, for tests against closed forms: height above rest, velocity in the world, angular
@@ -368,7 +373,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
         self.angular = Vector3::from(rates_rad_s);
         self.axle_rates = axle_rates;
         let velocities = self.velocities();
-        self.acceleration = self.accelerate(&velocities, Controls::default());
+        self.acceleration = self.accelerate(&self.places(), &velocities, Controls::default());
     }
 }
 

@@ -139,27 +139,12 @@ mod tests {
         signals: StrutValves::new(false, false, false),
     };
 
-    /// Every term that is solved with the oil, and those of the rod.
+    /// Every term that can be in a lane.
     fn every_term() -> Effects {
-        toml::from_str(
-            r#"
-            oil_compressibility = { bulk_modulus_Pa = 1.4e9 }
-            entrained_air = { volume_fraction = 0.005, polytropic_exponent = 1.2 }
-            gas_heat_transfer = { time_constant_1_s = 2.6, time_constant_2_s = 6.5 }
-            real_gas = { equation = "reference" }
-            seal_friction = { coulomb_force_N = 300.0, breakaway_force_N = 400.0, stribeck_speed_m_s = 0.02, presliding_stiffness_N_m = 2e6 }
-            accumulator_piston_friction = { pressure_1_Pa = 3e4, pressure_2_Pa = 2e4 }
-            damper_leakage = { flow_coefficient_1 = 8e-8, flow_coefficient_2 = 5e-8 }
-            line_resistance = { resistance_1_Pa_s_m3 = 1e8, resistance_2_Pa_s_m3 = 1e8 }
-            line_inertance = { inertance_2_kg_m4 = 5e6 }
-            valve_delay = { response_polynomial_s = [0.04, 0.002, 0.0001] }
-            valve_transition = { shape = "linear" }
-            bump_stop = { bump_clearance_m = 0.07, rebound_clearance_m = 0.08, stiffness_N_m = 5e4, progression_N_m3 = 1e9 }
-            mount_compliance = { stiffness_N_m = 5e6 }
-            damping_fade = { fade_1_per_J = 1e-4, fade_2_per_J = 1e-4, cooling_time_s = 60.0 }
-            "#,
-        )
-        .unwrap()
+        Effects {
+            unlisted: vec![],
+            ..Effects::every_term()
+        }
     }
 
     /// Struts whose parameters differ from lane to lane.

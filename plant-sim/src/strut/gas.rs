@@ -133,7 +133,8 @@ impl<N: Number> Gas<N> {
             let moved = (density - real.density).abs().above(density * 2e-2)
                 | (base.temperature_k - real.temperature_k).abs().above(density.of(4.0));
             if moved.any() {
-                *real = real.looked_up(gases, moved, density, base.temperature_k);
+                let moved = N::each(|lane| moved.lane(lane));
+                *real = real.looked_up(gases, &moved, density, base.temperature_k);
             }
         }
     }
@@ -225,9 +226,9 @@ impl<N: Number> Departure<N> {
     /// The same, but what the real gases of some lanes add is looked up around another density and temperature.
     #[cold]
     #[inline(never)]
-    fn looked_up(&self, gases: &N::Each<Nitrogen>, moved: N::Mask, density: N, temperature_k: N) -> Self {
+    fn looked_up(&self, gases: &N::Each<Nitrogen>, moved: &N::Each<bool>, density: N, temperature_k: N) -> Self {
         let lane = |lane: usize| {
-            if !moved.lane(lane) {
+            if !moved.as_ref()[lane] {
                 return self.part(lane);
             }
             let (density, temperature_k) = (density.lane(lane), temperature_k.lane(lane));

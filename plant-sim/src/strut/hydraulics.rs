@@ -9,7 +9,7 @@ use oleo_interface::{StrutValves, Valve};
 use super::model::StrutModel;
 use super::network::{LastSolution, Network, StageEnd, State};
 use super::terms::{Mount, PackCooling};
-use crate::lanes::Number;
+use crate::lanes::{LANES, Number};
 
 /// `1 - 1/sqrt 2`.
 pub(super) const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
@@ -35,7 +35,7 @@ pub(super) struct Flowing<N: Number = f64> {
 }
 
 /// One step as it is known beforehand.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Step<N = f64> {
     /// Time at which it begins, s.
     pub begins_s: N,
@@ -79,13 +79,80 @@ impl<N: Number> Flowing<N> {
         Flowing {
             state: self.state.part(lane),
             last: self.last.part(lane),
-            pressure_pa: [
-                self.pressure_pa[0].lane(lane),
-                self.pressure_pa[1].lane(lane),
-                self.pressure_pa[2].lane(lane),
-                self.pressure_pa[3].lane(lane),
-            ],
+            pressure_pa: self.pressure_in(lane),
             supplied_m: self.supplied_m.lane(lane),
+        }
+    }
+
+    /// Gauge pressures p1 to p4 in a lane, Pa.
+    #[inline(always)]
+    pub fn pressure_in(&self, lane: usize) -> [f64; 4] {
+        [
+            self.pressure_pa[0].lane(lane),
+            self.pressure_pa[1].lane(lane),
+            self.pressure_pa[2].lane(lane),
+            self.pressure_pa[3].lane(lane),
+        ]
+    }
+}
+
+impl Step<[f64; LANES]> {
+    /// Puts a step into a lane.
+    #[inline(always)]
+    pub fn put(&mut self, lane: usize, step: &Step) {
+        self.begins_s[lane] = step.begins_s;
+        self.duration_s[lane] = step.duration_s;
+        self.from_m[lane] = step.from_m;
+        for i in 0..2 {
+            self.middle[i][lane] = step.middle[i];
+            self.end[i][lane] = step.end[i];
+            self.opening[i][Valve::Bypass1][lane] = step.opening[i][Valve::Bypass1];
+            self.opening[i][Valve::Bypass2][lane] = step.opening[i][Valve::Bypass2];
+            self.opening[i][Valve::Spring][lane] = step.opening[i][Valve::Spring];
+        }
+        self.friction_n[lane] = step.friction_n;
+    }
+
+    /// What stands in a lane.
+    #[inline(always)]
+    pub fn part(&self, lane: usize) -> Step {
+        let opening = |i: usize| {
+            StrutValves::new(
+                self.opening[i][Valve::Bypass1][lane],
+                self.opening[i][Valve::Bypass2][lane],
+                self.opening[i][Valve::Spring][lane],
+            )
+        };
+        Step {
+            begins_s: self.begins_s[lane],
+            duration_s: self.duration_s[lane],
+            from_m: self.from_m[lane],
+            middle: [self.middle[0][lane], self.middle[1][lane]],
+            end: [self.end[0][lane], self.end[1][lane]],
+            opening: [opening(0), opening(1)],
+            friction_n: self.friction_n[lane],
+        }
+    }
+
+    /// The lanes in vectors, `like` any number of their kind.
+    #[inline(always)]
+    pub fn in_vectors<N: Number>(&self, like: N) -> Step<N> {
+        let of = |lanes: &[f64; LANES]| like.gather(|lane| lanes[lane]);
+        let opening = |i: usize| {
+            StrutValves::new(
+                of(&self.opening[i][Valve::Bypass1]),
+                of(&self.opening[i][Valve::Bypass2]),
+                of(&self.opening[i][Valve::Spring]),
+            )
+        };
+        Step {
+            begins_s: of(&self.begins_s),
+            duration_s: of(&self.duration_s),
+            from_m: of(&self.from_m),
+            middle: [of(&self.middle[0]), of(&self.middle[1])],
+            end: [of(&self.end[0]), of(&self.end[1])],
+            opening: [opening(0), opening(1)],
+            friction_n: of(&self.friction_n),
         }
     }
 }

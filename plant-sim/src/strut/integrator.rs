@@ -3,6 +3,7 @@
 //! Steps end at kinks of the valves' movements, so that no stage integrates across one. What is stiff is solved one level down, by
 //! [`hydraulics`](super::hydraulics).
 
+mod oil_swing;
 mod snapshot;
 
 use oleo_interface::{StrutValves, Valve};
@@ -21,16 +22,27 @@ use super::rod_state::{Acceleration, RodState};
 use super::terms::{LawArgument, LawPlace, ValveTransition, law_at, longest_step_s, total_response_s};
 use super::valve::ValveMotion;
 
+use oil_swing::OilSwing;
 pub use snapshot::StrutSnapshot;
 
 /// Longest step while something moves fast, s.
 const FAST_STEP_S: f64 = 2.5e-3;
+/// The same while a bypass valve is closed, s: behind a damper pack the main chamber takes about 4 ms to settle, which is
+/// neither long nor short beside a step, so that the step's error is largest there.
+const DAMPED_STEP_S: f64 = 1.25e-3;
 /// Longest step while a valve moves, s: the openings are followed, not only their ends.
 const VALVE_STEP_S: f64 = 2e-3;
 /// Shortest step, s: a sliver shorter than this is not worth a step of its own.
 const LEAST_STEP_S: f64 = 1e-6;
 /// Below this speed and change of speed a step may be as long as the recording's sampling interval, m/s.
 const SLOW_M_S: f64 = 0.02;
+
+/// Time from which on none of the valves moves or is about to, s.
+fn settled_s(valves: &StrutValves<ValveMotion>) -> f64 {
+    valves
+        .iter()
+        .fold(f64::NEG_INFINITY, |latest, (_, valve)| latest.max(valve.settled_s()))
+}
 
 /// A fraction of an interval that is not worth a step.
 const NOTHING_LEFT: f64 = 1e-9;
@@ -44,12 +56,38 @@ pub(super) struct Interval {
     motion: Cubic,
     longest_step_s: f64,
     done_s: f64,
+    /// The same as a fraction of the interval.
+    done: f64,
 }
 
 impl Interval {
+    /// One that is over.
+    pub fn over() -> Self {
+        let segment = Segment::rest(0.0);
+        Self {
+            start_s: 0.0,
+            duration_s: 1.0,
+            segment,
+            motion: Cubic::through(0.0, &segment, 1.0),
+            longest_step_s: 1.0,
+            done_s: 1.0,
+            done: 1.0,
+        }
+    }
+
     #[inline(always)]
     pub fn is_over(&self) -> bool {
-        self.done_s / self.duration_s > 1.0 - NOTHING_LEFT
+        self.done > 1.0 - NOTHING_LEFT
+    }
+
+    /// A time since its beginning (s) as a fraction. Most intervals are one step, which needs no division.
+    #[inline(always)]
+    fn fraction(&self, since_start_s: f64) -> f64 {
+        if since_start_s == self.duration_s {
+            1.0
+        } else {
+            since_start_s / self.duration_s
+        }
     }
 }
 
@@ -89,6 +127,8 @@ pub struct Strut {
     /// Longest step that follows the unmodelled laws which repeat, s.
     longest_step_s: f64,
     transition: Option<ValveTransition>,
+    /// The oil column of line 2, where it has mass.
+    swing: Option<OilSwing>,
 
     time_s: f64,
     actuator_m: f64,
@@ -96,6 +136,8 @@ pub struct Strut {
     acceleration: Acceleration,
     pub(super) flowing: Flowing,
     valves: StrutValves<ValveMotion>,
+    /// Time from which on no valve moves or is about to, s.
+    settled_s: f64,
     /// What the rod goes through, where somebody asked for it.
     course: Option<Box<RodCourse>>,
 }
@@ -133,6 +175,7 @@ impl Strut {
         let hydraulics = Hydraulics::of(model);
         let state = hydraulics.network.at_rest(displacement_m, model.gas.temperature_k);
         Ok(Self {
+            swing: OilSwing::of(&hydraulics.network, model.gas.temperature_k),
             hydraulics,
             rod: RodForces::of(effects),
             response_polynomial_s: model.response_polynomial_s(),
@@ -152,6 +195,7 @@ impl Strut {
                 supplied_m: displacement_m,
             },
             valves: signals.map(ValveMotion::at_rest),
+            settled_s: f64::NEG_INFINITY,
             course: None,
         })
     }
@@ -214,14 +258,23 @@ impl Strut {
             segment, duration_s, ..
         } = *by;
         let (from_m_s, to_m_s) = (segment.from_m_s, segment.to_m_s);
+        // A corner of the motion is a jump between two intervals.
+        let change_m_s = (from_m_s - self.speed_m_s).abs() + (to_m_s - from_m_s).abs();
+        let kicked_s = (self.swing.as_ref()).map_or(f64::INFINITY, |swing| swing.longest_step_of_kick_s(change_m_s));
         let fast = from_m_s.abs() > SLOW_M_S || to_m_s.abs() > SLOW_M_S || (to_m_s - from_m_s).abs() > SLOW_M_S;
         Interval {
             start_s: self.time_s,
             duration_s,
             segment,
             motion: Cubic::through(self.actuator_m, &segment, duration_s),
-            longest_step_s: if fast { FAST_STEP_S } else { duration_s },
+            longest_step_s: match fast {
+                false => duration_s,
+                true if by.signals[Valve::Bypass1] && by.signals[Valve::Bypass2] => FAST_STEP_S,
+                true => DAMPED_STEP_S,
+            }
+            .min(kicked_s),
             done_s: 0.0,
+            done: 0.0,
         }
     }
 
@@ -230,7 +283,7 @@ impl Strut {
     pub(super) fn next_step(&self, interval: &Interval) -> Step {
         let Interval { duration_s, done_s, .. } = *interval;
         let h = self.step_length(interval.start_s + done_s, duration_s - done_s, interval.longest_step_s);
-        let (from, to) = (done_s / duration_s, (done_s + h) / duration_s);
+        let (from, to) = (interval.done, interval.fraction(done_s + h));
         let (middle_m, middle_m_s) = interval.motion.at(from + GAMMA * (to - from));
         let (end_m, end_m_s) = if to > 1.0 - NOTHING_LEFT {
             (interval.segment.to_m, interval.segment.to_m_s)
@@ -245,7 +298,7 @@ impl Strut {
             middle: [middle_m, middle_m_s],
             end: [end_m, end_m_s],
             // Sampled a nanosecond before the end: an opening that steps there belongs to the next step.
-            opening: [self.openings_at(now_s + GAMMA * h), self.openings_at(now_s + h - 1e-9)],
+            opening: self.openings_at_both(now_s + GAMMA * h, now_s + h - 1e-9),
             friction_n: self.rod.friction_n(),
         }
     }
@@ -258,12 +311,16 @@ impl Strut {
         self.time_s = step.begins_s + step.duration_s;
         self.actuator_m = end_m;
         self.speed_m_s = end_m_s;
+        if let Some(swing) = &mut self.swing {
+            swing.follow(step.duration_s, self.flowing.state.q2_m3_s);
+        }
         let rod = self.rod_state();
         self.rod.follow(stroke_m, step.duration_s, &rod);
         if let Some(course) = &mut self.course {
             course.push_step(stroke_m, step.duration_s, rod);
         }
         interval.done_s += step.duration_s;
+        interval.done = interval.fraction(interval.done_s);
     }
 
     /// Ends an interval that is over.
@@ -279,16 +336,24 @@ impl Strut {
 
     /// Length of the next step, s: `left_s` in equal parts no longer than `limit_s`, but no farther than the next kink of a
     /// valve's movement.
+    #[inline(always)]
     fn step_length(&self, now_s: f64, left_s: f64, limit_s: f64) -> f64 {
-        let valves = || self.valves.iter().map(|(_, valve)| valve);
-        let limit_s = limit_s.min(self.longest_step_s);
-        if valves().all(|valve| valve.has_settled(now_s)) {
-            return if left_s <= limit_s {
-                left_s
-            } else {
-                left_s / (left_s / limit_s).ceil()
-            };
+        let swing_s = (self.swing.as_ref()).map_or(f64::INFINITY, OilSwing::longest_step_s);
+        let limit_s = limit_s.min(self.longest_step_s).min(swing_s);
+        if now_s < self.settled_s {
+            return self.step_length_while_valves_move(now_s, left_s, limit_s);
         }
+        if left_s <= limit_s {
+            left_s
+        } else {
+            left_s / (left_s / limit_s).ceil()
+        }
+    }
+
+    /// The same while a valve moves or is about to.
+    #[inline(never)]
+    fn step_length_while_valves_move(&self, now_s: f64, left_s: f64, limit_s: f64) -> f64 {
+        let valves = || self.valves.iter().map(|(_, valve)| valve);
         let kink_s = valves().fold(f64::INFINITY, |t, valve| t.min(valve.next_kink_s(now_s)));
         let limit_s = if valves().any(|valve| valve.moving(now_s)) {
             limit_s.min(VALVE_STEP_S)
@@ -309,7 +374,19 @@ impl Strut {
     }
 
     /// Let edges of the switching signals begin their valve's movement.
+    #[inline(always)]
     fn switch(&mut self, signals: StrutValves<bool>) {
+        if Valve::ALL
+            .into_iter()
+            .any(|valve| signals[valve] != self.valves[valve].signal())
+        {
+            self.begin_movements(signals);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn begin_movements(&mut self, signals: StrutValves<bool>) {
         let [p1, p2, p3, p4] = self.flowing.pressure_pa;
         let across = StrutValves::new(p1 - p2, p1 - p3, p3 - p4);
         for valve in Valve::ALL {
@@ -326,6 +403,7 @@ impl Strut {
                 }
             }
         }
+        self.settled_s = settled_s(&self.valves);
     }
 
     /// Notes from now on what the rod goes through.
@@ -335,9 +413,11 @@ impl Strut {
 
     /// Notes a sample.
     pub(super) fn note_sample(&mut self) {
-        let rod = self.rod_state();
-        if let Some(course) = &mut self.course {
-            course.push_sample(rod);
+        if self.course.is_some() {
+            let rod = self.rod_state();
+            if let Some(course) = &mut self.course {
+                course.push_sample(rod);
+            }
         }
     }
 
@@ -346,10 +426,33 @@ impl Strut {
         self.course.map(|course| *course)
     }
 
-    fn openings_at(&self, time_s: f64) -> StrutValves<f64> {
-        StrutValves::from_fn(|valve| self.valves[valve].opening(time_s))
+    /// Openings at two times, the later one last.
+    #[inline(always)]
+    fn openings_at_both(&self, first_s: f64, second_s: f64) -> [StrutValves<f64>; 2] {
+        if first_s.min(second_s) < self.settled_s {
+            [self.openings_at(first_s), self.openings_at(second_s)]
+        } else {
+            let [valve_1, valve_2, valve_3] = self.valves.as_array();
+            let settled = StrutValves::new(
+                valve_1.settled_opening(),
+                valve_2.settled_opening(),
+                valve_3.settled_opening(),
+            );
+            [settled, settled]
+        }
     }
 
+    #[inline(always)]
+    fn openings_at(&self, time_s: f64) -> StrutValves<f64> {
+        let [valve_1, valve_2, valve_3] = self.valves.as_array();
+        StrutValves::new(
+            valve_1.opening(time_s),
+            valve_2.opening(time_s),
+            valve_3.opening(time_s),
+        )
+    }
+
+    #[inline(always)]
     fn rod_state(&self) -> RodState {
         let [p1_pa, ..] = self.flowing.pressure_pa;
         RodState {
@@ -363,6 +466,7 @@ impl Strut {
     }
 
     /// Force and pressures now.
+    #[inline]
     #[must_use]
     pub fn output(&self) -> StrutOutput {
         StrutOutput {

@@ -34,7 +34,9 @@
 //! | `gas`, `nitrogen`, `orifice`, `damper`, `characteristic` | laws of the elements |
 //! | `instruments` | what faulty instruments make of the columns |
 //! | `motion`, `smoothing` | a motion from sample to sample, and how a recorded displacement becomes one |
-//! | `replay` | a recording's inputs through a model |
+//! | `inputs`, `prediction` | what a recording says was done to a strut, and what its instruments would read |
+//! | `run` | a recording on its way through a model, step by step |
+//! | `replay`, `replay_abreast` | a recording's inputs through a model, and many at once in the vectors of the processor |
 
 mod abreast;
 mod characteristic;
@@ -43,6 +45,7 @@ mod flow_path;
 mod friction;
 mod gas;
 mod hydraulics;
+mod inputs;
 mod instruments;
 mod integrator;
 mod model;
@@ -50,11 +53,14 @@ mod motion;
 mod network;
 mod nitrogen;
 mod orifice;
+mod prediction;
 mod pressure;
 mod replay;
+mod replay_abreast;
 mod rod_course;
 mod rod_forces;
 mod rod_state;
+mod run;
 mod smoothing;
 mod terms;
 mod valve;
@@ -65,14 +71,18 @@ pub use damper::DamperTable;
 pub use flow_path::FlowPath;
 pub use friction::{PRESLIDING_STIFFNESS_N_M, advance_friction};
 pub use gas::{Gas, GasState, NITROGEN_CV_J_KG_K, NITROGEN_R_J_KG_K};
+pub use inputs::Inputs;
 pub use instruments::record_column;
 pub use integrator::{Strut, StrutOutput, StrutSnapshot};
 pub use model::{Accumulator, Cylinder, GasCharge, Orifice, Specimen, StrutModel, Valve, ValveTiming};
 pub use motion::{Motion, Segment, StrutMove};
 pub use nitrogen::Nitrogen;
+pub use prediction::Prediction;
 pub use pressure::ATMOSPHERE_PA;
-pub use replay::{Inputs, Prediction, replay, replay_with_course};
+pub use replay::{replay, replay_with_course};
+pub use replay_abreast::{Replay, replay_all};
 pub use rod_course::RodCourse;
+pub use run::Replayed;
 pub use smoothing::{FreeMotion, smooth_displacement, smooth_free_motion, smooth_uneven_displacement};
 pub use terms::{
     AccumulatorPistonFriction, BumpStop, COLUMNS, DamperLeakage, DampingFade, Effects, EntrainedAir, Equation,

@@ -14,6 +14,16 @@ pub struct Segment {
 }
 
 impl Segment {
+    /// Standing still.
+    #[must_use]
+    pub const fn rest(at_m: f64) -> Self {
+        Self {
+            to_m: at_m,
+            from_m_s: 0.0,
+            to_m_s: 0.0,
+        }
+    }
+
     /// The part of an interval of `duration_s` in which the motion from `from_m` happens: when it begins and how long it
     /// takes, s.
     ///

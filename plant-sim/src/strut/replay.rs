@@ -1,89 +1,12 @@
 //! Simulates the inputs of a recording with a model, and returns the predicted readings.
 
-use oleo_interface::StrutValves;
-
 use crate::model_file::InvalidValue;
 
-use super::instruments::{record_column, true_motion};
-use super::integrator::{Strut, StrutOutput};
+use super::inputs::Inputs;
 use super::model::StrutModel;
-use super::motion::Motion;
+use super::prediction::Prediction;
 use super::rod_course::RodCourse;
-use super::smoothing::{smooth_displacement, smooth_uneven_displacement};
-use super::terms::COLUMNS;
-
-/// Inputs of a recording: time, actuator motion, switching signals.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Inputs {
-    /// Sample times, s, increasing.
-    pub time_s: Vec<f64>,
-    /// Motion between the samples.
-    pub motion: Motion,
-    /// Switching signals at each sample, true for open; an edge acts from its sample on.
-    pub signals: Vec<StrutValves<bool>>,
-}
-
-impl Inputs {
-    /// Inputs from recorded columns of equal length. The displacement (m) is smoothed by the standard deviation of its
-    /// noise (m); 0 leaves it nearly as it is.
-    #[must_use]
-    pub fn from_recording(time_s: &[f64], displacement_m: &[f64], signals: &[StrutValves<bool>], noise_m: f64) -> Self {
-        Self {
-            time_s: time_s.to_vec(),
-            motion: smooth_displacement(displacement_m, mean_interval_s(time_s), noise_m),
-            signals: signals.to_vec(),
-        }
-    }
-
-    /// The same where the samples of the displacement have different noise, `noise_m` (m) one each.
-    #[must_use]
-    pub fn from_uneven_recording(
-        time_s: &[f64],
-        displacement_m: &[f64],
-        signals: &[StrutValves<bool>],
-        noise_m: &[f64],
-    ) -> Self {
-        Self {
-            time_s: time_s.to_vec(),
-            motion: smooth_uneven_displacement(displacement_m, mean_interval_s(time_s), noise_m),
-            signals: signals.to_vec(),
-        }
-    }
-}
-
-/// Mean distance of the sample times, s; 1 where there is none.
-fn mean_interval_s(time_s: &[f64]) -> f64 {
-    let intervals = time_s.len().saturating_sub(1).max(1) as f64;
-    match (time_s.first(), time_s.last()) {
-        (Some(a), Some(b)) if b > a => (b - a) / intervals,
-        _ => 1.0,
-    }
-}
-
-/// Predicted columns, one value a sample.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Prediction {
-    /// Force of the load cell, N.
-    pub force_n: Vec<f64>,
-    /// Gauge pressures p1 to p4, Pa.
-    pub pressure_pa: [Vec<f64>; 4],
-}
-
-impl Prediction {
-    fn with_capacity(samples: usize) -> Self {
-        Self {
-            force_n: Vec::with_capacity(samples),
-            pressure_pa: std::array::from_fn(|_| Vec::with_capacity(samples)),
-        }
-    }
-
-    fn push(&mut self, output: StrutOutput) {
-        self.force_n.push(output.force_n);
-        for (column, pressure) in self.pressure_pa.iter_mut().zip(output.pressure_pa) {
-            column.push(pressure);
-        }
-    }
-}
+use super::run::{Replayed, Run};
 
 /// Simulate a recording's inputs with a model. O(samples); the same bits every time.
 ///
@@ -104,7 +27,9 @@ impl Prediction {
 /// # Errors
 /// Impossible values in the model.
 pub fn replay(model: &StrutModel, inputs: &Inputs) -> Result<Prediction, InvalidValue> {
-    Ok(replayed(model, inputs, false)?.0)
+    let mut run = Run::begin(model, inputs)?;
+    run.go_on_to_the_end();
+    Ok(run.into_replayed().prediction)
 }
 
 /// The same with what the rod went through, which takes about 200 bytes a sample.
@@ -112,47 +37,8 @@ pub fn replay(model: &StrutModel, inputs: &Inputs) -> Result<Prediction, Invalid
 /// # Errors
 /// Impossible values in the model.
 pub fn replay_with_course(model: &StrutModel, inputs: &Inputs) -> Result<(Prediction, RodCourse), InvalidValue> {
-    let (prediction, strut) = replayed(model, inputs, true)?;
-    Ok((prediction, strut.into_course().unwrap_or_default()))
-}
-
-/// Prediction of a recording, and the strut at its end.
-fn replayed(model: &StrutModel, inputs: &Inputs, with_course: bool) -> Result<(Prediction, Strut), InvalidValue> {
-    let effects = &model.effects;
-    let truth = true_motion(effects, &inputs.time_s, &inputs.motion);
-    let motion = truth.as_ref().unwrap_or(&inputs.motion);
-    let signals = inputs.signals.first().copied().unwrap_or_default();
-    let mut strut = Strut::at_rest_at(model, signals, motion.start_m)?;
-    if with_course {
-        strut.begin_course();
-    }
-    let mut out = Prediction::with_capacity(inputs.time_s.len());
-    if !inputs.time_s.is_empty() {
-        out.push(strut.output());
-        strut.note_sample();
-    }
-    for ((segment, time), signals) in motion
-        .segments
-        .iter()
-        .zip(inputs.time_s.windows(2))
-        .zip(&inputs.signals)
-    {
-        let (duration, at) = (time[1] - time[0], strut.displacement_m());
-        let (begins, takes) = segment.moves_within(at, duration);
-        if begins > 0.0 {
-            strut.advance(at, begins, *signals);
-        }
-        let mut output = strut.advance_with_speeds(segment.to_m, segment.from_m_s, segment.to_m_s, takes, *signals);
-        if begins + takes < duration {
-            output = strut.advance(segment.to_m, duration - (begins + takes), *signals);
-        }
-        out.push(output);
-        strut.note_sample();
-    }
-    let [_, force, pressures @ ..] = COLUMNS;
-    record_column(effects, force, &inputs.time_s, &mut out.force_n);
-    for (column, signal) in pressures.iter().zip(&mut out.pressure_pa) {
-        record_column(effects, column, &inputs.time_s, signal);
-    }
-    Ok((out, strut))
+    let mut run = Run::begin(model, inputs)?.with_course();
+    run.go_on_to_the_end();
+    let Replayed { prediction, course } = run.into_replayed();
+    Ok((prediction, course.unwrap_or_default()))
 }

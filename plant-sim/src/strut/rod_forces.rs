@@ -29,10 +29,14 @@ impl RodForces {
     }
 
     /// Let the friction follow a stroke (m) that has taken `duration_s` and has led to a state.
+    #[inline(always)]
     pub fn follow(&mut self, stroke_m: f64, duration_s: f64, rod: &RodState) {
-        if self.seal.is_none() && self.side_load.is_none() && self.friction_laws.is_empty() {
-            return;
+        if self.seal.is_some() || self.side_load.is_some() || !self.friction_laws.is_empty() {
+            self.rub(stroke_m, duration_s, rod);
         }
+    }
+
+    fn rub(&mut self, stroke_m: f64, duration_s: f64, rod: &RodState) {
         let mut level_n = self
             .seal
             .as_ref()
@@ -58,6 +62,7 @@ impl RodForces {
     }
 
     /// Force on the load cell in a state: that of the oil and all of these, N, compression positive.
+    #[inline]
     pub fn total_n(&self, rod: &RodState) -> f64 {
         let mut force_n = rod.oil_force_n + self.friction_n;
         if let Some(stops) = &self.stops {

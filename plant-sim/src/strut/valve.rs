@@ -100,11 +100,18 @@ impl ValveMotion {
         }
     }
 
-    /// Whether the valve has done with its last movement at a time, and neither moves nor is about to.
+    /// Time from which on the valve has done with its last movement, and neither moves nor is about to, s.
     #[inline]
     #[must_use]
-    pub fn has_settled(&self, time_s: f64) -> bool {
-        time_s >= self.ends_s
+    pub fn settled_s(&self) -> f64 {
+        self.ends_s
+    }
+
+    /// Opening from then on.
+    #[inline]
+    #[must_use]
+    pub fn settled_opening(&self) -> f64 {
+        self.to
     }
 
     /// Whether the valve moves at a time.

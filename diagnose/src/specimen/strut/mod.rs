@@ -11,14 +11,14 @@ use std::sync::OnceLock;
 
 use oleo_interface::{StrutValves, Valve};
 use oleo_plant_sim::model_file::InvalidValue;
-use oleo_plant_sim::strut::{COLUMNS, Inputs, StrutModel, record_column, smooth_free_motion};
+use oleo_plant_sim::strut::{COLUMNS, Inputs, Prediction, StrutModel, record_column, smooth_free_motion};
 use rayon::prelude::*;
 
 use calibration::Calibration;
 pub use channels::{CHANNELS, columns};
 use channels::{FORCE, Layout, P1, P2, P3, P4};
 use relations::Measured;
-use rod_memory::RodMemory;
+use rod_memory::{RodMemory, Wanted};
 
 use super::channel::{Channel, Series, StateSeries};
 use super::contract::{BelievedModel, Specimen};
@@ -39,6 +39,9 @@ pub const FEWEST_CHANNELS: usize = 4;
 /// Noise ratio that a complete model reaches where the motion is poorly known. What it leaves unknown is counted as noise, and the size of
 /// that noise, taken from one other draw, is known to about a fifth of its variance.
 const FLOOR_OF_POOR_MOTION: f64 = 1.1;
+
+/// Simulations that a thread is given at once: some for each lane of the processor's vectors.
+const SIMULATIONS_AT_ONCE: usize = 16;
 
 /// Why a candidate is not tested that somebody left out.
 const LEFT_OUT: &str = "left out of the search";
@@ -261,7 +264,7 @@ impl TwoStageStrut {
         let believed = self.as_given();
         let simulated: Vec<Result<Series, String>> = (0..self.recordings.len())
             .into_par_iter()
-            .map(|r| self.all_channels(&believed, r))
+            .flat_map_iter(|r| self.all_channels(&[(&believed, r)]))
             .collect();
         let mut all = Vec::with_capacity(simulated.len());
         for (k, (recording, simulated)) in self.recordings.iter().zip(simulated).enumerate() {
@@ -310,19 +313,27 @@ impl TwoStageStrut {
         model
     }
 
-    /// All of [`CHANNELS`] under a hypothesis, also those that are not recorded.
-    fn all_channels(&self, hypothesis: &Hypothesis, recording: usize) -> Result<Series, String> {
-        let mut model = self.applied(hypothesis);
-        // Faults of the displacement sensor change the motion; all other instruments are applied afterwards.
-        model.effects.retain_sensor_faults(|column| column == COLUMNS[0]);
-        let p = (self.memories[recording].replay(&model, &self.inputs[recording])).map_err(|e| e.to_string())?;
-        let [p1, p2, p3, p4] = p.pressure_pa;
-        let series = vec![p.force_n, p1, p2, p3, p4];
-        if series.iter().all(|s| s.iter().all(|v| v.is_finite())) {
-            Ok(series)
-        } else {
-            Err("the simulation diverged to values that are not numbers".to_owned())
-        }
+    /// All of [`CHANNELS`] under hypotheses and of recordings, also those that are not recorded.
+    fn all_channels(&self, wanted: &[(&Hypothesis, usize)]) -> Vec<Result<Series, String>> {
+        let models: Vec<StrutModel> = (wanted.iter())
+            .map(|&(hypothesis, _)| {
+                let mut model = self.applied(hypothesis);
+                // Faults of the displacement sensor change the motion; all other instruments are applied afterwards.
+                model.effects.retain_sensor_faults(|column| column == COLUMNS[0]);
+                model
+            })
+            .collect();
+        let replays: Vec<Wanted<'_>> = (models.iter().zip(wanted))
+            .map(|(model, &(_, recording))| Wanted {
+                memory: &self.memories[recording],
+                model,
+                inputs: &self.inputs[recording],
+            })
+            .collect();
+        let predicted = rod_memory::replay_all(&replays);
+        (predicted.into_iter())
+            .map(|p| finite_channels(p.map_err(|e| e.to_string())?))
+            .collect()
     }
 
     /// What was measured, for relations that need no model.
@@ -345,6 +356,17 @@ impl TwoStageStrut {
                 })
                 .collect()
         })
+    }
+}
+
+/// All of [`CHANNELS`], if they are numbers.
+fn finite_channels(predicted: Prediction) -> Result<Series, String> {
+    let [p1, p2, p3, p4] = predicted.pressure_pa;
+    let series = vec![predicted.force_n, p1, p2, p3, p4];
+    if series.iter().all(|s| s.iter().all(|v| v.is_finite())) {
+        Ok(series)
+    } else {
+        Err("the simulation diverged to values that are not numbers".to_owned())
     }
 }
 
@@ -385,7 +407,17 @@ impl Specimen for TwoStageStrut {
     }
 
     fn simulate(&self, hypothesis: &Hypothesis, recording: usize) -> Result<Series, String> {
-        Ok(self.layout.recorded(self.all_channels(hypothesis, recording)?))
+        self.simulate_all(&[(hypothesis, recording)]).swap_remove(0)
+    }
+
+    fn simulate_all(&self, wanted: &[(&Hypothesis, usize)]) -> Vec<Result<Series, String>> {
+        (self.all_channels(wanted).into_iter())
+            .map(|channels| Ok(self.layout.recorded(channels?)))
+            .collect()
+    }
+
+    fn simulations_at_once(&self) -> usize {
+        SIMULATIONS_AT_ONCE
     }
 
     fn observe(&self, hypothesis: &Hypothesis, recording: usize, truth: &Series) -> Series {

@@ -3,7 +3,8 @@
 use oleo_interface::StrutValves;
 use serde::{Deserialize, Serialize};
 
-use super::Strut;
+use super::oil_swing::SwingCourse;
+use super::{Strut, settled_s};
 use crate::model_file::InvalidValue;
 use crate::strut::hydraulics::Flowing;
 use crate::strut::model::StrutModel;
@@ -25,6 +26,7 @@ pub struct StrutSnapshot {
     pressure_pa: [f64; 4],
     valves: [ValveMotion; 3],
     friction_n: f64,
+    swing: SwingCourse,
 }
 
 impl Strut {
@@ -55,6 +57,10 @@ impl Strut {
             pressure_pa: self.flowing.pressure_pa,
             valves: self.valves.into_array(),
             friction_n: self.rod.friction_n(),
+            swing: self
+                .swing
+                .as_ref()
+                .map_or_else(SwingCourse::default, |swing| swing.course),
         }
     }
 
@@ -71,7 +77,11 @@ impl Strut {
             supplied_m: kept.supplied_m,
         };
         self.valves = StrutValves::from_array(kept.valves);
+        self.settled_s = settled_s(&self.valves);
         self.rod.set_friction_n(kept.friction_n);
+        if let Some(swing) = &mut self.swing {
+            swing.course = kept.swing;
+        }
     }
 
     /// A strut of another model in the present state of this one: oil, gas, valves and friction stay as they are, and the laws change.
@@ -90,22 +100,12 @@ mod tests {
     use super::*;
     use crate::strut::terms::Effects;
 
-    /// A strut with every term that has a state: friction, fade, air, inertance, seals, a law with a memory, one over acceleration.
+    /// A strut with every term, and with a law over acceleration, which has a state of its own.
     fn with_every_state() -> StrutModel {
         let mut model = StrutModel::defender110(8000.0);
-        let more: Effects = toml::from_str(
+        model.effects = Effects::every_term();
+        let over_acceleration: Effects = toml::from_str(
             r#"
-            accumulator_piston_friction = { pressure_1_Pa = 3e4, pressure_2_Pa = 2e4, presliding_volume_m3 = 1e-7 }
-            line_inertance = { inertance_2_kg_m4 = 5e6 }
-            mount_compliance = { stiffness_N_m = 5e6 }
-            damping_fade = { fade_1_per_J = 1e-4, fade_2_per_J = 1e-4, cooling_time_s = 60.0 }
-            side_load_friction = { coefficient = 0.01, overlap_growth_1_m = 2.0 }
-            [[unlisted]]
-            place = "accumulator-1"
-            depends_on = "volume_change"
-            argument = [-1.0, 0.0, 1.0]
-            value = [1.2, 1.0, 0.8]
-            time_constant_s = 3.0
             [[unlisted]]
             place = "main-seal"
             depends_on = "acceleration"
@@ -114,13 +114,7 @@ mod tests {
             "#,
         )
         .unwrap();
-        let own = &mut model.effects;
-        own.accumulator_piston_friction = more.accumulator_piston_friction;
-        own.line_inertance = more.line_inertance;
-        own.mount_compliance = more.mount_compliance;
-        own.damping_fade = more.damping_fade;
-        own.side_load_friction = more.side_load_friction;
-        own.unlisted = more.unlisted;
+        model.effects.unlisted.extend(over_acceleration.unlisted);
         model
     }
 

@@ -57,6 +57,7 @@ impl Network {
             has_unlisted_laws: !effects.unlisted.is_empty(),
         }
     }
+
     /// The networks of several struts side by side, `like` any number of their kind; none where they differ in kind, or where one has a
     /// law without a name.
     pub fn abreast<N: Number>(networks: &N::Each<&Self>, like: N) -> Option<Network<N>> {

@@ -16,6 +16,7 @@
 //! | `stage_end` | when and where a stage ends |
 //! | `stage` | Newton's method on the two unknowns |
 //! | `last_solution`, `bounded` | where Newton's method starts and how far it steps |
+//! | `oil_column` | how the oil column of line 2 swings |
 //! | `rest` | the state at rest |
 //!
 //! The integrator, which knows time and the valves' movements, is one level up in `integrator`. Pressures of the network
@@ -26,6 +27,7 @@ mod bounded;
 mod chamber;
 mod last_solution;
 mod layout;
+mod oil_column;
 mod path;
 mod rest;
 mod stage;
@@ -34,5 +36,6 @@ mod state;
 
 pub(super) use last_solution::LastSolution;
 pub(super) use layout::Network;
+pub(super) use oil_column::ColumnOscillator;
 pub(super) use stage_end::StageEnd;
 pub(super) use state::State;

@@ -288,56 +288,60 @@ impl Checked for Effects {
 }
 
 #[cfg(test)]
+impl Effects {
+    /// Every term once, with numbers of ordinary size.
+    pub(crate) fn every_term() -> Self {
+        toml::from_str(
+            r#"
+            oil_compressibility = { bulk_modulus_Pa = 1.4e9, counted_at = "static" }
+            entrained_air = { volume_fraction = 0.005, polytropic_exponent = 1.2 }
+            gas_heat_transfer = { time_constant_1_s = 2.6, time_constant_2_s = 6.5 }
+            real_gas = { equation = "bwr" }
+            gas_charge_error = { relative_error_1 = 0.02, relative_error_2 = -0.01 }
+            seal_friction = { coulomb_force_N = 300.0, breakaway_force_N = 400.0, stribeck_speed_m_s = 0.02, presliding_stiffness_N_m = 2e6 }
+            side_load_friction = { coefficient = 0.01, overlap_growth_1_m = 2.0 }
+            accumulator_piston_friction = { pressure_1_Pa = 3e4, pressure_2_Pa = 2e4, presliding_volume_m3 = 1e-7 }
+            damper_leakage = { flow_coefficient_1 = 8e-8, flow_coefficient_2 = 5e-8 }
+            line_resistance = { resistance_1_Pa_s_m3 = 1e8, resistance_2_Pa_s_m3 = 1e8 }
+            line_inertance = { inertance_2_kg_m4 = 5e6 }
+            valve_delay = { response_polynomial_s = [0.04, 0.002, 0.0001] }
+            valve_transition = { shape = "linear" }
+            valve3_leakage = { flow_coefficient = 1e-9 }
+            bump_stop = { bump_clearance_m = 0.07, rebound_clearance_m = 0.08, stiffness_N_m = 5e4, progression_N_m3 = 1e9 }
+            mount_compliance = { stiffness_N_m = 5e6 }
+            damping_fade = { fade_1_per_J = 1e-4, fade_2_per_J = 1e-4, cooling_time_s = 60.0 }
+            sensor_lag = { p2_Pa = 0.004, displacement_m = 0.001 }
+            sensor_gain = { p1_Pa = 0.01 }
+            sensor_drift = { p3_Pa = 10.0 }
+            sensor_skew = { p4_Pa = 0.002 }
+            sensor_sign = { force_N = -1.0 }
+            sensor_offset = { p1_Pa = 1000.0 }
+            [[unlisted]]
+            place = "accumulator-1"
+            depends_on = "volume_change"
+            argument = [-1.0, 0.0, 1.0]
+            value = [1.2, 1.0, 0.8]
+            time_constant_s = 3.0
+            [[unlisted]]
+            place = "main-seal"
+            depends_on = "phase"
+            argument = [0.0, 0.5, 1.0]
+            value = [100.0, -100.0, 100.0]
+            frequency_Hz = 0.7
+            "#,
+        )
+        .unwrap()
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::model_file::limits::forgotten_keys;
 
-    /// Every term once, with numbers of ordinary size.
-    const EVERY_TERM: &str = r#"
-        oil_compressibility = { bulk_modulus_Pa = 1.4e9, counted_at = "static" }
-        entrained_air = { volume_fraction = 0.005, polytropic_exponent = 1.2 }
-        gas_heat_transfer = { time_constant_1_s = 2.6, time_constant_2_s = 6.5 }
-        real_gas = { equation = "bwr" }
-        gas_charge_error = { relative_error_1 = 0.02, relative_error_2 = -0.01 }
-        seal_friction = { coulomb_force_N = 300.0, breakaway_force_N = 400.0, stribeck_speed_m_s = 0.02, presliding_stiffness_N_m = 2e6 }
-        side_load_friction = { coefficient = 0.01, overlap_growth_1_m = 2.0 }
-        accumulator_piston_friction = { pressure_1_Pa = 3e4, pressure_2_Pa = 2e4, presliding_volume_m3 = 1e-7 }
-        damper_leakage = { flow_coefficient_1 = 8e-8, flow_coefficient_2 = 5e-8 }
-        line_resistance = { resistance_1_Pa_s_m3 = 1e8, resistance_2_Pa_s_m3 = 1e8 }
-        line_inertance = { inertance_2_kg_m4 = 5e6 }
-        valve_delay = { response_polynomial_s = [0.04, 0.002, 0.0001] }
-        valve_transition = { shape = "linear" }
-        valve3_leakage = { flow_coefficient = 1e-9 }
-        bump_stop = { bump_clearance_m = 0.07, rebound_clearance_m = 0.08, stiffness_N_m = 5e4, progression_N_m3 = 1e9 }
-        mount_compliance = { stiffness_N_m = 5e6 }
-        damping_fade = { fade_1_per_J = 1e-4, fade_2_per_J = 1e-4, cooling_time_s = 60.0 }
-        sensor_lag = { p2_Pa = 0.004, displacement_m = 0.001 }
-        sensor_gain = { p1_Pa = 0.01 }
-        sensor_drift = { p3_Pa = 10.0 }
-        sensor_skew = { p4_Pa = 0.002 }
-        sensor_sign = { force_N = -1.0 }
-        sensor_offset = { p1_Pa = 1000.0 }
-        [[unlisted]]
-        place = "accumulator-1"
-        depends_on = "volume_change"
-        argument = [-1.0, 0.0, 1.0]
-        value = [1.2, 1.0, 0.8]
-        time_constant_s = 3.0
-        [[unlisted]]
-        place = "main-seal"
-        depends_on = "phase"
-        argument = [0.0, 0.5, 1.0]
-        value = [100.0, -100.0, 100.0]
-        frequency_Hz = 0.7
-    "#;
-
-    fn every_term() -> Effects {
-        toml::from_str(EVERY_TERM).unwrap()
-    }
-
     #[test]
     fn every_id_is_a_key_of_the_table_and_every_key_an_id() {
-        let (all, none) = (every_term(), Effects::default());
+        let (all, none) = (Effects::every_term(), Effects::default());
         assert!(TermId::ALL.iter().all(|id| all.has(*id) && !none.has(*id)));
         let written = toml::Table::try_from(&all).unwrap();
         let (mut keys, mut ids): (Vec<&str>, Vec<&str>) = (
@@ -353,7 +357,7 @@ mod tests {
 
     #[test]
     fn faults_of_other_instruments_are_taken_out_whatever_they_are() {
-        let mut effects = every_term();
+        let mut effects = Effects::every_term();
         effects.retain_sensor_faults(|column| column == "displacement_m");
         assert_eq!(
             effects.sensor_lag,
@@ -388,7 +392,7 @@ mod tests {
         fn of<T: Checked + Serialize>(term: &Option<T>) -> Vec<String> {
             forgotten_keys(term.as_ref().expect("every term is there"))
         }
-        let e = every_term();
+        let e = Effects::every_term();
         let forgotten = [
             of(&e.oil_compressibility),
             of(&e.entrained_air),
@@ -418,7 +422,7 @@ mod tests {
 
     #[test]
     fn an_impossible_number_is_reported_with_its_term() {
-        let written = toml::Table::try_from(every_term()).unwrap();
+        let written = toml::Table::try_from(Effects::every_term()).unwrap();
         for id in TermId::ALL {
             for quantity in id.quantities() {
                 // A list is spoilt at its second entry; a fault of instruments has columns in place of its key.

@@ -7,7 +7,7 @@ use super::equation::Equation;
 use oleo_interface::{Absolute, Gauge};
 use serde::{Deserialize, Serialize};
 
-use crate::lanes::{Mask, Number};
+use crate::lanes::{Mask, Number, power};
 use crate::model_file::{Checked, Limit, Range};
 use crate::strut::pressure::{ATMOSPHERE_PA, absolute};
 
@@ -75,16 +75,13 @@ impl<N: Number> Bubbles<N> {
         let one = n.of(1.0);
         // Isothermal bubbles, the usual choice, need no power function.
         let isothermal = n.up_to(one) & one.up_to(n);
-        let (power, shrinking) = if isothermal.all() {
+        let (expansion, shrinking) = if isothermal.all() {
             (ratio, inverse)
         } else {
-            let power = |lane| match n.lane(lane) {
-                1.0 => ratio.lane(lane),
-                n => libm::pow(ratio.lane(lane), 1.0 / n),
-            };
-            (ratio.gather(power), inverse / n)
+            let polytropic = power(ratio, n.recip());
+            (N::choose(isothermal, ratio, polytropic), inverse / n)
         };
-        let volume = self.volume_fraction * power;
+        let volume = self.volume_fraction * expansion;
         let slope = volume * shrinking;
         (volume + slope * (held - pressure), slope)
     }

@@ -1,0 +1,322 @@
+//! Recordings and models side by side: four replays at once in the vectors of the processor.
+//!
+//! Each lane goes through its own recording with its own model at its own pace: a lane has its own steps, and where a recording is over the
+//! next one takes its seat. What the hydraulics carry from step to step stays in the vectors. The results have the same bits as those of
+//! replays one after the other ([`lanes`](crate::lanes)), whichever replays are given together and in whichever order.
+
+use pulp::Simd;
+
+use super::hydraulics::{Flowing, Hydraulics, Step};
+use super::inputs::Inputs;
+use super::model::StrutModel;
+use super::run::{Replayed, Run};
+use crate::lanes::{Four, LANES, Number, each_lane, vectors};
+use crate::model_file::InvalidValue;
+
+/// A recording's inputs that are to be simulated with a model.
+#[derive(Debug, Clone, Copy)]
+pub struct Replay<'a> {
+    /// The model.
+    pub model: &'a StrutModel,
+    /// The inputs.
+    pub inputs: &'a Inputs,
+    /// Whether it is to be noted what the rod goes through, which takes about 200 bytes a sample.
+    pub with_course: bool,
+}
+
+/// Simulates many recordings, or one with many models, on this thread: what [`replay`](super::replay()) gives for each, to the bit, but in less time
+/// where models are of the same kind, because four are solved at once. Models with laws without a name are simulated one after the other.
+///
+/// ```
+/// use oleo_interface::StrutValves;
+/// use oleo_plant_sim::strut::{Inputs, Replay, StrutModel, replay, replay_all};
+/// let time_s: Vec<f64> = (0..=200).map(|k| 0.01 * f64::from(k)).collect();
+/// let displacement_m: Vec<f64> = time_s.iter().map(|t| 0.01 * t).collect();
+/// let signals = vec![StrutValves::new(true, true, false); 201];
+/// let inputs = Inputs::from_recording(&time_s, &displacement_m, &signals, 5.0e-6);
+/// let models = [6000.0, 7000.0, 8000.0].map(StrutModel::defender110);
+/// let wanted = models.each_ref().map(|model| Replay { model, inputs: &inputs, with_course: false });
+/// for (model, replayed) in models.iter().zip(replay_all(&wanted)) {
+///     assert_eq!(replayed?.prediction, replay(model, &inputs)?);
+/// }
+/// # Ok::<(), oleo_plant_sim::model_file::InvalidValue>(())
+/// ```
+///
+/// An impossible value in a model is the error of its replay only.
+#[must_use]
+pub fn replay_all(wanted: &[Replay<'_>]) -> Vec<Result<Replayed, InvalidValue>> {
+    match vectors() {
+        Some(simd) => replay_in(simd, wanted),
+        None => wanted.iter().map(alone).collect(),
+    }
+}
+
+fn begun<'a>(wanted: &Replay<'a>) -> Result<Run<'a>, InvalidValue> {
+    let run = Run::begin(wanted.model, wanted.inputs)?;
+    Ok(if wanted.with_course { run.with_course() } else { run })
+}
+
+fn alone(wanted: &Replay<'_>) -> Result<Replayed, InvalidValue> {
+    let mut run = begun(wanted)?;
+    run.go_on_to_the_end();
+    Ok(run.into_replayed())
+}
+
+fn replay_in<S: Simd>(simd: S, wanted: &[Replay<'_>]) -> Vec<Result<Replayed, InvalidValue>> {
+    let mut runs: Vec<_> = wanted.iter().map(begun).collect();
+    let mut waiting: Vec<&mut Run<'_>> = runs.iter_mut().flatten().collect();
+    // The longest first, so that the lanes are empty at about the same time. Replays of one recording stay together, and then their steps are alike.
+    waiting.sort_by_key(|run| std::cmp::Reverse(run.samples()));
+    while !waiting.is_empty() {
+        let first = &waiting[0].strut.hydraulics;
+        let is_like_first = |run: &Run<'_>| {
+            let both = each_lane(|lane| if lane == 0 { first } else { &run.strut.hydraulics });
+            Hydraulics::abreast(&both, Four::zero(simd)).is_some()
+        };
+        let alike: Vec<bool> = waiting.iter().map(|run| is_like_first(run)).collect();
+        let (mut kind, mut others) = (Vec::new(), Vec::new());
+        for (k, (run, is_alike)) in waiting.into_iter().zip(alike).enumerate() {
+            // The first one is not like itself if it cannot be in a lane at all.
+            if is_alike || k == 0 { &mut kind } else { &mut others }.push(run);
+        }
+        Seats::new(simd, kind).simulate();
+        waiting = others;
+    }
+    (runs.into_iter()).map(|run| run.map(Run::into_replayed)).collect()
+}
+
+/// Runs of one kind, of which as many as there are lanes have a seat.
+struct Seats<'r, 'a, S> {
+    simd: S,
+    /// Those that wait for a seat, the next one last.
+    waiting: Vec<&'r mut Run<'a>>,
+    seated: Vec<&'r mut Run<'a>>,
+}
+
+impl<'r, 'a, S: Simd> Seats<'r, 'a, S> {
+    fn new(simd: S, mut runs: Vec<&'r mut Run<'a>>) -> Self {
+        runs.reverse();
+        Self {
+            simd,
+            waiting: runs,
+            seated: Vec::with_capacity(LANES),
+        }
+    }
+
+    /// Simulates all of them to their ends.
+    fn simulate(mut self) {
+        loop {
+            while self.seated.len() < LANES
+                && let Some(next) = self.waiting.pop()
+            {
+                self.seated.push(next);
+            }
+            if self.seated.len() < 2 || !self.go_on_until_one_is_over() {
+                break;
+            }
+            self.seated.retain_mut(|run| run.next_step().is_some());
+        }
+        for run in self.seated {
+            run.go_on_to_the_end();
+        }
+    }
+
+    /// Takes steps until a run is over; whether any could be taken, which is not so where runs differ in kind.
+    fn go_on_until_one_is_over(&mut self) -> bool {
+        let (like, seated) = (Four::zero(self.simd), &mut self.seated);
+        // A lane for which there is no run computes what the first one computes.
+        let computed = each_lane(|lane| if lane < seated.len() { lane } else { 0 });
+        let Some(hydraulics) = Hydraulics::abreast(&each_lane(|lane| &seated[computed[lane]].strut.hydraulics), like)
+        else {
+            return false;
+        };
+        let mut flowing = Flowing::side_by_side(&each_lane(|lane| &seated[computed[lane]].strut.flowing), like);
+        let mut steps = Step::<[f64; LANES]>::default();
+        'steps: loop {
+            for (lane, run) in seated.iter_mut().enumerate() {
+                let Some(step) = run.next_step() else { break 'steps };
+                steps.put(lane, &step);
+            }
+            for (lane, &stands_in) in computed.iter().enumerate().skip(seated.len()) {
+                steps.put(lane, &steps.part(stands_in));
+            }
+            self.simd.vectorize(TakeStep {
+                hydraulics: &hydraulics,
+                like,
+                flowing: &mut flowing,
+                steps: &steps,
+            });
+            for (lane, run) in seated.iter_mut().enumerate() {
+                run.strut.flowing.pressure_pa = flowing.pressure_in(lane);
+                run.strut.flowing.state.q2_m3_s = flowing.state.q2_m3_s.lane(lane);
+                run.conclude(&steps.part(lane));
+            }
+        }
+        for (lane, run) in seated.iter_mut().enumerate() {
+            run.strut.flowing = flowing.part(lane);
+        }
+        true
+    }
+}
+
+/// One step of all lanes.
+struct TakeStep<'a, S: Simd> {
+    hydraulics: &'a Hydraulics<Four<S>>,
+    like: Four<S>,
+    flowing: &'a mut Flowing<Four<S>>,
+    steps: &'a Step<[f64; LANES]>,
+}
+
+impl<S: Simd> pulp::NullaryFnOnce for TakeStep<'_, S> {
+    type Output = ();
+
+    #[inline(always)]
+    fn call(self) {
+        let step = self.steps.in_vectors(self.like);
+        self.hydraulics.step(self.flowing, &step);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::strut::motion::{Motion, Segment};
+    use crate::strut::replay::{replay, replay_with_course};
+    use crate::strut::terms::Effects;
+    use oleo_interface::StrutValves;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    const SEAL: &str = "seal_friction = { coulomb_force_N = 300.0, breakaway_force_N = 400.0, stribeck_speed_m_s = 0.02, \
+                        presliding_stiffness_N_m = 2e6 }";
+
+    /// Every term that can be in a lane.
+    fn every_term() -> Effects {
+        Effects {
+            unlisted: vec![],
+            ..Effects::every_term()
+        }
+    }
+
+    fn laws_without_a_name() -> Effects {
+        Effects {
+            unlisted: Effects::every_term().unlisted,
+            ..Effects::default()
+        }
+    }
+
+    /// Stretches of rest between stretches of sines, whose ends lie between samples, with valves that switch.
+    fn inputs(samples: usize, random: &mut ChaCha8Rng) -> Inputs {
+        let (amplitude_m, frequency_1_s) = (random.random_range(0.01..0.08), random.random_range(2.0..25.0));
+        let interval_s = random.random_range(0.002..0.012);
+        let time_s: Vec<f64> = (0..samples).map(|k| interval_s * k as f64).collect();
+        let moves = |k: usize| (k / 40) % 3 < 2;
+        let at = |k: usize| {
+            if moves(k) {
+                amplitude_m * libm::sin(frequency_1_s * time_s[k])
+            } else {
+                0.4 * amplitude_m
+            }
+        };
+        let speed = |k: usize| {
+            if moves(k) {
+                amplitude_m * frequency_1_s * libm::cos(frequency_1_s * time_s[k])
+            } else {
+                0.0
+            }
+        };
+        let segments = (1..samples).map(|k| Segment {
+            to_m: at(k),
+            from_m_s: speed(k - 1),
+            to_m_s: speed(k),
+        });
+        let mut signals = StrutValves::new(true, false, true);
+        Inputs {
+            motion: Motion {
+                start_m: at(0),
+                segments: segments.collect(),
+            },
+            signals: (0..samples)
+                .map(|k| {
+                    if k % 37 == 0 {
+                        signals = StrutValves::from_fn(|_| random.random_range(0..2) == 0);
+                    }
+                    signals
+                })
+                .collect(),
+            time_s,
+        }
+    }
+
+    fn model(effects: Effects, random: &mut ChaCha8Rng) -> StrutModel {
+        let mut model = StrutModel::defender110(random.random_range(3500.0..9000.0));
+        model.effects = effects;
+        model.gas.temperature_k = random.random_range(250.0..330.0);
+        model.valve[2].flow_coefficient *= random.random_range(0.5..2.0);
+        model
+    }
+
+    fn have_the_same_bits<S: Simd>(simd: S) {
+        let mut random = ChaCha8Rng::seed_from_u64(11);
+        let inputs = [1, 500, 180, 700, 330, 2, 420, 600].map(|samples| inputs(samples, &mut random));
+        // More of some kinds than there are lanes, one that is alone, and one that cannot be in a lane.
+        let seal = || toml::from_str::<Effects>(SEAL).unwrap();
+        let mut models: Vec<StrutModel> = [
+            seal(),
+            seal(),
+            every_term(),
+            every_term(),
+            every_term(),
+            Effects::default(),
+        ]
+        .into_iter()
+        .map(|effects| model(effects, &mut random))
+        .collect();
+        models[5].effects.gas_heat_transfer = models[2].effects.gas_heat_transfer.clone();
+        models.push(model(laws_without_a_name(), &mut random));
+        let mut impossible = models[0].clone();
+        impossible.cylinder.bore_m = -1.0;
+        models.push(impossible);
+        let wanted: Vec<Replay<'_>> = (models.iter().enumerate())
+            .flat_map(|(m, model)| {
+                (inputs.iter().enumerate()).map(move |(i, inputs)| Replay {
+                    model,
+                    inputs,
+                    with_course: (m + i) % 3 == 0,
+                })
+            })
+            .collect();
+        for (k, (wanted, replayed)) in wanted.iter().zip(replay_in(simd, &wanted)).enumerate() {
+            match (replayed, replay(wanted.model, wanted.inputs)) {
+                (Ok(replayed), Ok(alone)) => {
+                    assert_eq!(replayed.prediction, alone, "replay {k}");
+                    let effects = &wanted.model.effects;
+                    let course = replayed.course.map(|course| course.force_n(effects));
+                    let alone = (wanted.with_course).then(|| {
+                        replay_with_course(wanted.model, wanted.inputs)
+                            .unwrap()
+                            .1
+                            .force_n(effects)
+                    });
+                    assert_eq!(course, alone, "course of replay {k}");
+                }
+                (Err(replayed), Err(alone)) => assert_eq!(replayed.to_string(), alone.to_string()),
+                (replayed, alone) => panic!("replay {k}: {replayed:?} and {alone:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn replays_in_lanes_have_the_bits_of_a_replay_alone() {
+        have_the_same_bits(pulp::Scalar256b);
+        match vectors() {
+            Some(simd) => have_the_same_bits(simd),
+            None => eprintln!("SKIPPED vectors of four numbers: this processor has none"),
+        }
+    }
+
+    #[test]
+    fn nothing_is_simulated_where_nothing_is_wanted() {
+        assert!(replay_all(&[]).is_empty());
+    }
+}

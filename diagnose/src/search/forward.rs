@@ -5,7 +5,7 @@ use crate::error::DiagnoseError;
 use crate::estimation::Fit;
 
 impl Selector<'_, '_> {
-    /// The same where names and laws without one compete: a name is preferred to a law that gains little more.
+    /// The same where names and laws without one compete: a name is preferred to a law that gains little more, unless the law completes the model and the name does not.
     pub fn strongest_name_or_law(&mut self, screened: &[Screened], best: &Fit) -> Result<Option<Fit>, DiagnoseError> {
         let Some(any) = self.strongest(screened, best)? else {
             return Ok(None);
@@ -22,7 +22,9 @@ impl Selector<'_, '_> {
         };
         let gain_of = |fit: &Fit| self.gain(self.held_out(best), self.held_out(fit)).total;
         let (by_law, by_name) = (gain_of(&any), gain_of(&named));
-        let leads = by_law - by_name > self.criteria().rivalry.lead_over_named * by_name;
+        let completes = |fit: &Fit| self.held_out_ratio(fit) <= self.complete_up_to(fit);
+        let leads = by_law - by_name > self.criteria().rivalry.lead_over_named * by_name
+            || (completes(&any) && !completes(&named));
         Ok(Some(if leads { any } else { named }))
     }
 
@@ -148,10 +150,10 @@ mod tests {
     }
 
     #[test]
-    fn a_law_joins_before_a_name_only_if_it_gains_clearly_more() {
+    fn a_law_joins_before_a_name_if_it_gains_clearly_more_or_completes_the_model() {
         // A cubic law without a name, and nearly the same law with one; then one with a name that is nothing like it.
-        let joined = |named: usize| {
-            let mut specimen = lacking(&[(CUBIC, 0.4)]);
+        let joined = |size: f64, named: usize| {
+            let mut specimen = lacking(&[(CUBIC, size)]);
             specimen.take_name(CUBIC, Site::EndStop);
             let problem = LeastSquares::new(&specimen, &RUN);
             let mut selector = Selector::new(&problem);
@@ -162,8 +164,10 @@ mod tests {
             let best = selector.strongest_name_or_law(&screened, &calibrated).expect("a round");
             best.map(|fit| fit.point.effects)
         };
-        assert_eq!(joined(NEARLY_CUBIC), Some(vec![NEARLY_CUBIC]));
-        assert_eq!(joined(FRICTION), Some(vec![CUBIC]));
+        assert_eq!(joined(0.4, NEARLY_CUBIC), Some(vec![NEARLY_CUBIC]));
+        assert_eq!(joined(0.4, FRICTION), Some(vec![CUBIC]));
+        // A name that is nearly as good leaves much of a gross misfit, where the law leaves none.
+        assert_eq!(joined(40.0, NEARLY_CUBIC), Some(vec![CUBIC]));
     }
 
     #[test]

@@ -170,6 +170,35 @@ pub const EDGE_FINE_PA: &[f64] = &[
 pub const FLOW_RATE_M3_S2: &[f64] = &[-1.0, 1.0];
 /// The same, a few.
 pub const FEW_EDGES_PA: &[f64] = &[0.0, 2.0 * P, 8.0 * P];
+/// Energy held by a gas over its static pressure times its static volume: a line.
+pub const GAS_ENERGY: &[f64] = &[-1.0, 1.0];
+/// Energy held by the oil of a pack, J, dense enough for a factor that falls by a fraction of itself.
+pub const PACK_J: &[f64] = &energies();
+
+/// Points of energies, the first of them after none, J, and each over the one before.
+const ENERGIES: usize = 64;
+const FIRST_J: f64 = 20.0;
+const ENERGY_RATIO: f64 = 1.15;
+
+const fn energies() -> [f64; ENERGIES + 1] {
+    let mut energy = [0.0; ENERGIES + 1];
+    let (mut k, mut next) = (1, FIRST_J);
+    while k <= ENERGIES {
+        energy[k] = next;
+        next *= ENERGY_RATIO;
+        k += 1;
+    }
+    energy
+}
+
+/// Force on the mount above the static one, N: a line.
+pub const MOUNT_N: &[f64] = &[-1.0, 1.0];
+/// The same for a mount that yields as it likes.
+pub const MOUNT_TABLE_N: &[f64] = &[-1e4, -5e3, -2e3, 0.0, 2e3, 5e3, 1e4, 2e4];
+/// What a reading has changed lately: a line.
+pub const CHANGE: &[f64] = &[-1.0, 1.0];
+/// Time of a drift at a constant rate, s: a line.
+pub const DRIFT_S: &[f64] = &[0.0, 3600.0];
 /// Force of the load cell, N.
 pub const FORCE_N: &[f64] = &[0.0, 5e3, 1e4, 1.5e4, 2.5e4, 4e4];
 /// Intervals into which one turn of an oscillation is divided. A sine is linear over each of them to a thousandth of its amplitude.

@@ -10,6 +10,7 @@
 //! | `parabola` | is added, a polynomial of second degree | its three coefficients |
 //! | `power` | is added and follows a power of its argument | its value at the largest argument, exponent |
 //! | `proportional` | is added and is proportional to its argument | the value at an argument of one |
+//! | `remembering` | is added or multiplies, and follows an energy that is held or a recent change | its size, time constant of the memory |
 //! | `relaxing` | multiplies, and follows what has changed lately | its exponent, time constant of the memory |
 //! | `saturating` | is added, rises and comes to an end | its end, the argument where half of it is reached |
 //! | `settling` | is added or multiplies, and settles with time | its end, time constant |
@@ -27,6 +28,7 @@ mod parabola;
 mod power;
 mod proportional;
 mod relaxing;
+mod remembering;
 mod rises;
 mod rising;
 mod saturating;
@@ -47,6 +49,7 @@ pub use parabola::Parabola;
 pub use power::Power;
 pub use proportional::{Proportional, ProportionalAmount};
 pub use relaxing::Relaxing;
+pub use remembering::{Fading, Heated, Lingering};
 pub use rises::is_of_free_table;
 pub use rising::Rising;
 pub use saturating::Saturating;

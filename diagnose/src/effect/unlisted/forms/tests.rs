@@ -91,12 +91,15 @@ fn stops_do_nothing_between_their_thresholds() {
 
 #[test]
 fn each_form_has_as_many_numbers_as_its_starts() {
-    let forms: [&dyn Form; 17] = [
+    let forms: [&dyn Form; 20] = [
         &Added,
         &Bell,
         &Choke,
         &Factor,
+        &Fading,
+        &Heated,
         &Level,
+        &Lingering,
         &Proportional("mass_kg"),
         &Parabola(["a", "b", "c"]),
         &Power("drop_Pa"),
@@ -174,4 +177,16 @@ fn what_swings_has_its_amplitude_a_quarter_of_a_turn_after_the_middle() {
         FORCE.equation("force", &[20.0, -0.5, 0.7]).as_deref(),
         Some("force = believed + 20.00 N sin(2 pi 0.7000 Hz t - 0.5000)")
     );
+}
+
+#[test]
+fn what_holds_energy_or_remembers_is_in_proportion_to_it() {
+    let knots = &[0.0, 100.0];
+    let grid = Grid { knots, ..GRID };
+    assert_eq!(Heated.values(&grid, &[0.004, 9.0]), [1.0, 1.4]);
+    assert_eq!(Fading.values(&grid, &[0.01, 9.0]), [1.0, 0.5]);
+    assert_eq!(Lingering.values(&grid, &[-1.0, 9.0]), [0.0, -100.0]);
+    for form in [&Heated as &dyn Form, &Fading, &Lingering] {
+        assert_eq!(form.time_constant_s(&[0.1, 9.0]), Some(9.0));
+    }
 }

@@ -6,6 +6,7 @@
 mod accumulators;
 mod instruments;
 mod law;
+mod mount;
 mod oscillations;
 mod paths;
 mod seal_and_chamber;
@@ -25,10 +26,12 @@ const LEAST_DURATION_S: f64 = 1.0;
 /// All laws.
 fn laws() -> impl Iterator<Item = &'static Law> {
     (seal_and_chamber::LAWS.iter())
+        .chain(mount::LAWS)
         .chain(paths::LAWS)
         .chain(valves::LAWS)
         .chain(accumulators::LAWS)
         .chain(instruments::LAWS.iter().flatten())
+        .chain(instruments::MEMORIES)
         .chain(oscillations::LAWS)
 }
 

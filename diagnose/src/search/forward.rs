@@ -152,10 +152,13 @@ mod tests {
     #[test]
     fn a_law_joins_before_a_name_if_it_gains_clearly_more_or_completes_the_model() {
         // A cubic law without a name, and nearly the same law with one; then one with a name that is nothing like it.
-        let joined = |size: f64, named: usize| {
-            let mut specimen = lacking(&[(CUBIC, size)]);
+        let lead = Criteria::default().rivalry.lead_over_named;
+        let joined = |lead_over_named: f64, named: usize| {
+            let mut specimen = lacking(&[(CUBIC, 0.4)]);
             specimen.take_name(CUBIC, Site::EndStop);
-            let problem = LeastSquares::new(&specimen, &RUN);
+            let mut criteria = Criteria::default();
+            criteria.rivalry.lead_over_named = lead_over_named;
+            let problem = LeastSquares::new(&specimen, &RUN).with_criteria(criteria);
             let mut selector = Selector::new(&problem);
             let calibrated = selector.fitted(Point::nominal(&specimen)).expect("a fit");
             let screened = selector.screen(&calibrated, vec![CUBIC, named]).expect("screened");
@@ -164,10 +167,10 @@ mod tests {
             let best = selector.strongest_name_or_law(&screened, &calibrated).expect("a round");
             best.map(|fit| fit.point.effects)
         };
-        assert_eq!(joined(0.4, NEARLY_CUBIC), Some(vec![NEARLY_CUBIC]));
-        assert_eq!(joined(0.4, FRICTION), Some(vec![CUBIC]));
-        // A name that is nearly as good leaves much of a gross misfit, where the law leaves none.
-        assert_eq!(joined(40.0, NEARLY_CUBIC), Some(vec![CUBIC]));
+        assert_eq!(joined(lead, NEARLY_CUBIC), Some(vec![NEARLY_CUBIC]));
+        assert_eq!(joined(lead, FRICTION), Some(vec![CUBIC]));
+        // However much a law must gain: friction leaves the model incomplete, which the law completes.
+        assert_eq!(joined(f64::INFINITY, FRICTION), Some(vec![CUBIC]));
     }
 
     #[test]

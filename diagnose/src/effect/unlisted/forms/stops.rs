@@ -14,7 +14,7 @@ pub struct Stops;
 impl Form for Stops {
     fn closed(&self) -> Option<ClosedForm> {
         Some(ClosedForm {
-            equation: "y = a ((x - x_a) / 10 mm)^n if x > x_a, y = -b ((-x - x_b) / 10 mm)^n if x < -x_b",
+            equation: "y = a ((x - x_a)/0.01)^n, y = -b ((-x - x_b)/0.01)^n",
             symbols: &["a", "b", "x_a", "x_b", "n"],
         })
     }

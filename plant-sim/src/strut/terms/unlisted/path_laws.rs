@@ -316,7 +316,7 @@ mod tests {
                 [2.0, 1.0],
             ),
         ];
-        let [one, two] = FlowPath::ALL.map(|path| PathLaws::of(&laws, path));
+        let [one, two] = FlowPath::ALL.map(|path| PathLaws::of(&laws, path, 1.0));
         assert_eq!(
             (
                 one.series_drop(1e-3),

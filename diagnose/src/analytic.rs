@@ -109,6 +109,11 @@ impl Analytic {
         (candidate.id, candidate.place, candidate.one_of_several) = (EffectId::Unlisted, site.into(), true);
     }
 
+    /// Gives a candidate's first parameter another key.
+    pub fn take_key(&mut self, candidate: usize, key: &str) {
+        key.clone_into(&mut self.candidates[candidate].parameters[0].key);
+    }
+
     /// Another start of a candidate's first parameter.
     pub fn move_start(&mut self, candidate: usize, start: f64) {
         self.candidates[candidate].parameters[0].start = start;

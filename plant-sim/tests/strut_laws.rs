@@ -2,9 +2,10 @@
 
 mod slow_and_steady;
 
-use oleo_interface::Valve;
+use oleo_interface::{StrutValves, Valve};
 use oleo_plant_sim::strut::{
-    Characteristic, LawArgument, LawPlace, LineInertance, OilCompressibility, OilCount, Strut, StrutModel, UnlistedLaw,
+    Characteristic, DampingFade, GasHeatTransfer, LawArgument, LawPlace, LineInertance, MountCompliance,
+    OilCompressibility, OilCount, Strut, StrutModel, UnlistedLaw,
 };
 use slow_and_steady::{
     BYPASS_1, CLOSED, SOFT, STIFF, absolute, bare, beside_pressure, close, slow_pressure, slowly, steady_drop,
@@ -328,4 +329,80 @@ fn a_law_over_the_rate_of_flow_is_an_inertance() {
             .map(|strut| strut.advance(at, 2e-3, SOFT).pressure_pa[2]);
         close(b, a, 1e-6);
     }
+}
+
+/// Largest difference of any pressure between a strut whose effect has a name and one with laws in its place, over what a plain strut differs from the
+/// first, in 20 s of strokes of 40 mm.
+fn misses(named: &StrutModel, laws: Vec<UnlistedLaw>, signals: StrutValves<bool>) -> f64 {
+    let mut nameless = bare();
+    nameless.effects.unlisted = laws;
+    let mut struts = [named, &nameless, &bare()].map(|model| Strut::at_rest(model, signals).unwrap());
+    let (mut missed, mut changed) = (0.0f64, 0.0f64);
+    for k in 0..4000 {
+        let at = 0.04 * libm::sin(0.03 * f64::from(k));
+        let [a, b, plain] = struts
+            .each_mut()
+            .map(|strut| strut.advance(at, 5e-3, signals).pressure_pa);
+        for (a, (b, plain)) in a.into_iter().zip(b.into_iter().zip(plain)) {
+            missed = missed.max((b - a).abs());
+            changed = changed.max((plain - a).abs());
+        }
+    }
+    missed / changed
+}
+
+fn remembered(place: LawPlace, depends_on: LawArgument, [a, b]: [f64; 2], value: [f64; 2], time_s: f64) -> UnlistedLaw {
+    UnlistedLaw {
+        time_constant_s: Some(time_s),
+        ..law(place, depends_on, [a, b], value)
+    }
+}
+
+/// The work of compression heats an ideal gas by `(kappa - 1)` of it, over what its pressure and volume are at rest: the energy equation.
+#[test]
+fn a_gas_law_over_its_energy_is_the_energy_equation() {
+    let mut named = bare();
+    named.effects.gas_heat_transfer = Some(GasHeatTransfer {
+        time_constant_1_s: 0.5,
+        time_constant_2_s: 3.0,
+    });
+    // R / c_v of nitrogen.
+    let heats = 296.8 / 743.0;
+    let one = |place, time_s| {
+        let line = [1.0 - heats, 1.0 + heats];
+        remembered(place, LawArgument::RelativeEnergy, [-1.0, 1.0], line, time_s)
+    };
+    let laws = vec![one(LawPlace::Accumulator1, 0.5), one(LawPlace::Accumulator2, 3.0)];
+    let missed = misses(&named, laws, SOFT);
+    assert!(missed < 3e-3, "{missed}");
+    // And it is none where one time constant is another one.
+    let both = vec![one(LawPlace::Accumulators, 3.0)];
+    assert!(misses(&named, both, SOFT) > 0.05);
+}
+
+#[test]
+fn a_pack_law_over_its_energy_is_the_fade() {
+    let mut named = bare();
+    named.effects.damping_fade = Some(DampingFade {
+        fade_1_per_j: 2e-4,
+        fade_2_per_j: 0.0,
+        cooling_time_s: 8.0,
+    });
+    let argument: Vec<f64> = (0..400).map(|k| 10.0 * f64::from(k)).collect();
+    let fades = UnlistedLaw {
+        value: argument.iter().map(|energy_j| 1.0 / (1.0 + 2e-4 * energy_j)).collect(),
+        argument,
+        ..remembered(LawPlace::Pack1, LawArgument::Energy, [0.0; 2], [0.0; 2], 8.0)
+    };
+    let missed = misses(&named, vec![fades], CLOSED);
+    assert!(missed < 1e-2, "{missed}");
+}
+
+#[test]
+fn a_mount_law_over_its_force_is_the_compliance() {
+    let mut named = bare();
+    named.effects.mount_compliance = Some(MountCompliance { stiffness_n_m: 2e6 });
+    let line = law(LawPlace::Mount, LawArgument::Force, [-1e4, 1e4], [-5e-3, 5e-3]);
+    let missed = misses(&named, vec![line], SOFT);
+    assert!(missed < 1e-4, "{missed}");
 }

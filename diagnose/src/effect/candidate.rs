@@ -96,6 +96,12 @@ impl Candidate {
         }
     }
 
+    /// The candidate in an exclusion group, if there is one for it.
+    #[must_use]
+    pub fn in_group(self, group: Option<ExclusionGroup>) -> Self {
+        Self { group, ..self }
+    }
+
     /// The candidate as a law beside which a model can have another one at another place.
     #[must_use]
     pub fn beside_others(self) -> Self {
@@ -134,11 +140,17 @@ impl Candidate {
 
     /// Whether the two cannot be in one model. This holds for members of one group, for two faults of one sensor, which can
     /// replace each other (a short lag is nearly a skew), and for two laws without a name at one place, where two tables take the shape of a third.
+    /// So do a fault of a sensor and a law of the same sensor.
     #[must_use]
     pub fn excludes(&self, other: &Self) -> bool {
         (self.group.is_some() && self.group == other.group)
             || (self.is_instrument_fault() && other.is_instrument_fault() && self.place == other.place)
             || (self.one_of_several && other.one_of_several && self.place.overlaps(&other.place))
+            || (self.is_fault_beside_law(other) || other.is_fault_beside_law(self))
+    }
+
+    fn is_fault_beside_law(&self, other: &Self) -> bool {
+        self.is_instrument_fault() && other.one_of_several && self.place == other.place
     }
 
     /// True if these values leave the model as it is: the candidate has a size, and each number that is one is zero.
@@ -172,6 +184,16 @@ impl Candidate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vocabulary::Column;
+
+    #[test]
+    fn a_fault_and_a_law_of_one_instrument_exclude_each_other() {
+        let at = |id, column: &str| Candidate::new(id, Site::Sensor(Column::named(column.to_owned())), vec![]);
+        let drift = at(EffectId::SensorDrift, "p1_Pa");
+        let law = |column| at(EffectId::Unlisted, column).beside_others();
+        assert!(drift.excludes(&law("p1_Pa")) && law("p1_Pa").excludes(&drift));
+        assert!(!drift.excludes(&law("p2_Pa")) && !law("p2_Pa").excludes(&drift));
+    }
 
     #[test]
     fn only_sizes_say_whether_an_effect_is_there() {

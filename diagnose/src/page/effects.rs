@@ -157,6 +157,10 @@ fn argument(depends_on: LawArgument) -> (&'static str, &'static str) {
         LawArgument::RelativeVolume => ("gas volume over static gas volume", ""),
         LawArgument::Reading => ("reading", ""),
         LawArgument::ReadingRate => ("rate of the reading", "1/s"),
+        LawArgument::Energy => ("energy held", "J"),
+        LawArgument::RelativeEnergy => ("energy held, over static pressure times static volume", ""),
+        LawArgument::Force => ("force above the static one", "N"),
+        LawArgument::ReadingChange => ("recent change of r, the reading", ""),
         LawArgument::VolumeChange => ("recent change of v, the gas volume over the static one", ""),
     }
 }
@@ -167,6 +171,7 @@ fn value(law: &UnlistedLaw) -> (&'static str, &'static str) {
         LawPlace::MainSeal => ("force", "N"),
         LawPlace::MainSealFriction => ("friction force", "N"),
         LawPlace::MainChamber => ("volume", "m3"),
+        LawPlace::Mount => ("deflection", "m"),
         LawPlace::MainChamberLoss => ("flow out of the chamber", "m3/s"),
         LawPlace::Path1 | LawPlace::Path2 => ("pressure drop", "Pa"),
         LawPlace::BesidePack1 | LawPlace::BesidePack2 if law.depends_on == LawArgument::PressureDrop => {

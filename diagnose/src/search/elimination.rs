@@ -17,6 +17,14 @@ impl Selector<'_, '_> {
     /// what a named effect explains as well needs none.
     fn without_weakest(&mut self, best: &Fit, fraction: f64) -> Result<Option<Fit>, DiagnoseError> {
         let effects = &best.point.effects;
+        let hypothesis = best.point.hypothesis(self.specimen());
+        let absent = |(effect, values): &(usize, Vec<f64>)| self.candidate(*effect).absent_at(values);
+        // What has become nothing explains nothing, even where the steps of the simulation are other ones with it.
+        if let Some(position) = hypothesis.effects.iter().position(absent) {
+            return self
+                .fitted(best.point.without_effect(self.specimen(), position))
+                .map(Some);
+        }
         let (laws, named): (Vec<usize>, Vec<usize>) =
             (0..effects.len()).partition(|&position| self.candidate(effects[position]).is_unlisted());
         for positions in [laws, named] {
@@ -67,6 +75,19 @@ mod tests {
         assert_eq!(left_of(&[CUBIC, FRICTION, GAIN]), [FRICTION]);
         assert_eq!(left_of(&[TABLE, CUBIC, FRICTION]), [FRICTION]);
         assert_eq!(left_of(&[FRICTION]), [FRICTION]);
+    }
+
+    #[test]
+    fn what_has_become_nothing_leaves_without_a_question() {
+        let specimen = Recipe::default().make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut selector = Selector::new(&problem);
+        let start = Point::nominal(&specimen).with_effect(&specimen, FRICTION, &[0.0]);
+        let (prior, ranges) = (start.prior(&specimen), start.ranges(&specimen));
+        let fit = Fit::new(start, vec![], prior, 0.0, ranges);
+        // Its cost of nothing would be kept.
+        let less = selector.eliminate(fit, 0.0).expect("a fit");
+        assert!(less.point.effects.is_empty());
     }
 
     #[test]

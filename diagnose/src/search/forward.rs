@@ -5,7 +5,7 @@ use crate::error::DiagnoseError;
 use crate::estimation::Fit;
 
 impl Selector<'_, '_> {
-    /// The same where names and laws without one compete: a name is preferred to a law that gains little more.
+    /// The same where names and laws without one compete: a name is preferred to a law that gains little more, unless the law completes the model and the name does not.
     pub fn strongest_name_or_law(&mut self, screened: &[Screened], best: &Fit) -> Result<Option<Fit>, DiagnoseError> {
         let Some(any) = self.strongest(screened, best)? else {
             return Ok(None);
@@ -22,7 +22,9 @@ impl Selector<'_, '_> {
         };
         let gain_of = |fit: &Fit| self.gain(self.held_out(best), self.held_out(fit)).total;
         let (by_law, by_name) = (gain_of(&any), gain_of(&named));
-        let leads = by_law - by_name > self.criteria().rivalry.lead_over_named * by_name;
+        let completes = |fit: &Fit| self.held_out_ratio(fit) <= self.complete_up_to(fit);
+        let leads = by_law - by_name > self.criteria().rivalry.lead_over_named * by_name
+            || (completes(&any) && !completes(&named));
         Ok(Some(if leads { any } else { named }))
     }
 
@@ -148,12 +150,15 @@ mod tests {
     }
 
     #[test]
-    fn a_law_joins_before_a_name_only_if_it_gains_clearly_more() {
+    fn a_law_joins_before_a_name_if_it_gains_clearly_more_or_completes_the_model() {
         // A cubic law without a name, and nearly the same law with one; then one with a name that is nothing like it.
-        let joined = |named: usize| {
+        let lead = Criteria::default().rivalry.lead_over_named;
+        let joined = |lead_over_named: f64, named: usize| {
             let mut specimen = lacking(&[(CUBIC, 0.4)]);
             specimen.take_name(CUBIC, Site::EndStop);
-            let problem = LeastSquares::new(&specimen, &RUN);
+            let mut criteria = Criteria::default();
+            criteria.rivalry.lead_over_named = lead_over_named;
+            let problem = LeastSquares::new(&specimen, &RUN).with_criteria(criteria);
             let mut selector = Selector::new(&problem);
             let calibrated = selector.fitted(Point::nominal(&specimen)).expect("a fit");
             let screened = selector.screen(&calibrated, vec![CUBIC, named]).expect("screened");
@@ -162,8 +167,10 @@ mod tests {
             let best = selector.strongest_name_or_law(&screened, &calibrated).expect("a round");
             best.map(|fit| fit.point.effects)
         };
-        assert_eq!(joined(NEARLY_CUBIC), Some(vec![NEARLY_CUBIC]));
-        assert_eq!(joined(FRICTION), Some(vec![CUBIC]));
+        assert_eq!(joined(lead, NEARLY_CUBIC), Some(vec![NEARLY_CUBIC]));
+        assert_eq!(joined(lead, FRICTION), Some(vec![CUBIC]));
+        // However much a law must gain: friction leaves the model incomplete, which the law completes.
+        assert_eq!(joined(f64::INFINITY, FRICTION), Some(vec![CUBIC]));
     }
 
     #[test]

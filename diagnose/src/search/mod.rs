@@ -32,6 +32,7 @@ mod selection;
 mod selector;
 mod simplification;
 mod sizes;
+mod splitting;
 
 pub use evidence::HeldOutGain;
 pub use power::LeastSize;

@@ -1,13 +1,23 @@
 //! Starting again: a model that is not complete, and to which nothing can be added, may have ended in a local minimum.
 
+use nalgebra::DVector;
+
 use super::selector::Selector;
 use super::sizes::starting_sizes;
 use crate::effect::Candidate;
 use crate::error::DiagnoseError;
+use crate::estimation::bounded_step::bounded_step;
+use crate::estimation::normal_equations::{assemble, sum};
 use crate::estimation::{Fit, Point, fit};
 
 /// Moves of one fitted number, in coordinates of order one.
 const MOVED: [f64; 6] = [-3.0, -2.0, -1.0, 1.0, 2.0, 3.0];
+/// Steps in which the sizes of a start are fitted: what they change is nearly in proportion to them.
+const STEPS_OF_SIZES: usize = 2;
+/// Damping of these steps, against rounding only.
+const DAMPING_OF_SIZES: f64 = 1e-9;
+/// Starts whose cost differs by less from that of the fit, as a part of it, are where the fit is.
+const SAME_COST: f64 = 1e-3;
 /// Numbers that differ by less, in coordinates of order one, are about the same.
 const SAME_SHAPE: f64 = 0.3;
 
@@ -82,11 +92,55 @@ impl Selector<'_, '_> {
                     Err(other) => return Err(other),
                 }
             }
-            starts.extend(least.filter(|(cost, _)| *cost < without));
+            if let Some((_, point)) = least {
+                starts.push(self.best_sizes(point, position)?);
+            }
         }
+        // What differs only in a number that the recordings do not determine would lead back, and would keep others from being tried.
+        let is_other = |cost: f64| cost < without && (cost / best.cost - 1.0).abs() > SAME_COST;
+        starts.retain(|(cost, _)| is_other(*cost));
         starts.sort_by(|a, b| a.0.total_cmp(&b.0));
         starts.truncate(self.criteria().screening.shapes_restarted);
         Ok(starts.into_iter().map(|(_, point)| point).collect())
+    }
+}
+
+impl Selector<'_, '_> {
+    /// The point with the sizes of one of its effects fitted and all else as it is, where that lowers the cost; with its cost. The sizes that were tried keep one
+    /// proportion, while the stiffness of a stop may be large and its progression small: such a start would lead back to where the fit came from.
+    fn best_sizes(&self, start: Point, position: usize) -> Result<(f64, Point), DiagnoseError> {
+        let (specimen, problem) = (self.specimen(), self.problem);
+        let own = start.coordinates_of(specimen, position);
+        let parameters = &self.candidate(start.effects[position]).parameters;
+        let sizes: Vec<usize> = (own.zip(parameters))
+            .filter(|(_, p)| p.is_size)
+            .map(|(k, _)| k)
+            .collect();
+        let ranges = start.ranges(specimen);
+        let ranges: Vec<(f64, f64)> = sizes.iter().map(|&k| ranges[k]).collect();
+        let mut best = (problem.cost_at(&start)?, start);
+        for _ in 0..STEPS_OF_SIZES {
+            let answers = match problem.evaluation.sensitivities(&best.1, &sizes, None) {
+                Err(DiagnoseError::Simulation { .. }) => break,
+                answers => answers?,
+            };
+            let none = DVector::zeros(sizes.len());
+            let z: Vec<f64> = sizes.iter().map(|&k| best.1.z[k]).collect();
+            let (h, g) = sum(&assemble(&problem.blocks, &answers), &none, &z);
+            let Some(step) = bounded_step(&h, &g, DAMPING_OF_SIZES, &z, &ranges) else {
+                break;
+            };
+            let mut trial = best.1.clone();
+            for ((&k, step), range) in sizes.iter().zip(step.iter()).zip(&ranges) {
+                trial.z[k] = (trial.z[k] + step).clamp(range.0, range.1);
+            }
+            match problem.cost_at(&trial) {
+                Ok(cost) if cost < best.0 => best = (cost, trial),
+                Ok(_) | Err(DiagnoseError::Simulation { .. }) => break,
+                Err(other) => return Err(other),
+            }
+        }
+        Ok(best)
     }
 }
 
@@ -109,7 +163,7 @@ fn shapes(candidate: &Candidate, fitted: Vec<f64>) -> Vec<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analytic::{CUBIC, RUN, Recipe, VIBRATION};
+    use crate::analytic::{CUBIC, FRICTION_OF_BOTH, RUN, Recipe, VIBRATION};
     use crate::estimation::LeastSquares;
 
     /// The fit of a vibration of 2.3 rad/s from another frequency, started again: frequencies before and after.
@@ -140,6 +194,26 @@ mod tests {
     fn a_fit_that_is_at_the_lowest_stays() {
         let (before, after) = started_again(2.29, vec![vec![0.0, 1.0]]);
         assert!((before - 2.3).abs() < 0.003 && after.is_none(), "{before} {after:?}");
+    }
+
+    #[test]
+    fn sizes_of_a_start_need_not_keep_its_proportion() {
+        let specimen = Recipe {
+            truth: vec![(FRICTION_OF_BOTH, vec![0.15, 0.01])],
+            ..Recipe::default()
+        }
+        .make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let selector = Selector::new(&problem);
+        let start = Point::nominal(&specimen).with_effect(&specimen, FRICTION_OF_BOTH, &[0.05, 0.05]);
+        let before = problem.cost_at(&start).expect("a cost");
+        let (cost, point) = selector.best_sizes(start, 0).expect("a start");
+        let sizes = &point.hypothesis(&specimen).effects[0].1;
+        assert!(
+            (sizes[0] - 0.15).abs() < 0.01 && (sizes[1] - 0.01).abs() < 0.01,
+            "{sizes:?}"
+        );
+        assert!(cost < before && problem.cost_at(&point).expect("a cost") == cost);
     }
 
     #[test]

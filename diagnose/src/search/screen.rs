@@ -128,9 +128,16 @@ impl<'p, 'a> Screen<'p, 'a> {
         let all = self.specimen().candidates();
         let swings = (candidates.iter().any(|&c| all[c].oscillates)).then(|| self.swings());
         (candidates.par_iter())
-            .map(|&c| match &swings {
-                Some(swings) if all[c].oscillates => self.begin_oscillation(c, swings),
-                _ => self.begin(c),
+            .map(|&c| {
+                let begun = match &swings {
+                    Some(swings) if all[c].oscillates => self.begin_oscillation(c, swings),
+                    _ => self.begin(c),
+                };
+                // What cannot be simulated near the model so far is no candidate, and no failure of the diagnosis.
+                match begun {
+                    Err(DiagnoseError::Simulation { .. }) => Ok(None),
+                    other => other,
+                }
             })
             .collect()
     }
@@ -146,7 +153,11 @@ impl<'p, 'a> Screen<'p, 'a> {
         let promising: Vec<&mut ScreenedCandidate> = promising.flatten().collect();
         (promising.into_par_iter()).try_for_each(|candidate| {
             candidate.advanced = true;
-            self.advance(candidate, self.problem.criteria.screening.more_steps)
+            // A candidate whose derivatives cannot be simulated stays where its last step led.
+            match self.advance(candidate, self.problem.criteria.screening.more_steps) {
+                Err(DiagnoseError::Simulation { .. }) => Ok(()),
+                other => other,
+            }
         })
     }
 
@@ -201,9 +212,13 @@ impl<'p, 'a> Screen<'p, 'a> {
                 shapes.push(shape);
             }
         }
+        // A law of the instrument of the displacement works the motion out anew, which rounds otherwise: by as much as a slow law changes in a
+        // derivative, so that this starts from what is simulated with the law.
+        let changes_motion = specimen.candidates()[candidate].place.sensor() == Some(&Column::DISPLACEMENT);
+        let known = (!changes_motion).then_some(self.truths.as_slice());
         let mut best: Option<(f64, Vec<f64>, Linearised)> = None;
         for shape in shapes {
-            let begun = self.at(fit.point.with_effect(specimen, candidate, &shape), Some(&self.truths))?;
+            let begun = self.at(fit.point.with_effect(specimen, candidate, &shape), known)?;
             let left = self.left_by_linear_step(&begun.candidate);
             if best.as_ref().is_none_or(|(least, ..)| left < *least) {
                 best = Some((left, shape, begun));

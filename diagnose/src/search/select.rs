@@ -37,6 +37,12 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
         grown.law_pairs = grown.law_pairs.max(first.law_pairs);
         best = reduced(&mut selector, grown.best.clone(), progress)?;
     }
+    if let Some(anew) = grown_with_laws_first(&mut selector, &calibrated, &best, &grown, progress)? {
+        let first = grown;
+        (grown, best) = anew;
+        grown.scores = first.scores;
+        grown.law_pairs = grown.law_pairs.max(first.law_pairs);
+    }
     let effects_grown = grown.best.point.effects.len();
     let Grown {
         mut screened,
@@ -122,6 +128,31 @@ struct Grown {
     law_pairs: LawPairs,
 }
 
+/// A model that grows anew with laws open from the beginning, and without what its other effects explain; `None` unless it is better than the model found, or
+/// as good with fewer effects. Names that came before laws were tried may have a part each of what one law explains, so that no law is accepted beside them. A
+/// name is still preferred to a law that gains little more.
+fn grown_with_laws_first(
+    selector: &mut Selector<'_, '_>,
+    calibrated: &Fit,
+    best: &Fit,
+    grown: &Grown,
+    progress: Progress<'_>,
+) -> Result<Option<(Grown, Fit)>, DiagnoseError> {
+    let has_named = |fit: &Fit| (fit.point.effects.iter()).any(|&e| !selector.candidate(e).is_unlisted());
+    let incomplete = selector.held_out_ratio(best) > selector.complete_up_to(best);
+    let names_came_first = grown.open != Open::Names && has_named(&grown.best);
+    if !incomplete || !names_came_first || !selector.can_have_two_laws() {
+        return Ok(None);
+    }
+    let anew = grow(selector, calibrated, calibrated.clone(), Open::Laws, progress)?;
+    let other = reduced(selector, anew.best.clone(), progress)?;
+    let fraction = fraction_of_incomplete(selector.problem);
+    let better = selector.improves(best, &other, fraction);
+    let as_good_with_fewer =
+        other.point.effects.len() < best.point.effects.len() && !selector.improves(&other, best, fraction);
+    Ok((better || as_good_with_fewer).then_some((anew, other)))
+}
+
 /// A model without what its other effects explain, each effect in its simplest form.
 fn reduced(selector: &mut Selector<'_, '_>, grown: Fit, progress: Progress<'_>) -> Result<Fit, DiagnoseError> {
     progress("dropping what the others explain", done::ELIMINATION);
@@ -144,6 +175,7 @@ fn grow(
     progress: Progress<'_>,
 ) -> Result<Grown, DiagnoseError> {
     let criteria = selector.criteria();
+    let laws_first = open == Open::Laws && from.point.effects.is_empty();
     let mut best = from;
     let mut law_pairs = LawPairs::NotTried;
     let mut restarted_in_vain: Option<Point> = None;
@@ -166,6 +198,7 @@ fn grow(
         let full = best.point.effects.len() >= criteria.acceptance.most_effects;
         let next = match open {
             _ if full => None,
+            Open::Laws if laws_first => selector.strongest_name_or_law(&screened, &best)?,
             Open::Names | Open::Laws => selector.strongest(&screened, &best)?,
             Open::TwoLaws => selector.strongest_name_or_law(&screened, &best)?,
         };
@@ -180,6 +213,10 @@ fn grow(
                 continue;
             }
             restarted_in_vain = Some(best.point.clone());
+            if let (false, Some(split)) = (full, selector.split(&best)?) {
+                best = split;
+                continue;
+            }
         }
         if !full && open == Open::Names && selector.is_far_from_complete(&best, calibrated) {
             progress("trying combinations", screening + done::FITTING_AFTER_SCREENING);
@@ -285,6 +322,35 @@ mod tests {
         let mut effects = selection.best.point.effects.clone();
         effects.sort_unstable();
         effects
+    }
+
+    #[test]
+    fn a_name_that_came_before_laws_gives_way_to_the_law_that_explains_more() {
+        let mut specimen = Recipe {
+            truth: vec![(CUBIC, vec![0.4])],
+            candidates: vec![CUBIC, FRICTION],
+            ..Recipe::default()
+        }
+        .make();
+        specimen.take_name(CUBIC, Site::Mount);
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut selector = Selector::new(&problem);
+        let calibrated = selector.fitted(Point::nominal(&specimen)).expect("a fit");
+        let start = Point::nominal(&specimen).with_effect(&specimen, FRICTION, &[0.1]);
+        let best = selector.fitted(start).expect("a fit");
+        let mut anew = |open: Open| {
+            let grown = Grown {
+                best: best.clone(),
+                screened: vec![],
+                scores: vec![],
+                open,
+                law_pairs: LawPairs::NotTried,
+            };
+            let other = grown_with_laws_first(&mut selector, &calibrated, &best, &grown, &|_, _| {}).expect("fits");
+            other.map(|(_, fit)| fit.point.effects)
+        };
+        assert_eq!(anew(Open::Laws), Some(vec![CUBIC]));
+        assert_eq!(anew(Open::Names), None);
     }
 
     #[test]

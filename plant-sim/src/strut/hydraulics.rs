@@ -244,7 +244,11 @@ impl<N: Number> Hydraulics<N> {
         let owed_m_s = (step.from_m - flowing.supplied_m) / h;
         // The mount bends under what the force exceeds the static one.
         let over_pa = flowing.state.p1_pa - self.network.chamber.static_pa;
-        let bent_m = (self.mount).deflection_m(step.friction_n + self.network.chamber.area_m2 * over_pa);
+        let over_n = step.friction_n + self.network.chamber.area_m2 * over_pa;
+        let mut bent_m = self.mount.deflection_m(over_n);
+        if let Some((yields_m, _)) = self.network.chamber.mount_by_law(over_n) {
+            bent_m = bent_m + yields_m;
+        }
         let [middle_m, middle_m_s] = step.middle;
         let [end_m, end_m_s] = step.end;
         let [opening_middle, opening_end] = step.opening;

@@ -6,7 +6,7 @@
 use super::model::StrutModel;
 use super::rod_forces::RodForces;
 use super::rod_state::RodState;
-use super::terms::{Effects, LawArgument, LawPlace};
+use super::terms::{Effects, LawArgument, LawPlace, UnlistedLaw};
 
 /// The rod's states in a simulation: at the end of every step, and at the samples.
 #[derive(Debug, Clone, Default)]
@@ -71,9 +71,10 @@ impl StrutModel {
     pub fn without_rod_forces(&self) -> Option<Self> {
         let is_at_seal = |place| matches!(place, LawPlace::MainSeal | LawPlace::MainSealFriction);
         let effects = &self.effects;
-        let sets_steps =
-            (effects.unlisted.iter()).any(|law| is_at_seal(law.place) && law.depends_on == LawArgument::Phase);
-        if effects.mount_compliance.is_some() || sets_steps {
+        let bends_or_sets_steps = |law: &UnlistedLaw| {
+            law.place == LawPlace::Mount || (is_at_seal(law.place) && law.depends_on == LawArgument::Phase)
+        };
+        if effects.mount_compliance.is_some() || effects.unlisted.iter().any(bends_or_sets_steps) {
             return None;
         }
         let mut bare = self.clone();

@@ -8,12 +8,51 @@ pub const STROKE_M: &[f64] = &[
 ];
 /// Displacement over the whole travel, m.
 pub const TRAVEL_M: &[f64] = &[-0.09, -0.06, -0.03, 0.0, 0.03, 0.06, 0.09];
+/// The same, every 2 mm where stops are.
+pub const STOPS_M: &[f64] = &stops();
+
+/// Travel on either side of which stops are looked for, m, and the distance of the points, m.
+const STOPS_END_M: f64 = 0.12;
+const STOPS_EVERY_M: f64 = 0.002;
+/// Points on either side.
+const STOPS: usize = 60;
+
+const fn stops() -> [f64; 2 * STOPS + 1] {
+    let mut travel = [0.0; 2 * STOPS + 1];
+    let mut k = 0;
+    while k <= 2 * STOPS {
+        travel[k] = k as f64 * STOPS_EVERY_M - STOPS_END_M;
+        k += 1;
+    }
+    travel
+}
+
 /// Speed, m/s, dense about rest.
 pub const SPEED_M_S: &[f64] = &[-0.6, -0.2, -0.05, -0.005, 0.0, 0.005, 0.05, 0.2, 0.6];
 /// Gauge pressure of the main chamber, Pa.
 pub const P1_PA: &[f64] = &[0.0, 2.0 * P, 4.0 * P, 6.0 * P, 9.0 * P, 13.0 * P];
 /// Flow in a path, m3/s.
 pub const FLOW_M3_S: &[f64] = &[-1.5e-3, -5e-4, -1.5e-4, 0.0, 1.5e-4, 5e-4, 1.5e-3];
+/// Flow in the larger direction at which the points of a power of the flow end, m3/s.
+const FLOW_END_M3_S: f64 = 2e-3;
+/// The same, as densely as a parabola needs: on either side the squares of equal steps.
+pub const FLOW_FINE_M3_S: &[f64] = &flows();
+
+/// Points of a power of the flow on either side.
+const FLOWS: usize = 20;
+
+const fn flows() -> [f64; 2 * FLOWS + 1] {
+    let mut flow = [0.0; 2 * FLOWS + 1];
+    let mut k = 1;
+    while k <= FLOWS {
+        let part = k as f64 / FLOWS as f64;
+        flow[FLOWS + k] = FLOW_END_M3_S * part * part;
+        flow[FLOWS - k] = -flow[FLOWS + k];
+        k += 1;
+    }
+    flow
+}
+
 /// Pressure drop across a damper pack, Pa.
 pub const PACK_PA: &[f64] = &[
     -2.5 * P,
@@ -68,6 +107,29 @@ pub const CHAMBER_PA: &[f64] = &[
     7.0 * P,
     13.0 * P,
 ];
+/// The same, dense enough for a law that bends within a tenth of a megapascal.
+pub const CHAMBER_FINE_PA: &[f64] = &[
+    0.0,
+    0.02 * P,
+    0.04 * P,
+    0.06 * P,
+    0.08 * P,
+    0.1 * P,
+    0.14 * P,
+    0.2 * P,
+    0.28 * P,
+    0.4 * P,
+    0.56 * P,
+    0.8 * P,
+    1.1 * P,
+    1.6 * P,
+    2.2 * P,
+    3.2 * P,
+    4.5 * P,
+    6.4 * P,
+    9.0 * P,
+    13.0 * P,
+];
 /// Gas volume over the static one.
 pub const RELATIVE_VOLUME: &[f64] = &[0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0];
 /// Acceleration, m/s2: a line.
@@ -77,14 +139,66 @@ pub const TIME_S: &[f64] = &[
     0.0, 0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0, 10.0, 14.0, 20.0, 28.0, 40.0, 56.0, 80.0,
     110.0, 160.0, 220.0, 320.0, 450.0, 640.0, 900.0, 1300.0, 1800.0, 2600.0, 3600.0,
 ];
-/// What has changed of a relative gas volume: a line.
-pub const VOLUME_CHANGE: &[f64] = &[-1.0, 1.0];
+/// What has changed of a relative gas volume: dense enough for a power.
+pub const VOLUME_CHANGE: &[f64] = &[
+    -0.9, -0.8, -0.7, -0.6, -0.5, -0.4, -0.3, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.45, 0.6, 0.8, 1.0, 1.3, 1.6, 2.0, 3.0,
+];
 /// Pressure difference across a valve as its signal switches, Pa. The first is below all, so that the value at zero is free.
 pub const EDGE_PA: &[f64] = &[-1.0, 0.0, 0.5 * P, P, 2.0 * P, 4.0 * P, 8.0 * P, 13.0 * P];
+/// The same, dense enough for a parabola.
+pub const EDGE_FINE_PA: &[f64] = &[
+    0.0,
+    0.5 * P,
+    P,
+    1.5 * P,
+    2.0 * P,
+    2.5 * P,
+    3.0 * P,
+    3.5 * P,
+    4.0 * P,
+    4.5 * P,
+    5.0 * P,
+    6.0 * P,
+    7.0 * P,
+    8.0 * P,
+    9.0 * P,
+    10.0 * P,
+    11.5 * P,
+    13.0 * P,
+];
 /// Rate of flow, m3/s2: a line.
 pub const FLOW_RATE_M3_S2: &[f64] = &[-1.0, 1.0];
 /// The same, a few.
 pub const FEW_EDGES_PA: &[f64] = &[0.0, 2.0 * P, 8.0 * P];
+/// Energy held by a gas over its static pressure times its static volume: a line.
+pub const GAS_ENERGY: &[f64] = &[-1.0, 1.0];
+/// Energy held by the oil of a pack, J, dense enough for a factor that falls by a fraction of itself.
+pub const PACK_J: &[f64] = &energies();
+
+/// Points of energies, the first of them after none, J, and each over the one before.
+const ENERGIES: usize = 64;
+const FIRST_J: f64 = 20.0;
+const ENERGY_RATIO: f64 = 1.15;
+
+const fn energies() -> [f64; ENERGIES + 1] {
+    let mut energy = [0.0; ENERGIES + 1];
+    let (mut k, mut next) = (1, FIRST_J);
+    while k <= ENERGIES {
+        energy[k] = next;
+        next *= ENERGY_RATIO;
+        k += 1;
+    }
+    energy
+}
+
+/// Force on the mount above the static one, N: a line.
+pub const MOUNT_N: &[f64] = &[-1.0, 1.0];
+/// The same for a mount that yields as it likes.
+pub const MOUNT_TABLE_N: &[f64] = &[-1e4, -5e3, -2e3, 0.0, 2e3, 5e3, 1e4, 2e4];
+/// What a reading has changed lately: a line.
+pub const CHANGE: &[f64] = &[-1.0, 1.0];
+/// Time of a drift at a constant rate, s: a line.
+pub const DRIFT_S: &[f64] = &[0.0, 3600.0];
 /// Force of the load cell, N.
 pub const FORCE_N: &[f64] = &[0.0, 5e3, 1e4, 1.5e4, 2.5e4, 4e4];
 /// Intervals into which one turn of an oscillation is divided. A sine is linear over each of them to a thousandth of its amplitude.

@@ -112,6 +112,10 @@ impl<N: Number> Chamber<N> {
     pub fn held_m3(&self, p1_pa: N, displacement_m: N) -> (N, N) {
         let over = p1_pa - self.static_pa;
         let (mut volume, mut slope) = (self.mount_m3_pa * over, self.mount_m3_pa);
+        if let Some((yields, by_force)) = self.mount_by_law(self.area_m2 * over) {
+            volume = volume + self.area_m2 * yields;
+            slope = slope + self.area_m2 * self.area_m2 * by_force;
+        }
         if self.counts_at_static_density {
             let oil = self.oil_volume_m3 - self.area_m2 * displacement_m;
             let (held, by_pressure) = held_at_static_density(oil, over, self.compressibility_1_pa);
@@ -148,6 +152,13 @@ impl<N: Number> Chamber<N> {
             }
         }
         (fraction, slope)
+    }
+
+    /// By how much an unmodelled law lets the mount yield under a force above the static one (N), m, and its derivative, m/N.
+    #[inline(always)]
+    pub fn mount_by_law(&self, force_n: N) -> Option<(N, N)> {
+        let laws = self.laws()?;
+        force_n.map_pair(|force_n| laws.mount_m(force_n))
     }
 
     #[inline(always)]
@@ -192,6 +203,7 @@ impl<N: Number> Chamber<N> {
 mod tests {
     use super::*;
     use crate::strut::gas::GasState;
+    use crate::strut::network::law_memory::LawMemory;
     use crate::strut::terms::OilCompressibility;
 
     fn chamber(counted_at: OilCount) -> Chamber {
@@ -216,7 +228,7 @@ mod tests {
             q2_m3_s: 0.0,
             shear: [0.0; 2],
             heat_j: [0.0; 2],
-            mean_volume: [1.0; 2],
+            laws: LawMemory::at_rest([1.0; 2]),
         }
     }
 

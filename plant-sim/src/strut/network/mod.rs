@@ -26,6 +26,7 @@
 mod bounded;
 mod chamber;
 mod last_solution;
+mod law_memory;
 mod layout;
 mod oil_column;
 mod path;

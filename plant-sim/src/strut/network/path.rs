@@ -11,7 +11,7 @@ use crate::strut::gas::{Departure, Gas, GasState};
 use crate::strut::model::StrutModel;
 use crate::strut::orifice::unit_flow;
 use crate::strut::pressure::gauge;
-use crate::strut::terms::{LaminarLine, PackFade, PathLaws, PistonSeal};
+use crate::strut::terms::{GasLawAnswer, GasLawInputs, LaminarLine, PackFade, PathLaws, PistonSeal};
 
 /// What a Newton step that is taken without another look may neglect in a pressure drop, Pa. All quantities follow the
 /// step linearly, volumes included, so nothing is lost; the error is that of the curved laws, about
@@ -57,6 +57,10 @@ pub(super) struct PathStart<'a, N> {
     /// Mean of the relative gas volume before the stage, and how much of a departure from it is left at the stage's end.
     mean_volume: N,
     remembered: N,
+    /// Energy that the gas holds before the stage by a law without a name, over its static pressure times its static volume.
+    gas_energy: N,
+    /// Energy that the pack's oil holds then by such a law, J.
+    pack_j: N,
 }
 
 /// What a path answers to a trial of the drop across its pack. Slopes are derivatives by the path's flow, but for that
@@ -76,6 +80,8 @@ pub(super) struct PathAnswer<N> {
     shear_slope: N,
     /// Mean of the relative gas volume at the stage's end.
     pub mean_volume: N,
+    /// Energy that the gas holds then by a law without a name, over its static pressure times its static volume.
+    pub gas_energy: N,
 }
 
 impl<N: Number> PathAnswer<N> {
@@ -121,7 +127,10 @@ impl Path {
                 |friction| friction.seal(which),
             ),
             fade: (effects.damping_fade.as_ref()).map_or_else(PackFade::default, |fade| fade.pack(which)),
-            laws: (!effects.unlisted.is_empty()).then(|| Box::new(PathLaws::of(&effects.unlisted, which))),
+            laws: (!effects.unlisted.is_empty()).then(|| {
+                let static_energy_j = model.static_pressure().absolute().pa() * static_gas_m3;
+                Box::new(PathLaws::of(&effects.unlisted, which, static_energy_j))
+            }),
         }
     }
 
@@ -185,7 +194,9 @@ impl<N: Number> Path<N> {
             transition_pa,
             real,
             breakaway_pa: self.piston_seal.breakaway_pa,
-            mean_volume: which.of(base.mean_volume),
+            mean_volume: which.of(base.laws.mean_volume),
+            gas_energy: which.of(base.laws.gas_energy),
+            pack_j: which.of(base.laws.pack_j),
             remembered: at.time_s.of(0.0),
         };
         if let Some(laws) = self.laws() {
@@ -193,6 +204,7 @@ impl<N: Number> Path<N> {
                 (at.time_s).gather(|lane| law(at.displacement_m.lane(lane), at.time_s.lane(lane)))
             };
             start.weakening = start.weakening * placed(&|x, t| laws.weakening(x, t));
+            start.weakening = start.weakening * start.pack_j.map(|energy_j| laws.weakening_by_energy(energy_j));
             start.beside_pack = start.beside_pack + placed(&|x, t| laws.groove(x, t));
             let relative_volume = start.gas.volume_m3 / self.static_gas_m3;
             let held_back_pa = relative_volume.map(|volume| laws.held_back_pa(volume).unwrap_or(0.0));
@@ -200,6 +212,18 @@ impl<N: Number> Path<N> {
             start.remembered = at.duration_s.map(|duration_s| laws.remembered(duration_s));
         }
         start
+    }
+
+    /// Energy that the pack's oil holds by a law without a name at the end of a stage, J, after oil has flowed (m3/s) across a drop (Pa).
+    #[inline(always)]
+    pub fn pack_j(&self, before_j: N, duration_s: N, drop_pa: N, flow_m3_s: N) -> N {
+        match self.laws() {
+            Some(laws) => before_j.gather(|lane| {
+                let power_w = drop_pa.lane(lane) * flow_m3_s.lane(lane);
+                laws.pack_j(before_j.lane(lane), duration_s.lane(lane), power_w)
+            }),
+            None => before_j,
+        }
     }
 
     /// The line of the pack's table at a segment that was remembered.
@@ -260,18 +284,28 @@ impl<N: Number> Path<N> {
     pub fn answer_to_flow(&self, start: &PathStart<'_, N>, flow: N, flow_slope: N) -> PathAnswer<N> {
         let step = self.gas.implicit(start.gas, start.duration_s, flow, start.real);
         let (mut oil_pa, mut oil_slope) = (gauge(step.pressure).pa(), step.pressure_by_flow);
-        let mut mean_volume = start.mean_volume;
+        let (mut mean_volume, mut gas_energy) = (start.mean_volume, start.gas_energy);
         if let Some(laws) = self.laws() {
             let relative_volume = step.state.volume_m3 / self.static_gas_m3;
             let changed = start.remembered * (relative_volume - start.mean_volume);
             mean_volume = relative_volume - changed;
-            let factor = N::each_of(|lane| {
-                laws.gas_factor(relative_volume.lane(lane), changed.lane(lane), start.time_s.lane(lane))
+            let gas = N::each_of(|lane| {
+                laws.gas(&GasLawInputs {
+                    relative_volume: relative_volume.lane(lane),
+                    changed: changed.lane(lane),
+                    time_s: start.time_s.lane(lane),
+                    duration_s: start.duration_s.lane(lane),
+                    pressure_pa: step.pressure.pa().lane(lane),
+                    flow_m3_s: flow.lane(lane),
+                    energy: start.gas_energy.lane(lane),
+                })
             });
-            if let Some(factor) = factor {
-                let factor = flow.gather(|lane| factor.as_ref()[lane]);
+            if let Some(gas) = gas {
+                let of = |value: fn(&GasLawAnswer) -> f64| flow.gather(|lane| value(&gas.as_ref()[lane]));
+                let factor = of(|gas| gas.factor);
                 oil_pa = gauge(Absolute(factor * step.pressure.pa())).pa();
-                oil_slope = oil_slope * factor;
+                oil_slope = oil_slope * factor + step.pressure.pa() * of(|gas| gas.factor_by_flow);
+                gas_energy = of(|gas| gas.energy);
             }
         }
         let (mut shear, mut shear_slope) = (start.shear, flow.of(0.0));
@@ -302,6 +336,7 @@ impl<N: Number> Path<N> {
             shear,
             shear_slope,
             mean_volume,
+            gas_energy,
         }
     }
 

@@ -2,6 +2,7 @@
 
 use oleo_interface::Gauge;
 
+use super::law_memory::LawMemory;
 use super::layout::Network;
 use super::state::State;
 use crate::strut::gas::GasState;
@@ -23,7 +24,7 @@ impl Network {
             q2_m3_s: 0.0,
             shear: [0.0; 2],
             heat_j: [0.0; 2],
-            mean_volume: [0, 1].map(|i| gas(i).volume_m3 / self.paths[i].static_gas_m3),
+            laws: LawMemory::at_rest([0, 1].map(|i| gas(i).volume_m3 / self.paths[i].static_gas_m3)),
         }
     }
 

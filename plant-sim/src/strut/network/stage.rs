@@ -18,6 +18,7 @@ use oleo_interface::{Gauge, Valve};
 
 use super::bounded::bounded;
 use super::last_solution::LastSolution;
+use super::law_memory::LawMemory;
 use super::layout::Network;
 use super::path::{NEGLECTED_PA, PathAnswer};
 use super::stage_end::StageEnd;
@@ -225,6 +226,7 @@ impl<N: Number> Network<N> {
                 last.flow = [one.flow, two.flow];
                 (last.supply, last.gain) = (supply, gain);
                 let [heat1, heat2] = base.heat_j;
+                let [pack1, pack2] = base.laws.pack_j;
                 return Stage {
                     state: State {
                         p1_pa: p1,
@@ -237,7 +239,14 @@ impl<N: Number> Network<N> {
                             path1.fade.heated(heat1, at.duration_s, drop1, one.flow),
                             path2.fade.heated(heat2, at.duration_s, drop2, two.flow),
                         ],
-                        mean_volume: [one.mean_volume, two.mean_volume],
+                        laws: LawMemory {
+                            mean_volume: [one.mean_volume, two.mean_volume],
+                            gas_energy: [one.gas_energy, two.gas_energy],
+                            pack_j: [
+                                path1.pack_j(pack1, at.duration_s, drop1, one.flow),
+                                path2.pack_j(pack2, at.duration_s, drop2, two.flow),
+                            ],
+                        },
                     },
                     pressure_pa: [p1, one.oil_pa, N::choose(connected, two.oil_pa + d3, p1), two.oil_pa],
                 };

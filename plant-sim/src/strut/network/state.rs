@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::law_memory::LawMemory;
 use crate::lanes::Number;
 use crate::strut::gas::GasState;
 
@@ -24,8 +25,8 @@ pub(in crate::strut) struct State<N = f64> {
     pub shear: [N; 2],
     /// Energy held by the oil of the dampers, J.
     pub heat_j: [N; 2],
-    /// Mean of the gas volumes over the static ones, over the time constant of a law with a memory.
-    pub mean_volume: [N; 2],
+    /// What laws without a name remember.
+    pub laws: LawMemory<N>,
 }
 
 impl State {
@@ -50,10 +51,7 @@ impl State {
                 like.gather_from(each, |s| s.heat_j[0]),
                 like.gather_from(each, |s| s.heat_j[1]),
             ],
-            mean_volume: [
-                like.gather_from(each, |s| s.mean_volume[0]),
-                like.gather_from(each, |s| s.mean_volume[1]),
-            ],
+            laws: LawMemory::side_by_side(each, like),
         }
     }
 }
@@ -74,7 +72,7 @@ impl<N: Number> State<N> {
             q2_m3_s: self.q2_m3_s.lane(lane),
             shear: [self.shear[0].lane(lane), self.shear[1].lane(lane)],
             heat_j: [self.heat_j[0].lane(lane), self.heat_j[1].lane(lane)],
-            mean_volume: [self.mean_volume[0].lane(lane), self.mean_volume[1].lane(lane)],
+            laws: self.laws.part(lane),
         }
     }
 
@@ -92,7 +90,7 @@ impl<N: Number> State<N> {
             q2_m3_s: mixed(self.q2_m3_s, other.q2_m3_s, weight),
             shear: both_mixed(self.shear, other.shear, weight),
             heat_j: both_mixed(self.heat_j, other.heat_j, weight),
-            mean_volume: both_mixed(self.mean_volume, other.mean_volume, weight),
+            laws: self.laws.blend(&other.laws, weight),
         }
     }
 }

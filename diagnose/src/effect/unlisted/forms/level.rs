@@ -3,6 +3,9 @@
 use super::form::{Form, Grid};
 use crate::parameter::Parameter;
 
+/// Levels that are tried beside none, over one that would be visible: beside none an answer may not be in proportion to the level.
+const LARGER: [f64; 2] = [5.0, 20.0];
+
 pub struct Level;
 
 impl Form for Level {
@@ -10,6 +13,10 @@ impl Form for Level {
         (grid.knots.iter())
             .map(|x| Parameter::amount(format!("at_{x:.3e}"), grid.visible, grid.most()))
             .collect()
+    }
+
+    fn starts(&self, grid: &Grid) -> Vec<Vec<f64>> {
+        LARGER.map(|size| vec![size * grid.visible; grid.knots.len()]).to_vec()
     }
 
     fn values(&self, _grid: &Grid, fitted: &[f64]) -> Vec<f64> {

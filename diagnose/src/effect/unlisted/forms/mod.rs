@@ -7,9 +7,14 @@
 //! | `level` | is added and never negative | the value at each knot |
 //! | `factor` | multiplies what is believed; one at rest | logarithmic rises from knot to knot |
 //! | `bell` | is added around one argument | height, position, half width |
+//! | `parabola` | is added, a polynomial of second degree | its three coefficients |
+//! | `power` | is added and follows a power of its argument | its value at the largest argument, exponent |
 //! | `proportional` | is added and is proportional to its argument | the value at an argument of one |
-//! | `relaxing` | multiplies, and follows what has changed lately | its slope, time constant of the memory |
+//! | `remembering` | is added or multiplies, and follows an energy that is held or a recent change | its size, time constant of the memory |
+//! | `relaxing` | multiplies, and follows what has changed lately | its exponent, time constant of the memory |
+//! | `saturating` | is added, rises and comes to an end | its end, the argument where half of it is reached |
 //! | `settling` | is added or multiplies, and settles with time | its end, time constant |
+//! | `stops` | is added beyond a threshold in either direction | sizes, thresholds, exponent |
 //! | `swinging` | is added or multiplies, and swings about what is believed | amplitude, phase, frequency |
 //! | `choke` | multiplies what is believed, and falls with the size of its argument | inverse argument, exponent |
 
@@ -19,11 +24,16 @@ mod choke;
 mod factor;
 mod form;
 mod level;
+mod parabola;
+mod power;
 mod proportional;
 mod relaxing;
+mod remembering;
 mod rises;
 mod rising;
+mod saturating;
 mod settling;
+mod stops;
 mod swinging;
 
 #[cfg(test)]
@@ -35,9 +45,14 @@ pub use choke::Choke;
 pub use factor::Factor;
 pub use form::{ClosedForm, Form, Grid};
 pub use level::Level;
+pub use parabola::Parabola;
+pub use power::Power;
 pub use proportional::{Proportional, ProportionalAmount};
 pub use relaxing::Relaxing;
+pub use remembering::{Fading, Heated, Lingering};
 pub use rises::is_of_free_table;
 pub use rising::Rising;
+pub use saturating::Saturating;
 pub use settling::{SettlingAdded, SettlingFactor, SettlingLevel};
+pub use stops::Stops;
 pub use swinging::{SwingingAdded, SwingingFactor};

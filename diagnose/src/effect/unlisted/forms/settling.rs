@@ -5,7 +5,7 @@ use super::form::{ClosedForm, Form, Grid};
 use crate::parameter::Parameter;
 
 /// Time constants that are tried first, s.
-const STARTS_S: [f64; 3] = [1.0, 10.0, 100.0];
+const STARTS_S: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 /// Largest logarithm of a factor that is added up.
 const MOST_LOG: f64 = 3.0;
 

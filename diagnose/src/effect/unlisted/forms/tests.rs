@@ -58,16 +58,55 @@ fn a_choke_lets_half_pass_where_its_argument_is_the_inverse() {
 }
 
 #[test]
+fn bubbles_under_pressure_obey_boyle() {
+    // Air of a volume of 2 at an absolute pressure of 0.5 takes up 2 (1 - 0.5 / (0.5 + x)) less.
+    let values = Saturating("volume", "half_at").values(&GRID, &[2.0, 0.5]);
+    for (value, x) in values.iter().zip(KNOTS).skip(2) {
+        assert!((value - 2.0 * (1.0 - 0.5 / (0.5 + x))).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_parabola_has_its_value_slope_and_curvature() {
+    let values = Parabola(["a", "b", "c"]).values(&GRID, &[1.0, -2.0, 0.5]);
+    assert_eq!(values, [7.0, 3.5, 1.0, -0.5, -0.5]);
+}
+
+#[test]
+fn a_power_of_two_is_turbulent_flow_in_either_direction() {
+    let values = Power("drop_Pa").values(&GRID, &[9.0, 2.0]);
+    for (value, expected) in values.iter().zip([-4.0, -1.0, 0.0, 1.0, 9.0]) {
+        assert!((value - expected).abs() < 1e-12, "{values:?}");
+    }
+}
+
+#[test]
+fn stops_do_nothing_between_their_thresholds() {
+    let knots = &[-0.08, -0.06, 0.0, 0.05, 0.06, 0.07];
+    let values = Stops.values(&Grid { knots, ..GRID }, &[100.0, 30.0, 0.05, 0.07, 2.0]);
+    for (value, expected) in values.iter().zip([-30.0, 0.0, 0.0, 0.0, 100.0, 400.0]) {
+        assert!((value - expected).abs() < 1e-9, "{values:?}");
+    }
+}
+
+#[test]
 fn each_form_has_as_many_numbers_as_its_starts() {
-    let forms: [&dyn Form; 13] = [
+    let forms: [&dyn Form; 20] = [
         &Added,
         &Bell,
         &Choke,
         &Factor,
+        &Fading,
+        &Heated,
         &Level,
+        &Lingering,
         &Proportional("mass_kg"),
+        &Parabola(["a", "b", "c"]),
+        &Power("drop_Pa"),
         &Relaxing,
         &Rising,
+        &Saturating("volume_m3", "half_at_Pa"),
+        &Stops,
         &SettlingAdded("force_N"),
         &SettlingFactor,
         &SettlingLevel("flow_m3_s"),
@@ -111,8 +150,13 @@ fn what_is_proportional_goes_through_the_origin() {
 
 #[test]
 fn what_relaxes_is_one_where_nothing_has_changed() {
-    let values = Relaxing.values(&GRID, &[-0.4, 3.0]);
-    assert!(values[2] == 1.0 && (values[3] - 0.6).abs() < 1e-12);
+    // What is compressed to half or let out to double its volume at once, as a diatomic gas without a wall: p v^1.4 stays.
+    let knots = &[-0.5, 0.0, 1.0];
+    let values = Relaxing.values(&Grid { knots, ..GRID }, &[-0.4, 3.0]);
+    let believed = [2.0, 1.0, 0.5];
+    for ((factor, believed), x) in values.iter().zip(believed).zip(knots) {
+        assert!((factor * believed * libm::pow(1.0 + x, 1.4) - 1.0).abs() < 1e-12);
+    }
     assert_eq!(Relaxing.time_constant_s(&[-0.4, 3.0]), Some(3.0));
 }
 
@@ -133,4 +177,16 @@ fn what_swings_has_its_amplitude_a_quarter_of_a_turn_after_the_middle() {
         FORCE.equation("force", &[20.0, -0.5, 0.7]).as_deref(),
         Some("force = believed + 20.00 N sin(2 pi 0.7000 Hz t - 0.5000)")
     );
+}
+
+#[test]
+fn what_holds_energy_or_remembers_is_in_proportion_to_it() {
+    let knots = &[0.0, 100.0];
+    let grid = Grid { knots, ..GRID };
+    assert_eq!(Heated.values(&grid, &[0.004, 9.0]), [1.0, 1.4]);
+    assert_eq!(Fading.values(&grid, &[0.01, 9.0]), [1.0, 0.5]);
+    assert_eq!(Lingering.values(&grid, &[-1.0, 9.0]), [0.0, -100.0]);
+    for form in [&Heated as &dyn Form, &Fading, &Lingering] {
+        assert_eq!(form.time_constant_s(&[0.1, 9.0]), Some(9.0));
+    }
 }

@@ -1,11 +1,11 @@
 //! Laws of the accumulators: gas, and floating pistons.
 
-use oleo_plant_sim::strut::LawArgument::{RelativeVolume, Time, VolumeChange};
+use oleo_plant_sim::strut::LawArgument::{RelativeEnergy, RelativeVolume, Time, VolumeChange};
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
-use crate::effect::unlisted::forms::{Factor, Level, Relaxing, SettlingFactor};
-use crate::effect::unlisted::knots::{RELATIVE_VOLUME, TIME_S, VOLUME_CHANGE};
+use crate::effect::unlisted::forms::{Factor, Heated, Level, Relaxing, SettlingFactor};
+use crate::effect::unlisted::knots::{GAS_ENERGY, RELATIVE_VOLUME, TIME_S, VOLUME_CHANGE};
 use crate::vocabulary::{Branch, Site};
 
 pub(super) const LAWS: &[Law] = &[
@@ -79,6 +79,30 @@ pub(super) const LAWS: &[Law] = &[
         (LawPlace::Accumulators, VolumeChange),
         &Relaxing,
         VOLUME_CHANGE,
+        0.01,
+    ),
+    law(
+        "gas pressure over the energy of compression, accumulator 1",
+        Site::Accumulator(Branch::First),
+        (LawPlace::Accumulator1, RelativeEnergy),
+        &Heated,
+        GAS_ENERGY,
+        0.01,
+    ),
+    law(
+        "gas pressure over the energy of compression, accumulator 2",
+        Site::Accumulator(Branch::Second),
+        (LawPlace::Accumulator2, RelativeEnergy),
+        &Heated,
+        GAS_ENERGY,
+        0.01,
+    ),
+    law(
+        "gas pressure over the energy of compression, both accumulators",
+        Site::Accumulators,
+        (LawPlace::Accumulators, RelativeEnergy),
+        &Heated,
+        GAS_ENERGY,
         0.01,
     ),
     law(

@@ -6,6 +6,7 @@
 mod accumulators;
 mod instruments;
 mod law;
+mod mount;
 mod oscillations;
 mod paths;
 mod seal_and_chamber;
@@ -15,7 +16,7 @@ use law::Law;
 use oleo_plant_sim::strut::{LawArgument, UnlistedLaw};
 
 use super::forms::ClosedForm;
-use crate::effect::candidate::Candidate;
+use crate::effect::candidate::{Candidate, ExclusionGroup};
 use crate::parameter::Parameter;
 use crate::vocabulary::EffectId;
 
@@ -25,10 +26,12 @@ const LEAST_DURATION_S: f64 = 1.0;
 /// All laws.
 fn laws() -> impl Iterator<Item = &'static Law> {
     (seal_and_chamber::LAWS.iter())
+        .chain(mount::LAWS)
         .chain(paths::LAWS)
         .chain(valves::LAWS)
         .chain(accumulators::LAWS)
         .chain(instruments::LAWS.iter().flatten())
+        .chain(instruments::MEMORIES)
         .chain(oscillations::LAWS)
 }
 
@@ -45,8 +48,14 @@ pub fn candidates(longest_s: f64) -> Vec<Candidate> {
             .starting_at(law.form.starts(&grid))
             .beside_others()
             .oscillating(law.depends_on == LawArgument::Phase)
+            .in_group(is_one_table_of_two_places(law).then_some(ExclusionGroup(EffectId::Unlisted)))
     };
     laws().map(candidate).collect()
+}
+
+/// Whether the model has one table for this law and for one that is reported at another place. A model has one of the two.
+fn is_one_table_of_two_places(law: &Law) -> bool {
+    laws().any(|other| other.place == law.place && other.depends_on == law.depends_on && other.site != law.site)
 }
 
 /// The law of a candidate with its fitted numbers, as a model file holds it; `None` for a label that no law has.

@@ -1,11 +1,15 @@
 //! Laws of the two paths: packs, what is beside them, and lines.
 
-use oleo_plant_sim::strut::LawArgument::{Displacement, Flow, FlowRate, PressureDrop, Time};
+use oleo_plant_sim::strut::LawArgument::{Displacement, Energy, Flow, FlowRate, PressureDrop, Time};
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
-use crate::effect::unlisted::forms::{Bell, Factor, ProportionalAmount, Rising, SettlingFactor, SettlingLevel};
-use crate::effect::unlisted::knots::{FLOW_M3_S, FLOW_RATE_M3_S2, GROOVE_M, PACK_PA, STROKE_M, TIME_S};
+use crate::effect::unlisted::forms::{
+    Bell, Factor, Fading, Power, ProportionalAmount, Rising, SettlingFactor, SettlingLevel,
+};
+use crate::effect::unlisted::knots::{
+    FLOW_FINE_M3_S, FLOW_M3_S, FLOW_RATE_M3_S2, GROOVE_M, PACK_J, PACK_PA, STROKE_M, TIME_S,
+};
 use crate::vocabulary::{Branch, Site};
 
 pub(super) const LAWS: &[Law] = &[
@@ -23,6 +27,22 @@ pub(super) const LAWS: &[Law] = &[
         (LawPlace::Path2, Flow),
         &Rising,
         FLOW_M3_S,
+        1e4,
+    ),
+    law(
+        "series drop over flow, a power, path 1",
+        Site::Path(Branch::First),
+        (LawPlace::Path1, Flow),
+        &Power("drop_at_2_l_s_Pa"),
+        FLOW_FINE_M3_S,
+        1e4,
+    ),
+    law(
+        "series drop over flow, a power, path 2",
+        Site::Path(Branch::Second),
+        (LawPlace::Path2, Flow),
+        &Power("drop_at_2_l_s_Pa"),
+        FLOW_FINE_M3_S,
         1e4,
     ),
     law(
@@ -104,6 +124,22 @@ pub(super) const LAWS: &[Law] = &[
         &SettlingFactor,
         TIME_S,
         0.05,
+    ),
+    law(
+        "strength of pack 1 over the energy lost in it",
+        Site::Path(Branch::First),
+        (LawPlace::Pack1, Energy),
+        &Fading,
+        PACK_J,
+        2e-5,
+    ),
+    law(
+        "strength of pack 2 over the energy lost in it",
+        Site::Path(Branch::Second),
+        (LawPlace::Pack2, Energy),
+        &Fading,
+        PACK_J,
+        2e-5,
     ),
     law(
         "series drop over rate of flow, path 2",

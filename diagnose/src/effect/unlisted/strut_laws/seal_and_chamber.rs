@@ -4,8 +4,12 @@ use oleo_plant_sim::strut::LawArgument::{Acceleration, Displacement, P1, Speed, 
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
-use crate::effect::unlisted::forms::{Added, Level, Proportional, Rising, SettlingAdded, SettlingLevel};
-use crate::effect::unlisted::knots::{ACCELERATION_M_S2, CHAMBER_PA, P1_PA, SPEED_M_S, TIME_S, TRAVEL_M};
+use crate::effect::unlisted::forms::{
+    Added, Level, Proportional, Rising, Saturating, SettlingAdded, SettlingLevel, Stops,
+};
+use crate::effect::unlisted::knots::{
+    ACCELERATION_M_S2, CHAMBER_FINE_PA, CHAMBER_PA, P1_PA, SPEED_M_S, STOPS_M, TIME_S, TRAVEL_M,
+};
 use crate::vocabulary::Site;
 
 pub(super) const LAWS: &[Law] = &[
@@ -64,6 +68,22 @@ pub(super) const LAWS: &[Law] = &[
         &Rising,
         CHAMBER_PA,
         5e-8,
+    ),
+    law(
+        "volume over pressure, up to an end",
+        Site::MainChamber,
+        (LawPlace::MainChamber, P1),
+        &Saturating("end_volume_m3", "half_at_Pa"),
+        CHAMBER_FINE_PA,
+        5e-8,
+    ),
+    law(
+        "force over displacement, beyond a threshold",
+        Site::EndStop,
+        (LawPlace::MainSeal, Displacement),
+        &Stops,
+        STOPS_M,
+        20.0,
     ),
     law(
         "oil lost over pressure",

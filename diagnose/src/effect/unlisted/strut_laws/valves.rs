@@ -5,8 +5,8 @@ use oleo_plant_sim::strut::LawArgument::{PressureDrop, Time};
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
-use crate::effect::unlisted::forms::{Added, Choke, Level, SettlingLevel};
-use crate::effect::unlisted::knots::{EDGE_PA, FEW_EDGES_PA, TIME_S, VALVE_PA};
+use crate::effect::unlisted::forms::{Added, Choke, Level, Parabola, SettlingLevel};
+use crate::effect::unlisted::knots::{EDGE_FINE_PA, EDGE_PA, FEW_EDGES_PA, TIME_S, VALVE_PA};
 use crate::vocabulary::Site;
 
 pub(super) const LAWS: &[Law] = &[
@@ -56,6 +56,14 @@ pub(super) const LAWS: &[Law] = &[
         (LawPlace::ValveTiming, PressureDrop),
         &Added,
         EDGE_PA,
+        2e-3,
+    ),
+    law(
+        "response time over pressure drop, a parabola",
+        Site::Valves,
+        (LawPlace::ValveTiming, PressureDrop),
+        &Parabola(["at_rest_s", "per_Pa_s", "per_Pa2_s"]),
+        EDGE_FINE_PA,
         2e-3,
     ),
     law(

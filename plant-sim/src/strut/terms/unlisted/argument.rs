@@ -28,8 +28,30 @@ pub enum LawArgument {
     RelativeVolume,
     /// The same less its mean over the time constant of the law (a first-order lag): what has changed lately. A law over it has a memory.
     VolumeChange,
+    /// Energy held by the oil of a pack, J: what is lost in the pack, less what the oil loses over the time constant of the law. A law over it has a
+    /// memory.
+    Energy,
+    /// Energy held by a gas, over its static pressure times its static volume: the work that compresses it, less what it loses over the time constant
+    /// of the law. A law over it has a memory.
+    RelativeEnergy,
+    /// Force between strut and mount above the static one, N, compression positive.
+    Force,
     /// Reading of the instrument, in the unit of its column.
     Reading,
     /// Rate at which the reading changes, in that unit a second.
     ReadingRate,
+    /// The reading less its mean over the time constant of the law (a first-order lag), in that unit: what has changed lately. A law over it has a
+    /// memory.
+    ReadingChange,
+}
+
+impl LawArgument {
+    /// Whether a law over this quantity has a memory, and with it a time constant.
+    #[must_use]
+    pub fn is_remembered(self) -> bool {
+        matches!(
+            self,
+            Self::VolumeChange | Self::Energy | Self::RelativeEnergy | Self::ReadingChange
+        )
+    }
 }

@@ -1,4 +1,4 @@
-//! The unmodelled laws of the main chamber as the solver reads them.
+//! The unmodelled laws of the main chamber, and of the mount that makes it larger, as the solver reads them.
 
 use super::argument::LawArgument;
 use super::course::Course;
@@ -6,12 +6,13 @@ use super::law::{UnlistedLaw, law_at};
 use super::place::LawPlace;
 use crate::strut::characteristic::Characteristic;
 
-/// The laws of the main chamber over p1 (gauge, Pa) and time (s).
+/// The laws of the main chamber over p1 (gauge, Pa) and time (s), and that of the mount over its force (N).
 #[derive(Debug, Clone, Default)]
 pub(in crate::strut) struct ChamberLaws {
     volume: Option<Characteristic>,
     loss: Option<Characteristic>,
     loss_in_time: Course,
+    mount: Option<Characteristic>,
 }
 
 impl ChamberLaws {
@@ -21,6 +22,7 @@ impl ChamberLaws {
             volume: law_at(laws, LawPlace::MainChamber, LawArgument::P1),
             loss: law_at(laws, LawPlace::MainChamberLoss, LawArgument::P1),
             loss_in_time: Course::at(laws, LawPlace::MainChamberLoss),
+            mount: law_at(laws, LawPlace::Mount, LawArgument::Force),
         }
     }
 
@@ -28,6 +30,12 @@ impl ChamberLaws {
     #[inline]
     pub fn volume(&self, p1_pa: f64) -> Option<(f64, f64)> {
         self.volume.as_ref().map(|law| law.at(p1_pa, &mut 0))
+    }
+
+    /// By how much the mount yields under a force above the static one (N), m, and its derivative, m/N, if there is such a law.
+    #[inline]
+    pub fn mount_m(&self, force_n: f64) -> Option<(f64, f64)> {
+        self.mount.as_ref().map(|law| law.at(force_n, &mut 0))
     }
 
     /// Flow lost at a gauge pressure and a time, m3/s.

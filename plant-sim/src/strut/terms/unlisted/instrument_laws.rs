@@ -2,17 +2,19 @@
 
 use super::argument::LawArgument;
 use super::course::Course;
-use super::law::{UnlistedLaw, law_at};
+use super::law::{UnlistedLaw, law_at, remembered};
 use super::place::LawPlace;
 use crate::strut::characteristic::Characteristic;
 use crate::strut::motion::Motion;
+use crate::strut::terms::sensor::lag;
 
-/// What an instrument adds to its reading, over the reading itself, over time and over the rate at which it changes.
+/// What an instrument adds to its reading, over the reading itself, over time, over the rate at which it changes and over what it has changed lately.
 #[derive(Debug, Clone)]
 pub(in crate::strut) struct InstrumentLaws {
     reading: Option<Characteristic>,
     time: Course,
     rate: Option<Characteristic>,
+    change: Option<(Characteristic, f64)>,
 }
 
 fn value(law: Option<&Characteristic>, argument: f64) -> f64 {
@@ -34,15 +36,22 @@ impl InstrumentLaws {
             reading: at(LawArgument::Reading),
             time: Course::at(laws, LawPlace::instrument(column)?),
             rate: at(LawArgument::ReadingRate),
+            change: remembered(laws, LawPlace::instrument(column)?, LawArgument::ReadingChange),
         };
-        (own.reading.is_some() || !own.time.is_none() || own.rate.is_some()).then_some(own)
+        let is_none = own.reading.is_none() && own.time.is_none() && own.rate.is_none() && own.change.is_none();
+        (!is_none).then_some(own)
     }
 
     /// Makes of a true signal what is recorded.
     pub fn record(&self, times_s: &[f64], signal: &mut [f64]) {
         let begin_s = times_s.first().copied().unwrap_or(0.0);
         let last = signal.len().saturating_sub(1);
-        let truth = self.rate.as_ref().map(|_| signal.to_vec()).unwrap_or_default();
+        let keeps_truth = self.rate.is_some() || self.change.is_some();
+        let truth = if keeps_truth { signal.to_vec() } else { vec![] };
+        let mut mean = truth.clone();
+        if let Some((_, time_constant_s)) = &self.change {
+            lag::record(*time_constant_s, times_s, &mut mean);
+        }
         for (k, (reading, t)) in signal.iter_mut().zip(times_s).enumerate() {
             let mut added = value(self.reading.as_ref(), *reading) + self.time.sum(t - begin_s);
             if let Some(law) = &self.rate {
@@ -50,6 +59,9 @@ impl InstrumentLaws {
                 if b > a {
                     added += law.value((truth[b] - truth[a]) / (times_s[b] - times_s[a]));
                 }
+            }
+            if let Some((law, _)) = &self.change {
+                added += law.value(truth[k] - mean[k]);
             }
             *reading += added;
         }
@@ -103,6 +115,22 @@ mod tests {
         let mut signal: Vec<f64> = times.iter().map(|t| 5.0 * (t - 10.0)).collect();
         InstrumentLaws::of(&laws, "p2_Pa").unwrap().record(&times, &mut signal);
         assert!((signal[4] - (2.0 + 0.2 + 0.8 - 0.05)).abs() < 1e-9, "{}", signal[4]);
+    }
+
+    #[test]
+    fn an_instrument_that_leaves_out_recent_changes_lags() {
+        let times: Vec<f64> = (0..200).map(|k| 0.002 * f64::from(k)).collect();
+        let truth: Vec<f64> = times.iter().map(|t| 3.0 + libm::sin(20.0 * t)).collect();
+        let remembered = UnlistedLaw {
+            time_constant_s: Some(0.03),
+            ..law(LawPlace::InstrumentForce, LawArgument::ReadingChange, -1.0)
+        };
+        let (mut shown, mut lagging) = (truth.clone(), truth);
+        InstrumentLaws::of(&[remembered], "force_N")
+            .unwrap()
+            .record(&times, &mut shown);
+        lag::record(0.03, &times, &mut lagging);
+        assert!(shown.iter().zip(&lagging).all(|(a, b)| (a - b).abs() < 1e-12));
     }
 
     #[test]

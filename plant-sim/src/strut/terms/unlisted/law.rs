@@ -38,7 +38,7 @@ pub struct UnlistedLaw {
     pub argument: Vec<f64>,
     /// Value of the law at each of them; unit and meaning as [`LawPlace`] says.
     pub value: Vec<f64>,
-    /// Time constant of the law's memory, s; a law over [`LawArgument::VolumeChange`] has one, others have none.
+    /// Time constant of the law's memory, s; a law over what [is remembered](LawArgument::is_remembered) has one, others have none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_constant_s: Option<f64>,
     /// Frequency of the oscillation, Hz; a law over [`LawArgument::Phase`] has one, others have none.
@@ -68,10 +68,13 @@ impl Checked for UnlistedLaw {
             );
             return Err(InvalidValue::new("depends_on", what));
         }
-        if (self.depends_on == LawArgument::VolumeChange) != self.time_constant_s.is_some() {
+        if self.depends_on.is_remembered() != self.time_constant_s.is_some() {
             let what = format!(
-                "belongs to laws over {}, and each of them needs one",
-                word(&LawArgument::VolumeChange)
+                "belongs to laws over {}, {}, {} and {}, and each of them needs one",
+                word(&LawArgument::VolumeChange),
+                word(&LawArgument::Energy),
+                word(&LawArgument::RelativeEnergy),
+                word(&LawArgument::ReadingChange)
             );
             return Err(InvalidValue::new("time_constant_s", what));
         }
@@ -158,6 +161,12 @@ pub(in crate::strut) fn law_at(laws: &[UnlistedLaw], place: LawPlace, over: LawA
     laws.iter()
         .find(|law| law.place == place && law.depends_on == over)
         .map(UnlistedLaw::characteristic)
+}
+
+/// The table of the law with a memory at a place over a quantity, and its time constant, s, if there is one.
+pub(super) fn remembered(laws: &[UnlistedLaw], place: LawPlace, over: LawArgument) -> Option<(Characteristic, f64)> {
+    let law = laws.iter().find(|law| law.place == place && law.depends_on == over)?;
+    Some((law.characteristic(), law.time_constant_s?))
 }
 
 #[cfg(test)]

@@ -38,7 +38,9 @@ pub(in crate::strut) use chamber_laws::ChamberLaws;
 pub(in crate::strut) use course::{Course, longest_step_s};
 pub(in crate::strut) use instrument_laws::InstrumentLaws;
 pub(in crate::strut) use law::law_at;
-pub(in crate::strut) use path_laws::{PathLaws, passed, throttle, throttled, valve_in_time};
+pub(in crate::strut) use path_laws::{
+    GasLawAnswer, GasLawInputs, PathLaws, passed, throttle, throttled, valve_in_time,
+};
 pub(in crate::strut) use seal_law::SealLaw;
 
 pub(super) use law::check_all;

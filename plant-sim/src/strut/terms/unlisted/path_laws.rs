@@ -12,6 +12,10 @@ const LEAST_FACTOR: f64 = 0.01;
 /// The same for the factor on a gas pressure.
 const LEAST_GAS_FACTOR: f64 = 0.1;
 
+/// Rounds in which a gas finds the energy that it gets at its own pressure. Each leaves the part of the error that it works within a stage, some
+/// hundredths.
+const ENERGY_ROUNDS: usize = 3;
+
 /// The laws of one path. Where there is none, each of them is what leaves the model as it is.
 #[derive(Debug, Clone, Default)]
 pub(in crate::strut) struct PathLaws {
@@ -26,6 +30,10 @@ pub(in crate::strut) struct PathLaws {
     gas: Option<Characteristic>,
     gas_in_time: Course,
     gas_memory: Option<GasMemory>,
+    gas_energy: Option<EnergyLaw>,
+    /// Static absolute pressure of the gas times its static volume, J.
+    static_energy_j: f64,
+    pack_energy: Option<EnergyLaw>,
     held_back: Option<Characteristic>,
 }
 
@@ -36,10 +44,61 @@ struct GasMemory {
     time_constant_s: f64,
 }
 
-impl PathLaws {
-    /// The laws of a path.
-    pub fn of(laws: &[UnlistedLaw], path: FlowPath) -> Self {
+/// A factor over an energy that is held for a while.
+#[derive(Debug, Clone)]
+struct EnergyLaw {
+    factor: Characteristic,
+    time_constant_s: f64,
+}
+
+impl EnergyLaw {
+    fn of(law: &UnlistedLaw) -> Self {
         Self {
+            factor: law.characteristic(),
+            time_constant_s: law.time_constant_s.unwrap_or(f64::INFINITY),
+        }
+    }
+
+    /// What is left of an energy after a while (s). One implicit step.
+    fn left(&self, duration_s: f64) -> f64 {
+        1.0 / (1.0 + duration_s / self.time_constant_s)
+    }
+}
+
+/// What the laws of a gas are asked about: a trial of a stage.
+pub(in crate::strut) struct GasLawInputs {
+    /// Gas volume over the static one.
+    pub relative_volume: f64,
+    /// What has changed of it lately.
+    pub changed: f64,
+    /// Time since the start, s.
+    pub time_s: f64,
+    /// Duration of the stage, s.
+    pub duration_s: f64,
+    /// Absolute pressure without the laws, Pa.
+    pub pressure_pa: f64,
+    /// Flow of oil into the accumulator, m3/s.
+    pub flow_m3_s: f64,
+    /// Energy held before the stage, over the static pressure times the static volume.
+    pub energy: f64,
+}
+
+/// What they answer.
+#[derive(Debug, Clone)]
+pub(in crate::strut) struct GasLawAnswer {
+    /// Factor on the pressure.
+    pub factor: f64,
+    /// Its derivative by the flow, as far as it follows from the energy, s/m3.
+    pub factor_by_flow: f64,
+    /// Energy held at the end of the stage, over the same.
+    pub energy: f64,
+}
+
+impl PathLaws {
+    /// The laws of a path. Its gas has this static absolute pressure times static volume, J.
+    pub fn of(laws: &[UnlistedLaw], path: FlowPath, static_energy_j: f64) -> Self {
+        Self {
+            static_energy_j,
             series: law_at(laws, LawPlace::in_series(path), LawArgument::Flow),
             parallel: law_at(laws, LawPlace::beside_pack(path), LawArgument::PressureDrop),
             groove: law_at(laws, LawPlace::beside_pack(path), LawArgument::Displacement),
@@ -54,6 +113,10 @@ impl PathLaws {
                 factor: law.characteristic(),
                 time_constant_s: law.time_constant_s.unwrap_or(f64::INFINITY),
             }),
+            gas_energy: gas(laws, path, LawArgument::RelativeEnergy).map(EnergyLaw::of),
+            pack_energy: (laws.iter())
+                .find(|law| law.place == LawPlace::pack(path) && law.depends_on == LawArgument::Energy)
+                .map(EnergyLaw::of),
             held_back: law_at(laws, LawPlace::piston(path), LawArgument::RelativeVolume),
         }
     }
@@ -97,21 +160,50 @@ impl PathLaws {
         self.throttle.as_ref().map_or(0.0, |law| 1.0 - throttled(law, drop_pa))
     }
 
-    /// Factor on the gas pressure at a gas volume over the static one, what has changed of it lately, and a time; if there is such a
-    /// law.
+    /// What the model's drop of the pack is divided by while its oil holds an energy (J).
     #[inline]
-    pub fn gas_factor(&self, relative_volume: f64, changed: f64, time_s: f64) -> Option<f64> {
-        if self.gas.is_none() && self.gas_in_time.is_none() && self.gas_memory.is_none() {
+    pub fn weakening_by_energy(&self, energy_j: f64) -> f64 {
+        (self.pack_energy.as_ref()).map_or(1.0, |law| 1.0 / law.factor.value(energy_j).max(LEAST_FACTOR))
+    }
+
+    /// Energy that the pack's oil holds after a power (W) for a while (s), J; none without a law over it.
+    #[inline]
+    pub fn pack_j(&self, before_j: f64, duration_s: f64, power_w: f64) -> f64 {
+        (self.pack_energy.as_ref()).map_or(0.0, |law| (before_j + duration_s * power_w) * law.left(duration_s))
+    }
+
+    /// The factor on the gas pressure, if there is a law of it.
+    #[inline]
+    pub fn gas(&self, at: &GasLawInputs) -> Option<GasLawAnswer> {
+        let none = self.gas.is_none() && self.gas_in_time.is_none() && self.gas_memory.is_none();
+        if none && self.gas_energy.is_none() {
             return None;
         }
         let by =
             |law: Option<&Characteristic>, argument| law.map_or(1.0, |law| law.value(argument).max(LEAST_GAS_FACTOR));
         let memory = self.gas_memory.as_ref().map(|memory| &memory.factor);
-        Some(
-            by(self.gas.as_ref(), relative_volume)
-                * self.gas_in_time.product(time_s, LEAST_GAS_FACTOR)
-                * by(memory, changed),
-        )
+        let mut answer = GasLawAnswer {
+            factor: by(self.gas.as_ref(), at.relative_volume)
+                * self.gas_in_time.product(at.time_s, LEAST_GAS_FACTOR)
+                * by(memory, at.changed),
+            factor_by_flow: 0.0,
+            energy: 0.0,
+        };
+        if let Some(law) = &self.gas_energy {
+            // The gas works at the factor that its energy has at the end of the stage, and gets that energy by working.
+            let left = law.left(at.duration_s);
+            let without = at.duration_s * answer.factor * at.pressure_pa / self.static_energy_j * left;
+            let (mut by_flow, mut energy) = (without, at.energy);
+            for _ in 0..ENERGY_ROUNDS {
+                by_flow = without * by(Some(&law.factor), energy);
+                energy = at.energy * left + by_flow * at.flow_m3_s;
+            }
+            answer.energy = energy;
+            let (factor, slope) = law.factor.at(answer.energy, &mut 0);
+            answer.factor_by_flow = answer.factor * slope * by_flow;
+            answer.factor *= factor.max(LEAST_GAS_FACTOR);
+        }
+        Some(answer)
     }
 
     /// What an implicit step of a duration leaves of a departure of the gas volume from its mean, 0 to 1; 0 without a memory.
@@ -175,9 +267,26 @@ mod tests {
         }
     }
 
+    /// A trial of a stage without flow.
+    fn at(relative_volume: f64, changed: f64, time_s: f64) -> GasLawInputs {
+        GasLawInputs {
+            relative_volume,
+            changed,
+            time_s,
+            duration_s: 1e-3,
+            pressure_pa: 2e6,
+            flow_m3_s: 0.0,
+            energy: 0.0,
+        }
+    }
+
+    fn gas_factor(laws: &PathLaws, relative_volume: f64, changed: f64, time_s: f64) -> Option<f64> {
+        laws.gas(&at(relative_volume, changed, time_s)).map(|gas| gas.factor)
+    }
+
     #[test]
     fn without_laws_the_model_is_as_it_was() {
-        let none = PathLaws::of(&[], FlowPath::One);
+        let none = PathLaws::of(&[], FlowPath::One, 1.0);
         assert_eq!(
             (
                 none.groove(0.1, 9.0),
@@ -189,7 +298,7 @@ mod tests {
         assert!(
             none.series_drop(1e-3).is_none()
                 && none.parallel_flow(1e6).is_none()
-                && none.gas_factor(0.5, 0.1, 9.0).is_none()
+                && none.gas(&at(0.5, 0.1, 9.0)).is_none()
         );
     }
 
@@ -207,18 +316,18 @@ mod tests {
                 [2.0, 1.0],
             ),
         ];
-        let [one, two] = FlowPath::ALL.map(|path| PathLaws::of(&laws, path));
+        let [one, two] = FlowPath::ALL.map(|path| PathLaws::of(&laws, path, 1.0));
         assert_eq!(
             (
                 one.series_drop(1e-3),
                 one.weakening(0.0, 0.0),
-                one.gas_factor(0.5, 0.0, 0.0)
+                gas_factor(&one, 0.5, 0.0, 0.0)
             ),
             (None, 1.0, None)
         );
         assert_eq!(two.series_drop(5e-4), Some((2.5e5, 5e8)));
         assert_eq!(
-            (two.weakening(0.0, 0.0), two.gas_factor(0.5, 0.0, 0.0)),
+            (two.weakening(0.0, 0.0), gas_factor(&two, 0.5, 0.0, 0.0)),
             (2.0, Some(1.5))
         );
         assert!(
@@ -247,9 +356,9 @@ mod tests {
             over(LawPlace::Accumulator1, LawArgument::RelativeVolume, [2.0, 2.0]),
             over(LawPlace::Accumulator1, time, [1.0, 0.8]),
         ];
-        let one = PathLaws::of(&laws, FlowPath::One);
+        let one = PathLaws::of(&laws, FlowPath::One, 1.0);
         assert_eq!((one.weakening(0.0, 0.0), one.weakening(0.0, 10.0)), (2.0, 4.0));
         assert!((one.groove(0.0, 5.0) - 2e-7).abs() < 1e-20);
-        assert!((one.gas_factor(1.0, 0.0, 10.0).unwrap() - 1.6).abs() < 1e-12);
+        assert!((gas_factor(&one, 1.0, 0.0, 10.0).unwrap() - 1.6).abs() < 1e-12);
     }
 }

@@ -70,6 +70,8 @@ pub enum LawPlace {
     /// Floating piston of accumulator 2: the same.
     #[serde(rename = "accumulator-2-friction")]
     Accumulator2Friction,
+    /// Mount: by how much it yields, m.
+    Mount,
     /// Instrument of the displacement: what it adds to the truth, m.
     #[serde(rename = "sensor:displacement_m")]
     InstrumentDisplacement,
@@ -139,7 +141,12 @@ impl LawPlace {
             Self::BesidePack1 | Self::BesidePack2 => {
                 &[LawArgument::PressureDrop, LawArgument::Displacement, LawArgument::Time]
             }
-            Self::Pack1 | Self::Pack2 => &[LawArgument::Displacement, LawArgument::Time, LawArgument::Phase],
+            Self::Pack1 | Self::Pack2 => &[
+                LawArgument::Displacement,
+                LawArgument::Energy,
+                LawArgument::Time,
+                LawArgument::Phase,
+            ],
             Self::Valve1 | Self::Valve2 | Self::Valve3 | Self::Valves => {
                 &[LawArgument::PressureDrop, LawArgument::Phase]
             }
@@ -148,12 +155,20 @@ impl LawPlace {
             Self::Accumulator1 | Self::Accumulator2 | Self::Accumulators => &[
                 LawArgument::RelativeVolume,
                 LawArgument::VolumeChange,
+                LawArgument::RelativeEnergy,
                 LawArgument::Time,
                 LawArgument::Phase,
             ],
             Self::Accumulator1Friction | Self::Accumulator2Friction => &[LawArgument::RelativeVolume],
-            Self::InstrumentDisplacement
-            | Self::InstrumentForce
+            Self::Mount => &[LawArgument::Force],
+            // Nothing that was lost in a memory can be taken back, and the displacement is an input.
+            Self::InstrumentDisplacement => &[
+                LawArgument::Reading,
+                LawArgument::Time,
+                LawArgument::Phase,
+                LawArgument::ReadingRate,
+            ],
+            Self::InstrumentForce
             | Self::InstrumentP1
             | Self::InstrumentP2
             | Self::InstrumentP3
@@ -162,6 +177,7 @@ impl LawPlace {
                 LawArgument::Time,
                 LawArgument::Phase,
                 LawArgument::ReadingRate,
+                LawArgument::ReadingChange,
             ],
         }
     }
@@ -179,7 +195,7 @@ impl LawPlace {
             | Self::InstrumentP2
             | Self::InstrumentP3
             | Self::InstrumentP4 => LawForm::Added,
-            Self::MainChamber | Self::Path1 | Self::Path2 => LawForm::AddedNotFalling,
+            Self::MainChamber | Self::Mount | Self::Path1 | Self::Path2 => LawForm::AddedNotFalling,
             Self::BesidePack1 | Self::BesidePack2 if argument == LawArgument::PressureDrop => LawForm::AddedNotFalling,
             // A groove: its size may change with displacement or time as it likes.
             Self::BesidePack1 | Self::BesidePack2 => LawForm::Added,

@@ -28,12 +28,13 @@ use crate::timing::ticks;
 use crate::valves::ValveCommand;
 use crate::vehicle::VehicleDescription;
 
-/// Frequency below which a vertical acceleration is heave, Hz.
-const HEAVE_HZ: f32 = 5.0;
-/// Memory of the running RMS of the heave, s: half a swing of the body on soft springs.
-const HEAVE_MEMORY_S: f32 = 0.5;
-/// Shortest time that the road counts as rough, or as smooth.
-const ROAD_DWELL_TICKS: u16 = ticks(1_000);
+/// What passes of a vertical acceleration as heave: what is below 5 Hz, looked at every 20 ms. Constants, because code that computes them
+/// has no place on the board.
+const HEAVE: LowPass = LowPass::of_part(0.466_511_9);
+/// Memory of the running RMS of the heave: 0.5 s, half a swing of the body on soft springs.
+const HEAVE_MEMORY: LowPass = LowPass::of_part(0.039_210_565);
+/// Shortest time that the road counts as rough, or as smooth: looks in 1 s.
+const ROAD_DWELL_LOOKS: u16 = ticks(1_000) / load_transfer::TICKS as u16;
 
 /// Thresholds. See [`strategy::Tuning`](super::Tuning) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,8 +68,6 @@ pub struct RoadAndCornering {
     load_transfer: load_transfer::Parameters,
     rough_2: Hysteresis,
     heave_2: Hysteresis,
-    below_heave: LowPass,
-    heave_memory: LowPass,
     guard: rollover_guard::Tuning,
 }
 
@@ -81,10 +80,10 @@ pub struct State {
     corners: bool,
     rough: bool,
     heaves: bool,
-    /// Vertical acceleration below [`HEAVE_HZ`], m/s2, and its running mean square.
+    /// Vertical acceleration below 5 Hz, m/s2, and its running mean square.
     heave_m_s2: f32,
     heave_mean_square: f32,
-    /// Ticks before the road may be judged again.
+    /// Looks before the road may be judged again.
     dwell: u16,
     guard: rollover_guard::State,
 }
@@ -137,8 +136,6 @@ impl Decide for RoadAndCornering {
             load_transfer: load_transfer::Parameters::new(vehicle),
             rough_2: tuning.rough_m_s2.squared(),
             heave_2: tuning.heave_m_s2.squared(),
-            below_heave: LowPass::from_corner_hz(HEAVE_HZ),
-            heave_memory: LowPass::from_time_constant_s(HEAVE_MEMORY_S),
             guard: tuning.rollover_guard,
         }
     }
@@ -153,10 +150,8 @@ impl Decide for RoadAndCornering {
         );
         let corners = state.cornering.step(&self.cornering, estimate, leans);
         state.corners = corners;
-        let heave_m_s2 = (self.below_heave).step(&mut state.heave_m_s2, estimate.vertical_acceleration_m_s2);
-        (self.heave_memory).step(&mut state.heave_mean_square, heave_m_s2 * heave_m_s2);
-        if !corners {
-            self.judge_road(state, estimate);
+        if state.load_transfer.has_looked() {
+            self.look_at_road(state, estimate);
         }
         let valves = if corners || rollover_guard || !state.rough {
             ValveCommand::SAFE
@@ -179,8 +174,14 @@ impl Decide for RoadAndCornering {
 }
 
 impl RoadAndCornering {
-    /// Whether the road is rough, and whether the body heaves on it.
-    fn judge_road(&self, state: &mut State, estimate: &Estimate) {
+    /// Whether the road is rough, and whether the body heaves on it, unless the vehicle corners. In each fourth tick: the busiest one has no
+    /// time left, and a road changes slowly.
+    fn look_at_road(&self, state: &mut State, estimate: &Estimate) {
+        let heave_m_s2 = HEAVE.step(&mut state.heave_m_s2, estimate.vertical_acceleration_m_s2);
+        HEAVE_MEMORY.step(&mut state.heave_mean_square, heave_m_s2 * heave_m_s2);
+        if state.corners {
+            return;
+        }
         let (vertical_mean_square, lateral_mean_square) = (estimate.vertical_mean_square, estimate.lateral_mean_square);
         state.dwell = state.dwell.saturating_sub(1);
         let changes = if state.rough {
@@ -190,7 +191,7 @@ impl RoadAndCornering {
         };
         if changes && state.dwell == 0 {
             state.rough = !state.rough;
-            state.dwell = ROAD_DWELL_TICKS;
+            state.dwell = ROAD_DWELL_LOOKS;
         }
         let bound = if state.heaves {
             self.heave_2.end
@@ -213,8 +214,9 @@ mod tests {
             lateral_mean_square: lateral_rms * lateral_rms,
             ..Estimate::default()
         };
-        let demand = strategy.step(&mut { RoadAndCornering::INITIAL }, &estimate, &Trusted::default());
-        demand.valves != ValveCommand::SAFE
+        let mut state = RoadAndCornering::INITIAL;
+        let demands = [(); 2].map(|()| strategy.step(&mut state, &estimate, &Trusted::default()));
+        demands.map(|demand| demand.valves != ValveCommand::SAFE) == [false, true]
     }
 
     #[test]
@@ -233,9 +235,11 @@ mod tests {
             vertical_mean_square: 0.3,
             ..Estimate::default()
         };
-        strategy.step(&mut state, &rough, &Trusted::default());
+        for _ in 0..2 {
+            strategy.step(&mut state, &rough, &Trusted::default());
+        }
         rough.lateral_mean_square = 2.0;
-        for _ in 0..2 * ROAD_DWELL_TICKS {
+        for _ in 0..2 * ticks(1_000) {
             let demand = strategy.step(&mut state, &rough, &Trusted::default());
             assert_ne!(demand.valves, ValveCommand::SAFE);
         }
@@ -313,7 +317,7 @@ mod tests {
                 vertical_acceleration_m_s2: heave_rms,
                 ..Estimate::default()
             };
-            for _ in 0..=4 * ROAD_DWELL_TICKS {
+            for _ in 0..=4 * ticks(1_000) {
                 strategy.step(&mut state, &estimate, &Trusted::default());
             }
             assert_eq!(
@@ -341,10 +345,17 @@ mod tests {
         libm::sqrtf(sum / 200.0)
     }
 
-    /// A first-order lag passes `1 / sqrt(1 + (f / 5 Hz)^2)`.
+    #[test]
+    fn the_constants_are_those_of_their_units() {
+        let look_s = f32::from(load_transfer::TICKS) * oleo_interface::tick::TICK_S_F32;
+        assert_eq!(HEAVE, LowPass::sampled(look_s, 0.1 / core::f32::consts::PI));
+        assert_eq!(HEAVE_MEMORY, LowPass::sampled(look_s, 0.5));
+    }
+
+    /// With `p` the part that is taken over every `T`, the lag passes `p / |1 - (1 - p) exp(-2 pi i f T)|`.
     #[test]
     fn heave_is_what_is_below_five_hertz() {
-        for (frequency_hz, passed) in [(1.0, 0.981), (5.0, 0.707), (12.0, 0.385)] {
+        for (frequency_hz, passed) in [(1.0, 0.982), (5.0, 0.726), (12.0, 0.423)] {
             let found = heave_rms(2.0, frequency_hz) / 2.0;
             assert!((found / passed - 1.0).abs() < 0.04, "{frequency_hz} Hz: {found}");
         }

@@ -7,18 +7,17 @@
 //!
 //! ```text
 //!   bounds             b_q = max(floor, k_w w_q sqrt(1 + l),      k_q s_q sqrt(1 + 0.01 l^2))
-//!                      b_s = max(floor, k_w w_s sqrt(1 + l / 2),  k_s s_s sqrt(1 + 0.002 l^2))
+//!                      b_s = max(floor, k_w w_s sqrt(1 + l / 2),  k_s s_s sqrt(1 + 0.0008 l^2))
 //!   measure            m   = e_q (a_q / b_q)^2 + e_s (a_s / b_s)^2            if both are to the same side
 //!                          = max(e_q (a_q / b_q)^2, e_s (a_s / b_s)^2) / 2    if not
-//!                            e_q = 1.2 and e_s = 0.6, but 1 and 0.85 from l = 9 on
+//!                            e_q = 1.2, e_s = 0.6
 //!   corners            m > 1:    for 0.4 s at least
 //!                      m > 1.6^2: until |a_q| < 0.6 b_q and |a_s| < 0.6 b_s, and the gas carries both sides alike
 //!                      (`load_transfer`), for 1.5 s in all
 //! ```
 //!
 //! The errors of the two bands are only weakly correlated, so that both together tell a bend sooner than each alone. The quick band
-//! counts for more, because it is the first to know of a bend: where the slow one leads, a road has swayed the vehicle. Where wheels leave
-//! the ground only the slow one can tell a bend from the road. A lane change
+//! counts for more, because it is the first to know of a bend: where the slow one leads, a road has swayed the vehicle. A lane change
 //! crosses zero in between, hence 1.5 s. It also exceeds the bounds by far soon after its beginning, which a false decision hardly
 //! ever does, and so a false one costs little ride. docs/controller.md says where the multiples come
 //! from.
@@ -35,12 +34,9 @@ const HOLD_TICKS: u16 = ticks(1_500);
 const WEAK_HOLD_TICKS: u16 = ticks(400);
 /// Measure from which a decision is beyond doubt.
 const STRONG: f32 = 1.6 * 1.6;
-/// Shares of the quick and of the slow band in the measure while the wheels keep to the road.
-const SHARES: [f32; 2] = [1.2, 0.6];
-/// The same where they leave it.
-const SHARES_OFF_THE_GROUND: [f32; 2] = [1.0, 0.85];
-/// Square of the quick witness over its lift-off value from which they do: a witness of 1.5 m/s2, more than on class D at 60 km/h.
-const OFF_THE_GROUND: f32 = 9.0;
+/// Shares of the quick and of the slow band in the measure.
+const QUICK_SHARE: f32 = 1.2;
+const SLOW_SHARE: f32 = 0.6;
 /// Part of the measure that counts where the two bands point to opposite sides.
 const OPPOSED: f32 = 0.5;
 /// Time before the road is known well enough to tell a bend from it. Uneven load is learnt as long as this (`estimate`), and is a bend
@@ -59,7 +55,7 @@ const SLOWER_IN_BENDS: f32 = 4.0;
 const LARGEST_OVER_OWN: f32 = 2.2;
 /// How fast the squares of the own multiples, of the quick and of the slow estimate, grow with the fourth power of the witness over the
 /// lift-off value: where wheels leave the ground, peaks are higher over their RMS.
-const HEAVIER_TAILS: [f32; 2] = [0.01, 0.002];
+const HEAVIER_TAILS: [f32; 2] = [0.01, 0.0008];
 /// How much of the growth of the quick error from lift-off on the slow error has.
 const SLOW_LIFT_OFF: f32 = 0.5;
 /// Least value that enters as it is, over the square of the witness's bound: from zero the mean must be able to grow.
@@ -266,12 +262,7 @@ impl State {
         let Bands { quick: a, slow: b } = lateral.acceleration_m_s2;
         // Multiplied by both bounds, so that nothing is divided.
         let (quick, slow, one) = (quick * slow_bound, slow * quick_bound, quick_bound * slow_bound);
-        let [quick_share, slow_share] = if lift_off > OFF_THE_GROUND {
-            SHARES_OFF_THE_GROUND
-        } else {
-            SHARES
-        };
-        let (of_quick, of_slow) = (quick_share * quick, slow_share * slow);
+        let (of_quick, of_slow) = (QUICK_SHARE * quick, SLOW_SHARE * slow);
         let measure = if a * b > 0.0 {
             of_quick + of_slow
         } else {

@@ -7,7 +7,7 @@
 //!
 //! ```text
 //!   bounds             b_q = max(floor, k_w w_q sqrt(1 + l),      k_q s_q sqrt(1 + 0.01 l^2))
-//!                      b_s = max(floor, k_w w_s sqrt(1 + l / 2),  k_s s_s sqrt(1 + 0.0008 l^2))
+//!                      b_s = max(floor, k_w w_s sqrt(1 + l / 2),  k_s s_s sqrt(1 + 0.0004 l^2))
 //!   measure            m   = e_q (a_q / b_q)^2 + e_s (a_s / b_s)^2            if both are to the same side
 //!                          = max(e_q (a_q / b_q)^2, e_s (a_s / b_s)^2) / 2    if not
 //!                            e_q = 1.2, e_s = 0.6
@@ -55,7 +55,7 @@ const SLOWER_IN_BENDS: f32 = 4.0;
 const LARGEST_OVER_OWN: f32 = 2.2;
 /// How fast the squares of the own multiples, of the quick and of the slow estimate, grow with the fourth power of the witness over the
 /// lift-off value: where wheels leave the ground, peaks are higher over their RMS.
-const HEAVIER_TAILS: [f32; 2] = [0.01, 0.0008];
+const HEAVIER_TAILS: [f32; 2] = [0.01, 0.0004];
 /// How much of the growth of the quick error from lift-off on the slow error has.
 const SLOW_LIFT_OFF: f32 = 0.5;
 /// Least value that enters as it is, over the square of the witness's bound: from zero the mean must be able to grow.

@@ -185,7 +185,7 @@ impl Road {
         let quick = f64::max(k_w * w_q * (1.0 + l).sqrt(), 3.6 * s_q * (1.0 + 0.01 * l * l).sqrt());
         let slow = f64::max(
             k_w * w_s * (1.0 + 0.5 * l).sqrt(),
-            4.9 * s_s * (1.0 + 0.0008 * l * l).sqrt(),
+            4.9 * s_s * (1.0 + 0.0004 * l * l).sqrt(),
         );
         [quick.max(0.3), slow.max(0.3)]
     }

@@ -266,7 +266,7 @@ fn the_bounds_are_those_of_the_page() {
         let ratio = (slow / quick) as f32;
         is_near(
             road.least(decided, |a| (a, a * ratio)),
-            quick / of_quick.hypot(of_slow),
+            quick / (of_quick * of_quick + of_slow * of_slow).sqrt(),
             "both",
         );
         // Cornering is held for as long as either band is above 0.6 of its bound.

@@ -24,6 +24,11 @@ impl LowPass {
         }
     }
 
+    /// Lag of which each tick takes over this part of the difference, above 0 and below 1.
+    pub const fn of_part(alpha: f32) -> Self {
+        Self { alpha }
+    }
+
     /// Lag with a corner frequency, Hz, above 0.
     pub fn from_corner_hz(corner_hz: f32) -> Self {
         Self::from_time_constant_s(time_constant_s(corner_hz))

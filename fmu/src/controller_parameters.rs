@@ -22,7 +22,7 @@ const STRATEGIES: [Word; 6] = [
     ),
     (
         "predictive",
-        "as road-and-cornering, but a forecast sets the rear dampers on a very rough road",
+        "as road-and-cornering, but a forecast sets the rear dampers where the body heaves",
     ),
 ];
 

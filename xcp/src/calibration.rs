@@ -95,14 +95,14 @@ const ROWS: [Row; COUNT] = [
         "Running RMS of the vertical acceleration at which a rough road begins to count as smooth"
     ),
     parameter!(
-        strategy.road_and_cornering.very_rough_m_s2.begin,
+        strategy.road_and_cornering.heave_m_s2.begin,
         "m/s2",
-        "Running RMS of the vertical acceleration at which damper 1 begins to be high"
+        "Running RMS of the heave at which damper 1 begins to be high"
     ),
     end_of!(
-        strategy.road_and_cornering.very_rough_m_s2,
+        strategy.road_and_cornering.heave_m_s2,
         "m/s2",
-        "Running RMS of the vertical acceleration at which damper 1 is low again"
+        "Running RMS of the heave at which damper 1 is low again"
     ),
     parameter!(
         strategy.road_and_cornering.cornering.floor_m_s2,

@@ -10,7 +10,7 @@
 //! | `always-stiff` | stiff | high |
 //! | `road-and-cornering` | soft on a rough road, stiff on a smooth one and in bends | by the road; high where the springs are stiff |
 //! | `road-and-dampers` | the same | on a rough road the damper policy |
-//! | `predictive` | the same | on a very rough road a forecast sets the rear ones |
+//! | `predictive` | the same | on a road on which the body heaves a forecast sets the rear ones |
 //! | `ride-handling` | soft in ride mode, stiff in handling mode or under the roll-over guard | ride mode: the damper policy; else high |
 //!
 //! A new strategy is a file here with a type that implements [`Decide`], and one line in the list at the end of this

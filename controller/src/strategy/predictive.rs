@@ -1,11 +1,11 @@
-//! The default strategy with rear dampers that are predicted on very rough roads: the front wheels have met the road that the rear ones
+//! The default strategy with rear dampers that are predicted on roads on which the body heaves: the front wheels have met the road that the rear ones
 //! will meet, so that there is something to predict.
 //!
 //! | | springs | front dampers | rear dampers |
 //! |---|---|---|---|
 //! | smooth road, or cornering | stiff | high | high |
 //! | rough road | soft | low | low |
-//! | very rough road | soft | damper 1 high, damper 2 low | the best of three levels on either side, by a forecast |
+//! | rough road on which the body heaves | soft | damper 1 high, damper 2 low | the best of three levels on either side, by a forecast |
 //!
 //! Roads, bends and springs are [`super::road_and_cornering`]'s: a spring valve rests for 0.5 s after a change, which is beyond any forecast.
 //! The levels are both bypass valves open, valve 1 closed, and both closed. Every 20 ms, for each corner and level, the force of the strut
@@ -56,7 +56,7 @@ use crate::wheelbase::HISTORY;
 const DECISION_TICKS: u8 = 4;
 /// Ticks for which a corner keeps its valves after a change, as `dwell` would.
 const HOLD_TICKS: u8 = ticks(100) as u8;
-/// Level at which the default strategy holds all dampers on a very rough road: valve 1 closed.
+/// Level at which the default strategy holds all dampers where the body heaves: valve 1 closed.
 const FIRM: u8 = 1;
 /// Distances of the seats from the centre of gravity to the side and along, m: RMS of both, vehicle preset.
 const SEATS_M: (f32, f32) = (0.4, 0.68);
@@ -182,7 +182,7 @@ impl Decide for Predictive {
         self.observe(state, estimate, trusted);
         let firm = valves(FIRM);
         if demand.valves != ValveCommand::from_corners(Corners::splat(firm)) {
-            // What the forecast begins with when the road becomes very rough.
+            // What the forecast begins with when the body begins to heave.
             (state.level, state.before) = (Corners::splat(FIRM), Corners::splat(FIRM));
             state.held = Corners::splat(HOLD_TICKS);
             return demand;

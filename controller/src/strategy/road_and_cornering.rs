@@ -4,29 +4,37 @@
 //! |---|---|---|
 //! | smooth road, or cornering | stiff | high |
 //! | rough road | soft | low |
-//! | very rough road | soft | damper 1 high, damper 2 low |
+//! | rough road on which the body heaves | soft | damper 1 high, damper 2 low |
 //!
 //! On a smooth road nothing has to be decided in time, because the vehicle is stiff already. On a rough one it becomes stiff as
 //! soon as the lateral acceleration stands out of what the road does ([`super::parts::cornering`]), and at once: a lean that the closing
 //! springs trap is smaller than the one that a later closing would find. It stays so while the gas says that it leans
 //! (`parts::load_transfer`). How rough the road is is told by the running RMS of the body's vertical acceleration, which is not
 //! judged while the vehicle corners, and does not begin to count as rough while the lateral acceleration has the greater RMS: a bend
-//! that is not recognised, on a vehicle whose sensors are off, must not open the springs. Which damper level is best on which road is
-//! measured in `docs/controller.md`.
+//! that is not recognised, on a vehicle whose sensors are off, must not open the springs.
+//!
+//! High damping quietens a body that heaves on its springs, and passes on what shakes the wheels. So damper 1 is set by the heave alone, the
+//! vertical acceleration below 5 Hz: `docs/controller.md` has the measurement.
 
 use oleo_interface::{Corners, StrutValves};
 
 use super::demand::{Decide, Demand, Urgency};
 use super::parts::{cornering, load_transfer, rollover_guard};
 use crate::estimate::Estimate;
+use crate::filter::LowPass;
 use crate::plausibility::Trusted;
 use crate::range::{ConfigurationError, Hysteresis};
 use crate::timing::ticks;
 use crate::valves::ValveCommand;
 use crate::vehicle::VehicleDescription;
 
-/// Shortest time that the road counts as rough, or as smooth.
-const ROAD_DWELL_TICKS: u16 = ticks(1_000);
+/// What passes of a vertical acceleration as heave: what is below 5 Hz, looked at every 20 ms. Constants, because code that computes them
+/// has no place on the board.
+const HEAVE: LowPass = LowPass::of_part(0.466_511_9);
+/// Memory of the running RMS of the heave: 0.5 s, half a swing of the body on soft springs.
+const HEAVE_MEMORY: LowPass = LowPass::of_part(0.039_210_565);
+/// Shortest time that the road counts as rough, or as smooth: looks in 1 s.
+const ROAD_DWELL_LOOKS: u16 = ticks(1_000) / load_transfer::TICKS as u16;
 
 /// Thresholds. See [`strategy::Tuning`](super::Tuning) for an example.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,9 +44,8 @@ pub struct Tuning {
     /// Running RMS of the vertical acceleration at which a smooth road begins to count as rough (`begin`) and at which a rough
     /// one begins to count as smooth (`end`), m/s2, 0.01 to 10. The first is felt with stiff springs, the second with soft.
     pub rough_m_s2: Hysteresis,
-    /// Running RMS of the vertical acceleration at which damper 1 begins to be high (`begin`), and low again (`end`), m/s2,
-    /// 0.01 to 20.
-    pub very_rough_m_s2: Hysteresis,
+    /// Running RMS of the heave at which damper 1 begins to be high (`begin`), and low again (`end`), m/s2, 0.01 to 20.
+    pub heave_m_s2: Hysteresis,
     /// When the roll-over guard acts.
     pub rollover_guard: rollover_guard::Tuning,
 }
@@ -48,7 +55,7 @@ impl Default for Tuning {
         Self {
             cornering: cornering::Tuning::default(),
             rough_m_s2: Hysteresis { begin: 0.25, end: 0.06 },
-            very_rough_m_s2: Hysteresis { begin: 1.3, end: 1.0 },
+            heave_m_s2: Hysteresis { begin: 1.0, end: 0.7 }, // measured: docs/controller.md
             rollover_guard: rollover_guard::Tuning::default(),
         }
     }
@@ -60,7 +67,7 @@ pub struct RoadAndCornering {
     cornering: cornering::Parameters,
     load_transfer: load_transfer::Parameters,
     rough_2: Hysteresis,
-    very_rough_2: Hysteresis,
+    heave_2: Hysteresis,
     guard: rollover_guard::Tuning,
 }
 
@@ -72,10 +79,26 @@ pub struct State {
     load_transfer: load_transfer::State,
     corners: bool,
     rough: bool,
-    very_rough: bool,
-    /// Ticks before the road may be judged again.
+    heaves: bool,
+    /// Vertical acceleration below 5 Hz, m/s2, and its running mean square.
+    heave_m_s2: f32,
+    heave_mean_square: f32,
+    /// Looks before the road may be judged again.
     dwell: u16,
     guard: rollover_guard::State,
+}
+
+#[cfg(all(test, feature = "comparison"))]
+impl State {
+    /// On a rough road on which the body heaves so much that it does for three seconds more, whatever the estimate says.
+    pub(super) fn heaving() -> Self {
+        Self {
+            rough: true,
+            heaves: true,
+            heave_mean_square: 1_000.0,
+            ..RoadAndCornering::INITIAL
+        }
+    }
 }
 
 impl Decide for RoadAndCornering {
@@ -86,7 +109,9 @@ impl Decide for RoadAndCornering {
         load_transfer: load_transfer::State::INITIAL,
         corners: false,
         rough: false,
-        very_rough: false,
+        heaves: false,
+        heave_m_s2: 0.0,
+        heave_mean_square: 0.0,
         dwell: 0,
         guard: rollover_guard::State::INITIAL,
     };
@@ -97,8 +122,8 @@ impl Decide for RoadAndCornering {
             .rough_m_s2
             .check("tuning.strategy.road_and_cornering.rough_m_s2", 0.01, 10.0)?;
         tuning
-            .very_rough_m_s2
-            .check("tuning.strategy.road_and_cornering.very_rough_m_s2", 0.01, 20.0)?;
+            .heave_m_s2
+            .check("tuning.strategy.road_and_cornering.heave_m_s2", 0.01, 20.0)?;
         tuning.rollover_guard.check([
             "tuning.strategy.road_and_cornering.rollover_guard.roll_rad",
             "tuning.strategy.road_and_cornering.rollover_guard.lateral_m_s2",
@@ -110,7 +135,7 @@ impl Decide for RoadAndCornering {
             cornering: cornering::Parameters::new(&tuning.cornering),
             load_transfer: load_transfer::Parameters::new(vehicle),
             rough_2: tuning.rough_m_s2.squared(),
-            very_rough_2: tuning.very_rough_m_s2.squared(),
+            heave_2: tuning.heave_m_s2.squared(),
             guard: tuning.rollover_guard,
         }
     }
@@ -125,13 +150,13 @@ impl Decide for RoadAndCornering {
         );
         let corners = state.cornering.step(&self.cornering, estimate, leans);
         state.corners = corners;
-        if !corners {
-            self.judge_road(state, estimate);
+        if state.load_transfer.has_looked() {
+            self.look_at_road(state, estimate);
         }
         let valves = if corners || rollover_guard || !state.rough {
             ValveCommand::SAFE
         } else {
-            ValveCommand::from_corners(Corners::splat(StrutValves::new(!state.very_rough, true, true)))
+            ValveCommand::from_corners(Corners::splat(StrutValves::new(!state.heaves, true, true)))
         };
         // At once, whatever lean that traps.
         let urgency = if rollover_guard || corners {
@@ -149,8 +174,14 @@ impl Decide for RoadAndCornering {
 }
 
 impl RoadAndCornering {
-    /// Whether the road is rough or very rough, by what the body feels of it.
-    fn judge_road(&self, state: &mut State, estimate: &Estimate) {
+    /// Whether the road is rough, and whether the body heaves on it, unless the vehicle corners. In each fourth tick: the busiest one has no
+    /// time left, and a road changes slowly.
+    fn look_at_road(&self, state: &mut State, estimate: &Estimate) {
+        let heave_m_s2 = HEAVE.step(&mut state.heave_m_s2, estimate.vertical_acceleration_m_s2);
+        HEAVE_MEMORY.step(&mut state.heave_mean_square, heave_m_s2 * heave_m_s2);
+        if state.corners {
+            return;
+        }
         let (vertical_mean_square, lateral_mean_square) = (estimate.vertical_mean_square, estimate.lateral_mean_square);
         state.dwell = state.dwell.saturating_sub(1);
         let changes = if state.rough {
@@ -160,14 +191,14 @@ impl RoadAndCornering {
         };
         if changes && state.dwell == 0 {
             state.rough = !state.rough;
-            state.dwell = ROAD_DWELL_TICKS;
+            state.dwell = ROAD_DWELL_LOOKS;
         }
-        let bound = if state.very_rough {
-            self.very_rough_2.end
+        let bound = if state.heaves {
+            self.heave_2.end
         } else {
-            self.very_rough_2.begin
+            self.heave_2.begin
         };
-        state.very_rough = vertical_mean_square > bound;
+        state.heaves = state.heave_mean_square > bound;
     }
 }
 
@@ -183,8 +214,9 @@ mod tests {
             lateral_mean_square: lateral_rms * lateral_rms,
             ..Estimate::default()
         };
-        let demand = strategy.step(&mut { RoadAndCornering::INITIAL }, &estimate, &Trusted::default());
-        demand.valves != ValveCommand::SAFE
+        let mut state = RoadAndCornering::INITIAL;
+        let demands = [(); 2].map(|()| strategy.step(&mut state, &estimate, &Trusted::default()));
+        demands.map(|demand| demand.valves != ValveCommand::SAFE) == [false, true]
     }
 
     #[test]
@@ -203,21 +235,24 @@ mod tests {
             vertical_mean_square: 0.3,
             ..Estimate::default()
         };
-        strategy.step(&mut state, &rough, &Trusted::default());
+        for _ in 0..2 {
+            strategy.step(&mut state, &rough, &Trusted::default());
+        }
         rough.lateral_mean_square = 2.0;
-        for _ in 0..2 * ROAD_DWELL_TICKS {
+        for _ in 0..2 * ticks(1_000) {
             let demand = strategy.step(&mut state, &rough, &Trusted::default());
             assert_ne!(demand.valves, ValveCommand::SAFE);
         }
     }
 
-    /// A strategy that has known a road of this vertical RMS for ten seconds, m/s2, and what it then wants with a lateral acceleration and
-    /// a lean, m/s2 and rad.
-    fn on(vertical_rms: f32, lateral_m_s2: f32, roll_rad: f32) -> Demand {
+    /// A strategy that has known a road of this vertical RMS for ten seconds, m/s2, on which the body heaves with this RMS, m/s2, and what
+    /// it then wants with a lateral acceleration and a lean, m/s2 and rad.
+    fn on(vertical_rms: f32, heave_rms: f32, lateral_m_s2: f32, roll_rad: f32) -> Demand {
         let strategy = RoadAndCornering::new(&VehicleDescription::default(), &Tuning::default());
         let mut state = RoadAndCornering::INITIAL;
         let mut estimate = Estimate {
             vertical_mean_square: vertical_rms * vertical_rms,
+            vertical_acceleration_m_s2: heave_rms,
             ..Estimate::default()
         };
         for _ in 0..2_000 {
@@ -235,21 +270,26 @@ mod tests {
     fn what_each_road_gets() {
         let soft = ValveCommand::SOFT;
         let firm = ValveCommand::from_corners(Corners::splat(StrutValves::new(false, true, true)));
-        for (vertical_rms, valves) in [(0.1, ValveCommand::SAFE), (0.5, soft), (1.2, soft), (1.4, firm)] {
-            let demand = on(vertical_rms, 0.0, 0.0);
+        for (vertical_rms, heave_rms, valves) in [
+            (0.1, 0.1, ValveCommand::SAFE),
+            (0.5, 0.5, soft),
+            (0.5, 1.01, firm),
+            (2.0, 0.99, soft),
+        ] {
+            let demand = on(vertical_rms, heave_rms, 0.0, 0.0);
             assert_eq!(
                 (demand.valves, demand.urgency, demand.handling),
                 (valves, Urgency::Comfort, false),
                 "{vertical_rms} m/s2"
             );
             // A bend closes all valves at once on every road.
-            let demand = on(vertical_rms, 3.5, 0.0);
+            let demand = on(vertical_rms, heave_rms, 3.5, 0.0);
             assert_eq!(
                 (demand.valves, demand.urgency, demand.handling, demand.rollover_guard),
                 (ValveCommand::SAFE, Urgency::Emergency, true, false)
             );
             // And so does the guard, in the same bend.
-            let demand = on(vertical_rms, 3.5, 0.1);
+            let demand = on(vertical_rms, heave_rms, 3.5, 0.1);
             assert_eq!(
                 (demand.valves, demand.urgency, demand.rollover_guard),
                 (ValveCommand::SAFE, Urgency::Emergency, true)
@@ -257,33 +297,81 @@ mod tests {
         }
     }
 
-    /// With hysteresis: rough from 0.25 and smooth below 0.06 m/s2; very rough from 1.3 and no longer below 1.0 m/s2.
+    /// With hysteresis: rough from 0.25 and smooth below 0.06 m/s2; damper 1 high from a heave of 1.0 and low below 0.7 m/s2.
     #[test]
     fn a_road_stays_what_it_is_between_the_thresholds() {
         let strategy = RoadAndCornering::new(&VehicleDescription::default(), &Tuning::default());
         let mut state = RoadAndCornering::INITIAL;
-        for (vertical_rms, rough, very_rough) in [
-            (0.2, false, false),
-            (0.3, true, false),
-            (0.07, true, false),
-            (1.2, true, false),
-            (1.4, true, true),
-            (1.1, true, true),
-            (0.9, true, false),
-            (0.05, false, false),
+        for (vertical_rms, heave_rms, rough, heaves) in [
+            (0.2, 0.0, false, false),
+            (0.3, 0.0, true, false),
+            (0.07, 0.9, true, false),
+            (2.0, 0.98, true, false),
+            (1.0, 1.02, true, true),
+            (1.0, 0.72, true, true),
+            (1.0, 0.68, true, false),
+            (0.05, 0.0, false, false),
         ] {
             let estimate = Estimate {
                 vertical_mean_square: vertical_rms * vertical_rms,
+                vertical_acceleration_m_s2: heave_rms,
                 ..Estimate::default()
             };
-            for _ in 0..=2 * ROAD_DWELL_TICKS {
+            for _ in 0..=4 * ticks(1_000) {
                 strategy.step(&mut state, &estimate, &Trusted::default());
             }
             assert_eq!(
-                (state.rough, state.very_rough),
-                (rough, very_rough),
-                "{vertical_rms} m/s2"
+                (state.rough, state.heaves),
+                (rough, heaves),
+                "{vertical_rms} m/s2, heave {heave_rms} m/s2"
             );
         }
+    }
+
+    /// RMS of the heave after ten seconds of a sine of the vertical acceleration, m/s2 and Hz, the mean of its last second.
+    fn heave_rms(rms_m_s2: f32, frequency_hz: f32) -> f32 {
+        let strategy = RoadAndCornering::new(&VehicleDescription::default(), &Tuning::default());
+        let mut state = RoadAndCornering::INITIAL;
+        let mut sum = 0.0;
+        for tick in 0..2_000_u16 {
+            let phase = 2.0 * core::f32::consts::PI * frequency_hz * f32::from(tick) * oleo_interface::tick::TICK_S_F32;
+            let estimate = Estimate {
+                vertical_acceleration_m_s2: core::f32::consts::SQRT_2 * rms_m_s2 * libm::sinf(phase),
+                ..Estimate::default()
+            };
+            strategy.step(&mut state, &estimate, &Trusted::default());
+            sum += if tick >= 1_800 { state.heave_mean_square } else { 0.0 };
+        }
+        libm::sqrtf(sum / 200.0)
+    }
+
+    #[test]
+    fn the_constants_are_those_of_their_units() {
+        let look_s = f32::from(load_transfer::TICKS) * oleo_interface::tick::TICK_S_F32;
+        assert_eq!(HEAVE, LowPass::sampled(look_s, 0.1 / core::f32::consts::PI));
+        assert_eq!(HEAVE_MEMORY, LowPass::sampled(look_s, 0.5));
+    }
+
+    /// With `p` the part that is taken over every `T`, the lag passes `p / |1 - (1 - p) exp(-2 pi i f T)|`.
+    #[test]
+    fn heave_is_what_is_below_five_hertz() {
+        for (frequency_hz, passed) in [(1.0, 0.982), (5.0, 0.726), (12.0, 0.423)] {
+            let found = heave_rms(2.0, frequency_hz) / 2.0;
+            assert!((found / passed - 1.0).abs() < 0.04, "{frequency_hz} Hz: {found}");
+        }
+    }
+
+    /// The running mean square forgets 63 % in its memory of half a second.
+    #[test]
+    fn heave_is_forgotten_in_half_a_second() {
+        let strategy = RoadAndCornering::new(&VehicleDescription::default(), &Tuning::default());
+        let mut state = State {
+            heave_mean_square: 1.0,
+            ..RoadAndCornering::INITIAL
+        };
+        for _ in 0..ticks(500) {
+            strategy.step(&mut state, &Estimate::default(), &Trusted::default());
+        }
+        assert!((state.heave_mean_square - 0.368).abs() < 1e-3);
     }
 }

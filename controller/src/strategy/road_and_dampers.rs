@@ -7,7 +7,7 @@
 //!
 //! Springs, urgency and the decision on bends are those of [`super::road_and_cornering`]. On a rough road, where that strategy holds the
 //! dampers at one setting, a policy switches them at each corner ([`super::parts::semi_active`]). With `low` nothing but the setting for
-//! very rough roads is missing.
+//! a body that heaves is missing.
 
 use oleo_interface::{Corner, StrutValves, Valve};
 

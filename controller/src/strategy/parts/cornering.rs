@@ -7,15 +7,17 @@
 //!
 //! ```text
 //!   bounds             b_q = max(floor, k_w w_q sqrt(1 + l),      k_q s_q sqrt(1 + 0.01 l^2))
-//!                      b_s = max(floor, k_w w_s sqrt(1 + l / 2),  k_s s_s sqrt(1 + 0.002 l^2))
-//!   measure            m   = (a_q / b_q)^2 + (a_s / b_s)^2            if both are to the same side
-//!                          = max((a_q / b_q)^2, (a_s / b_s)^2) / 2    if not
+//!                      b_s = max(floor, k_w w_s sqrt(1 + l / 2),  k_s s_s sqrt(1 + 0.0004 l^2))
+//!   measure            m   = e_q (a_q / b_q)^2 + e_s (a_s / b_s)^2            if both are to the same side
+//!                          = max(e_q (a_q / b_q)^2, e_s (a_s / b_s)^2) / 2    if not
+//!                            e_q = 1.2, e_s = 0.6
 //!   corners            m > 1:    for 0.4 s at least
 //!                      m > 1.6^2: until |a_q| < 0.6 b_q and |a_s| < 0.6 b_s, and the gas carries both sides alike
 //!                      (`load_transfer`), for 1.5 s in all
 //! ```
 //!
-//! The errors of the two bands are only weakly correlated, so that both together tell a bend sooner than each alone. A lane change
+//! The errors of the two bands are only weakly correlated, so that both together tell a bend sooner than each alone. The quick band
+//! counts for more, because it is the first to know of a bend: where the slow one leads, a road has swayed the vehicle. A lane change
 //! crosses zero in between, hence 1.5 s. It also exceeds the bounds by far soon after its beginning, which a false decision hardly
 //! ever does, and so a false one costs little ride. docs/controller.md says where the multiples come
 //! from.
@@ -32,10 +34,14 @@ const HOLD_TICKS: u16 = ticks(1_500);
 const WEAK_HOLD_TICKS: u16 = ticks(400);
 /// Measure from which a decision is beyond doubt.
 const STRONG: f32 = 1.6 * 1.6;
+/// Shares of the quick and of the slow band in the measure.
+const QUICK_SHARE: f32 = 1.2;
+const SLOW_SHARE: f32 = 0.6;
 /// Part of the measure that counts where the two bands point to opposite sides.
 const OPPOSED: f32 = 0.5;
-/// Time before the road is known well enough to tell a bend from it.
-const LEARNING_TICKS: u16 = ticks(2_000);
+/// Time before the road is known well enough to tell a bend from it. Uneven load is learnt as long as this (`estimate`), and is a bend
+/// to the estimate until it is known.
+const LEARNING_TICKS: u16 = ticks(2_500);
 /// Memory of the witness, s.
 const WITNESS_MEMORY_S: f32 = 2.0;
 /// Memory of the estimate's own running RMS, ticks: it grows to this from the start, and again from the tick in which the estimate
@@ -49,7 +55,7 @@ const SLOWER_IN_BENDS: f32 = 4.0;
 const LARGEST_OVER_OWN: f32 = 2.2;
 /// How fast the squares of the own multiples, of the quick and of the slow estimate, grow with the fourth power of the witness over the
 /// lift-off value: where wheels leave the ground, peaks are higher over their RMS.
-const HEAVIER_TAILS: [f32; 2] = [0.01, 0.002];
+const HEAVIER_TAILS: [f32; 2] = [0.01, 0.0004];
 /// How much of the growth of the quick error from lift-off on the slow error has.
 const SLOW_LIFT_OFF: f32 = 0.5;
 /// Least value that enters as it is, over the square of the witness's bound: from zero the mean must be able to grow.
@@ -256,10 +262,11 @@ impl State {
         let Bands { quick: a, slow: b } = lateral.acceleration_m_s2;
         // Multiplied by both bounds, so that nothing is divided.
         let (quick, slow, one) = (quick * slow_bound, slow * quick_bound, quick_bound * slow_bound);
+        let (of_quick, of_slow) = (QUICK_SHARE * quick, SLOW_SHARE * slow);
         let measure = if a * b > 0.0 {
-            quick + slow
+            of_quick + of_slow
         } else {
-            OPPOSED * at_least(quick, slow)
+            OPPOSED * at_least(of_quick, of_slow)
         };
         if measure > one {
             let hold = if measure > STRONG * one {

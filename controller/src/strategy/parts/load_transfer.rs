@@ -27,7 +27,7 @@ use crate::filter::LowPass;
 use crate::vehicle::VehicleDescription;
 
 /// Ticks from one look at the difference to the next: it changes only when all corners have had their turn.
-const TICKS: u8 = 4;
+pub(crate) const TICKS: u8 = 4;
 /// Lag of the difference, s: what the road does to it must not count.
 const LAG_S: f32 = 0.5;
 /// Time constant with which the difference is learnt as the usual one, s, outside of bends.
@@ -96,6 +96,11 @@ impl State {
         }
         self.look(c, struts_m + c.bars_m_rad * roll_rad, corners);
         self.leans
+    }
+
+    /// Whether it has looked in this tick, as it does in each fourth one: a tick with time for what need not be done in every one.
+    pub fn has_looked(&self) -> bool {
+        self.tick == 1
     }
 
     #[inline(never)]

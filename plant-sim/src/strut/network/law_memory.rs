@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::state::State;
 use crate::lanes::Number;
 
 /// The memories of the laws of both paths. Where no law has one they stay as they are at rest.
@@ -26,10 +25,11 @@ impl LawMemory {
         }
     }
 
-    /// Several side by side, `like` any number of their kind.
+    /// Those of several things side by side, `like` any number of their kind.
     #[inline(always)]
-    pub fn side_by_side<N: Number>(each: &[&State], like: N) -> LawMemory<N> {
-        let both = |of: fn(&Self) -> [f64; 2]| [0, 1].map(|path| like.gather_from(each, |state| of(&state.laws)[path]));
+    pub fn side_by_side<T, N: Number>(each: &[&T], memory: impl Fn(&T) -> &Self + Copy, like: N) -> LawMemory<N> {
+        let both =
+            |of: fn(&Self) -> [f64; 2]| [0, 1].map(|path| like.gather_from(each, |thing| of(memory(thing))[path]));
         LawMemory {
             mean_volume: both(|memory| memory.mean_volume),
             gas_energy: both(|memory| memory.gas_energy),

@@ -51,7 +51,7 @@ impl State {
                 like.gather_from(each, |s| s.heat_j[0]),
                 like.gather_from(each, |s| s.heat_j[1]),
             ],
-            laws: LawMemory::side_by_side(each, like),
+            laws: LawMemory::side_by_side(each, |state| &state.laws, like),
         }
     }
 }

@@ -119,6 +119,8 @@ fn a_recording_is_held_against_models() {
             "hil",
             "--road",
             "iso-c",
+            "--seed",
+            "2",
             "--duration-s",
             "4",
             "--record",

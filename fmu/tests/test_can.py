@@ -304,7 +304,7 @@ class Can(unittest.TestCase):
     def test_on_the_bus_of_the_vehicle_it_decides_as_in_our_own_loop(self):
         """The vehicle is an FMU too; its frames are written by cantools."""
         ticks = 1200
-        drive = ["--road", "belgian", "--speed-km-h", "50"]
+        drive = ["--road", "belgian", "--speed-km-h", "40"]
         with contextlib.ExitStack() as stack:
             vehicles = Fmu(self.folder, "vehicle", 2, *drive)
             controllers = Fmu(self.folder, "controller", 2)

@@ -13,6 +13,8 @@ use crate::lanes::{LANES, Number};
 
 /// `1 - 1/sqrt 2`.
 pub(super) const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
+/// Shortest time within which a step supplies what the steps before it have left, s.
+const LEAST_CATCH_UP_S: f64 = 1e-4;
 
 /// What of it does not change while a strut works.
 #[derive(Debug, Clone)]
@@ -240,8 +242,9 @@ impl<N: Number> Hydraulics<N> {
     fn stage_ends(&self, flowing: &Flowing<N>, step: &Step<N>) -> [StageEnd<N>; 2] {
         let h = step.duration_s;
         let hg = h * GAMMA;
-        // What the speeds have not supplied so far is supplied evenly over this step.
-        let owed_m_s = (step.from_m - flowing.supplied_m) / h;
+        // What the speeds have not supplied so far is supplied evenly over this step, but not within an instant: a micrometre within a step of
+        // less than a microsecond, which ends at a kink of a valve's movement, would be a blow.
+        let owed_m_s = (step.from_m - flowing.supplied_m) / h.at_least(h.of(LEAST_CATCH_UP_S));
         // The mount bends under what the force exceeds the static one.
         let over_pa = flowing.state.p1_pa - self.network.chamber.static_pa;
         let over_n = step.friction_n + self.network.chamber.area_m2 * over_pa;

@@ -140,7 +140,7 @@ impl Candidate {
 
     /// Whether the two cannot be in one model. This holds for members of one group, for two faults of one sensor, which can
     /// replace each other (a short lag is nearly a skew), and for two laws without a name at one place, where two tables take the shape of a third.
-    /// So do a fault of a sensor and a law of the same sensor.
+    /// It holds for a fault of a sensor and a law of the same sensor, too: their sum is a third law.
     #[must_use]
     pub fn excludes(&self, other: &Self) -> bool {
         (self.group.is_some() && self.group == other.group)

@@ -2,7 +2,7 @@
 
 use super::argument::LawArgument;
 use super::course::Course;
-use super::law::{UnlistedLaw, law_at, remembered};
+use super::law::{Remembered, UnlistedLaw, law_at};
 use super::place::LawPlace;
 use crate::strut::characteristic::Characteristic;
 use crate::strut::motion::Motion;
@@ -14,7 +14,7 @@ pub(in crate::strut) struct InstrumentLaws {
     reading: Option<Characteristic>,
     time: Course,
     rate: Option<Characteristic>,
-    change: Option<(Characteristic, f64)>,
+    change: Option<Remembered>,
 }
 
 fn value(law: Option<&Characteristic>, argument: f64) -> f64 {
@@ -36,7 +36,7 @@ impl InstrumentLaws {
             reading: at(LawArgument::Reading),
             time: Course::at(laws, LawPlace::instrument(column)?),
             rate: at(LawArgument::ReadingRate),
-            change: remembered(laws, LawPlace::instrument(column)?, LawArgument::ReadingChange),
+            change: Remembered::at(laws, LawPlace::instrument(column)?, LawArgument::ReadingChange),
         };
         let is_none = own.reading.is_none() && own.time.is_none() && own.rate.is_none() && own.change.is_none();
         (!is_none).then_some(own)
@@ -49,8 +49,8 @@ impl InstrumentLaws {
         let keeps_truth = self.rate.is_some() || self.change.is_some();
         let truth = if keeps_truth { signal.to_vec() } else { vec![] };
         let mut mean = truth.clone();
-        if let Some((_, time_constant_s)) = &self.change {
-            lag::record(*time_constant_s, times_s, &mut mean);
+        if let Some(law) = &self.change {
+            lag::record(law.time_constant_s, times_s, &mut mean);
         }
         for (k, (reading, t)) in signal.iter_mut().zip(times_s).enumerate() {
             let mut added = value(self.reading.as_ref(), *reading) + self.time.sum(t - begin_s);
@@ -60,8 +60,8 @@ impl InstrumentLaws {
                     added += law.value((truth[b] - truth[a]) / (times_s[b] - times_s[a]));
                 }
             }
-            if let Some((law, _)) = &self.change {
-                added += law.value(truth[k] - mean[k]);
+            if let Some(law) = &self.change {
+                added += law.table.value(truth[k] - mean[k]);
             }
             *reading += added;
         }

@@ -163,10 +163,32 @@ pub(in crate::strut) fn law_at(laws: &[UnlistedLaw], place: LawPlace, over: LawA
         .map(UnlistedLaw::characteristic)
 }
 
-/// The table of the law with a memory at a place over a quantity, and its time constant, s, if there is one.
-pub(super) fn remembered(laws: &[UnlistedLaw], place: LawPlace, over: LawArgument) -> Option<(Characteristic, f64)> {
-    let law = laws.iter().find(|law| law.place == place && law.depends_on == over)?;
-    Some((law.characteristic(), law.time_constant_s?))
+/// A law with a memory as the solver reads it.
+#[derive(Debug, Clone)]
+pub(super) struct Remembered {
+    pub table: Characteristic,
+    pub time_constant_s: f64,
+}
+
+impl Remembered {
+    /// A law that has a time constant.
+    pub fn of(law: &UnlistedLaw) -> Option<Self> {
+        Some(Self {
+            table: law.characteristic(),
+            time_constant_s: law.time_constant_s?,
+        })
+    }
+
+    /// The law at a place over a quantity, if there is one.
+    pub fn at(laws: &[UnlistedLaw], place: LawPlace, over: LawArgument) -> Option<Self> {
+        (laws.iter().find(|law| law.place == place && law.depends_on == over)).and_then(Self::of)
+    }
+
+    /// What an implicit step of a duration (s) leaves of what is remembered, 0 to 1.
+    #[inline]
+    pub fn left(&self, duration_s: f64) -> f64 {
+        1.0 / (1.0 + duration_s / self.time_constant_s)
+    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::argument::LawArgument;
 use super::course::Course;
-use super::law::{UnlistedLaw, law_at};
+use super::law::{Remembered, UnlistedLaw, law_at};
 use super::place::LawPlace;
 use crate::strut::characteristic::Characteristic;
 use crate::strut::flow_path::FlowPath;
@@ -29,40 +29,12 @@ pub(in crate::strut) struct PathLaws {
     valve_in_time: Course,
     gas: Option<Characteristic>,
     gas_in_time: Course,
-    gas_memory: Option<GasMemory>,
-    gas_energy: Option<EnergyLaw>,
+    gas_memory: Option<Remembered>,
+    gas_energy: Option<Remembered>,
     /// Static absolute pressure of the gas times its static volume, J.
     static_energy_j: f64,
-    pack_energy: Option<EnergyLaw>,
+    pack_energy: Option<Remembered>,
     held_back: Option<Characteristic>,
-}
-
-/// A factor on the gas pressure over what has changed of the gas volume lately.
-#[derive(Debug, Clone)]
-struct GasMemory {
-    factor: Characteristic,
-    time_constant_s: f64,
-}
-
-/// A factor over an energy that is held for a while.
-#[derive(Debug, Clone)]
-struct EnergyLaw {
-    factor: Characteristic,
-    time_constant_s: f64,
-}
-
-impl EnergyLaw {
-    fn of(law: &UnlistedLaw) -> Self {
-        Self {
-            factor: law.characteristic(),
-            time_constant_s: law.time_constant_s.unwrap_or(f64::INFINITY),
-        }
-    }
-
-    /// What is left of an energy after a while (s). One implicit step.
-    fn left(&self, duration_s: f64) -> f64 {
-        1.0 / (1.0 + duration_s / self.time_constant_s)
-    }
 }
 
 /// What the laws of a gas are asked about: a trial of a stage.
@@ -109,14 +81,9 @@ impl PathLaws {
             valve_in_time: valve_in_time(laws, path.pick(LawPlace::Valve1, LawPlace::Valve2)),
             gas: gas(laws, path, LawArgument::RelativeVolume).map(UnlistedLaw::characteristic),
             gas_in_time: Course::at_first_of(laws, &[LawPlace::accumulator(path), LawPlace::Accumulators]),
-            gas_memory: gas(laws, path, LawArgument::VolumeChange).map(|law| GasMemory {
-                factor: law.characteristic(),
-                time_constant_s: law.time_constant_s.unwrap_or(f64::INFINITY),
-            }),
-            gas_energy: gas(laws, path, LawArgument::RelativeEnergy).map(EnergyLaw::of),
-            pack_energy: (laws.iter())
-                .find(|law| law.place == LawPlace::pack(path) && law.depends_on == LawArgument::Energy)
-                .map(EnergyLaw::of),
+            gas_memory: gas(laws, path, LawArgument::VolumeChange).and_then(Remembered::of),
+            gas_energy: gas(laws, path, LawArgument::RelativeEnergy).and_then(Remembered::of),
+            pack_energy: Remembered::at(laws, LawPlace::pack(path), LawArgument::Energy),
             held_back: law_at(laws, LawPlace::piston(path), LawArgument::RelativeVolume),
         }
     }
@@ -163,7 +130,7 @@ impl PathLaws {
     /// What the model's drop of the pack is divided by while its oil holds an energy (J).
     #[inline]
     pub fn weakening_by_energy(&self, energy_j: f64) -> f64 {
-        (self.pack_energy.as_ref()).map_or(1.0, |law| 1.0 / law.factor.value(energy_j).max(LEAST_FACTOR))
+        (self.pack_energy.as_ref()).map_or(1.0, |law| 1.0 / law.table.value(energy_j).max(LEAST_FACTOR))
     }
 
     /// Energy that the pack's oil holds after a power (W) for a while (s), J; none without a law over it.
@@ -181,7 +148,7 @@ impl PathLaws {
         }
         let by =
             |law: Option<&Characteristic>, argument| law.map_or(1.0, |law| law.value(argument).max(LEAST_GAS_FACTOR));
-        let memory = self.gas_memory.as_ref().map(|memory| &memory.factor);
+        let memory = self.gas_memory.as_ref().map(|memory| &memory.table);
         let mut answer = GasLawAnswer {
             factor: by(self.gas.as_ref(), at.relative_volume)
                 * self.gas_in_time.product(at.time_s, LEAST_GAS_FACTOR)
@@ -195,11 +162,11 @@ impl PathLaws {
             let without = at.duration_s * answer.factor * at.pressure_pa / self.static_energy_j * left;
             let (mut by_flow, mut energy) = (without, at.energy);
             for _ in 0..ENERGY_ROUNDS {
-                by_flow = without * by(Some(&law.factor), energy);
+                by_flow = without * by(Some(&law.table), energy);
                 energy = at.energy * left + by_flow * at.flow_m3_s;
             }
             answer.energy = energy;
-            let (factor, slope) = law.factor.at(answer.energy, &mut 0);
+            let (factor, slope) = law.table.at(answer.energy, &mut 0);
             answer.factor_by_flow = answer.factor * slope * by_flow;
             answer.factor *= factor.max(LEAST_GAS_FACTOR);
         }
@@ -209,9 +176,7 @@ impl PathLaws {
     /// What an implicit step of a duration leaves of a departure of the gas volume from its mean, 0 to 1; 0 without a memory.
     #[inline]
     pub fn remembered(&self, duration_s: f64) -> f64 {
-        self.gas_memory
-            .as_ref()
-            .map_or(0.0, |memory| 1.0 / (1.0 + duration_s / memory.time_constant_s))
+        (self.gas_memory.as_ref()).map_or(0.0, |memory| memory.left(duration_s))
     }
 
     /// Pressure that the floating piston holds back at a gas volume over the static one, Pa, if there is such a law.

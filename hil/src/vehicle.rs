@@ -11,7 +11,7 @@ use oleo_interface::Corners;
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::{Drive, Ending, NotFinite, Signals, Track};
 use oleo_plant_sim::strut::{StrutModel, StrutOutput};
-use oleo_plant_sim::vehicle::suspension::StrutElement;
+use oleo_plant_sim::vehicle::StrutElement;
 use oleo_plant_sim::vehicle::{BodyMotion, InertialReading, RideVehicle, Seats, VehicleParameters};
 
 use crate::record::{CourseMotion, Motion, StrutStep, Wheel};

@@ -8,8 +8,8 @@ use oleo_plant_sim::course::{Course, Drive, DriverStyle, LaneChange, Manoeuvre};
 use oleo_plant_sim::handling::HandlingParameters;
 use oleo_plant_sim::road::{Flat, Road, belgian};
 use oleo_plant_sim::strut::{Strut, StrutModel};
+use oleo_plant_sim::vehicle::StrutElement;
 use oleo_plant_sim::vehicle::VehicleParameters;
-use oleo_plant_sim::vehicle::suspension::StrutElement;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let parameters = VehicleParameters::defender110();

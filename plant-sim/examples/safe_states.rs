@@ -13,8 +13,8 @@ use oleo_plant_sim::course::{Course, Drive, DriverStyle, Ending, LaneChange, Man
 use oleo_plant_sim::handling::{HandlingParameters, HandlingVehicle};
 use oleo_plant_sim::road::{Flat, Road, from_name_or_path};
 use oleo_plant_sim::strut::{Strut, StrutModel};
+use oleo_plant_sim::vehicle::StrutElement;
 use oleo_plant_sim::vehicle::VehicleParameters;
-use oleo_plant_sim::vehicle::suspension::StrutElement;
 
 type Failure = Box<dyn std::error::Error>;
 

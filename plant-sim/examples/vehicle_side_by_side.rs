@@ -10,8 +10,9 @@ use oleo_plant_sim::course::{Course, Drive, DriverStyle, Manoeuvre};
 use oleo_plant_sim::handling::HandlingParameters;
 use oleo_plant_sim::road::Flat;
 use oleo_plant_sim::strut::{Strut, StrutModel};
+use oleo_plant_sim::vehicle::StrutElement;
 use oleo_plant_sim::vehicle::VehicleParameters;
-use oleo_plant_sim::vehicle::suspension::{CoilElement, StrutElement, SuspensionElement};
+use oleo_plant_sim::vehicle::suspension::{CoilElement, SuspensionElement};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -218,7 +218,7 @@ mod tests {
     use crate::handling::HandlingModel;
     use crate::road::Flat;
     use crate::strut::Strut;
-    use crate::vehicle::suspension::StrutElement;
+    use crate::vehicle::StrutElement;
     use oleo_interface::StrutValves;
     use std::sync::Arc;
 

@@ -23,3 +23,31 @@ fn a_step_of_an_instant_is_no_blow() {
     let settled = strut.advance_with_speeds(4e-6, 0.0, 0.0, 0.1, SOFT).pressure_pa[0];
     assert!(settled > before[0] && (settled - slow.pressure_pa[0]).abs() < 100.0);
 }
+
+/// The drops of an instant go on at no rate that could be told: a long step that starts from such a prediction, with more oil than the
+/// accumulator holds, must find back to the pressure of its gas.
+#[test]
+fn a_long_step_after_an_instant_finds_the_gas() {
+    let mut model = StrutModel::defender110(7686.0);
+    model.accumulator[0].static_gas_volume_m3 = 1e-4;
+    let stiff = StrutValves::new(true, true, false);
+    let mut strut = Strut::at_rest(&model, stiff).unwrap();
+    let slow = |k: f64| 2.5e-4 * k;
+    for k in 1..=120 {
+        strut.advance_with_speeds(slow(f64::from(k)), 0.005, 0.005, 0.05, stiff);
+    }
+    let before = strut.output().pressure_pa[0];
+    for speed_m_s in [0.01, 0.05, 0.5, -0.05, -0.5] {
+        let mut strut = strut.clone();
+        let turn_m = 0.03 + 4e-6 * speed_m_s;
+        strut.advance_with_speeds(turn_m, speed_m_s, speed_m_s, 4e-6, stiff);
+        for k in 1..=20 {
+            let out = strut.advance_with_speeds(turn_m - slow(f64::from(k)), -0.005, -0.005, 0.05, stiff);
+            assert!(
+                (out.pressure_pa[0] / before - 1.0).abs() < 0.5,
+                "{speed_m_s} m/s, step {k}: {} after {before} Pa",
+                out.pressure_pa[0]
+            );
+        }
+    }
+}

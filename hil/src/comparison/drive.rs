@@ -10,7 +10,8 @@ use oleo_plant_sim::handling::HandlingModel;
 use oleo_plant_sim::road::{self, RoadError};
 use oleo_plant_sim::strut::Strut;
 use oleo_plant_sim::vehicle::RideError;
-use oleo_plant_sim::vehicle::suspension::{CoilElement, StrutElement, SuspensionElement};
+use oleo_plant_sim::vehicle::StrutElement;
+use oleo_plant_sim::vehicle::suspension::{CoilElement, SuspensionElement};
 
 use super::bench::Bench;
 use super::case::DriveCase;

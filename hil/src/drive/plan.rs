@@ -8,7 +8,8 @@ use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::course::{Course, Drive, Run, Sample, Signals, Track};
 use oleo_plant_sim::handling::{HandlingParameters, HandlingVehicle};
 use oleo_plant_sim::road;
-use oleo_plant_sim::vehicle::suspension::{CoilElement, StrutElement, SuspensionElement};
+use oleo_plant_sim::vehicle::StrutElement;
+use oleo_plant_sim::vehicle::suspension::{CoilElement, SuspensionElement};
 use oleo_plant_sim::vehicle::{
     BaselineVehicle, RideModel, RideVehicle, SeatAcceleration, Seats, TemperedStrut, VehicleParameters,
 };

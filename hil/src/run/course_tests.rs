@@ -9,7 +9,7 @@ use oleo_plant_sim::vehicle::Load;
 use super::tests::{hash, run};
 use super::*;
 use crate::scenario;
-use oleo_plant_sim::vehicle::suspension::StrutElement;
+use oleo_plant_sim::vehicle::StrutElement;
 
 /// A lane change after 3 s, with a fault if there is one in the scenario.
 fn lane_change(name: &str) -> Scenario {

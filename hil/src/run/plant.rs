@@ -5,7 +5,7 @@ use oleo_interface::{Axle, Corners};
 use oleo_plant_sim::course::Drive;
 use oleo_plant_sim::road;
 use oleo_plant_sim::strut::StrutModel;
-use oleo_plant_sim::vehicle::suspension::StrutElement;
+use oleo_plant_sim::vehicle::StrutElement;
 use oleo_plant_sim::vehicle::{RideVehicle, VehicleParameters};
 
 use super::error::RunError;

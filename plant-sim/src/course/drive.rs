@@ -40,7 +40,7 @@ pub struct NotFinite {
 }
 
 /// A vehicle with its driver on a course.
-pub struct Drive<E> {
+pub struct Drive<E: SuspensionElement> {
     model: HandlingModel<E>,
     /// Its motion now, which is asked for many times a step.
     motion: HandlingMotion,

@@ -24,7 +24,8 @@ use super::steering::SteeringState;
 use super::wheel::{ContactState, Tyre, WheelLoads, WheelMotion, WheelState, WheelTorque};
 use crate::road::Road;
 use crate::strut::{Strut, StrutOutput};
-use crate::vehicle::suspension::{Motion, StrutElement, Suspension, SuspensionElement};
+use crate::vehicle::StrutElement;
+use crate::vehicle::suspension::{FourElements, Motion, SuspensionElement};
 use crate::vehicle::{GRAVITY_M_S2, RideError, VehicleParameters};
 
 pub use snapshot::VehicleSnapshot;
@@ -33,13 +34,13 @@ pub use snapshot::VehicleSnapshot;
 const STATIC_LOAD_TOLERANCE: f64 = 0.05;
 
 /// The handling model on four suspension elements.
-pub struct HandlingModel<E> {
+pub struct HandlingModel<E: SuspensionElement> {
     masses: Masses,
     handling: HandlingParameters,
     tyres: Axles<Tyre>,
     probe: Probe,
     road: Arc<dyn Road>,
-    suspension: Suspension<E>,
+    suspension: E::Four,
     step_s: f64,
     steps: u64,
     rest_height_m: f64,
@@ -140,7 +141,7 @@ impl<E: SuspensionElement> HandlingModel<E> {
             },
             handling: handling.clone(),
             road,
-            suspension: Suspension::new(elements),
+            suspension: elements.into(),
             step_s: parameters.solver.step_s,
             steps: 0,
             rest_height_m,

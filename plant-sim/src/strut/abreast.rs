@@ -2,121 +2,120 @@
 //!
 //! The results have the same bits as those of four struts that move one after the other: the hydraulics are one source, compiled
 //! for one number and for four ([`lanes`](crate::lanes)). What is not worth a vector (the valves' movements, the rod) is worked out strut
-//! by strut. Where a processor has no vectors of four numbers, or the four struts differ in kind, they take their steps alone.
+//! by strut. What the hydraulics carry from step to step stays in the vectors. Where a processor has no vectors of four numbers, or the four
+//! struts differ in kind, they take their steps alone.
 
 use pulp::Simd;
 
-use super::hydraulics::{Flowing, Hydraulics, Step};
-use super::integrator::{Strut, StrutOutput};
+use super::integrator::{Interval, Strut, StrutOutput, StrutSnapshot};
 use super::motion::StrutMove;
-use crate::lanes::{Four, LANES, Vectors, each_lane, vectors};
+use super::side_by_side::SideBySide;
+use crate::lanes::{LANES, Vectors, each_lane, vectors};
 
-/// What four struts need to move together.
+/// Four struts that move together.
 ///
 /// ```
 /// use oleo_interface::StrutValves;
-/// use oleo_plant_sim::strut::{Abreast, Segment, Strut, StrutModel, StrutMove};
+/// use oleo_plant_sim::strut::{Segment, Strut, StrutModel, StrutMove, StrutsAbreast};
 /// let closed = StrutValves::default();
 /// let strut = |load_n| Strut::at_rest(&StrutModel::defender110(load_n), closed);
-/// let mut struts = [strut(4000.0)?, strut(5000.0)?, strut(6000.0)?, strut(8000.0)?];
+/// let struts = [strut(4000.0)?, strut(5000.0)?, strut(6000.0)?, strut(8000.0)?];
 /// let mut alone = struts[2].clone();
 /// let moves = [0.01, 0.02, -0.01, 0.0].map(|to_m| StrutMove {
 ///     segment: Segment { to_m, from_m_s: 0.0, to_m_s: 1.0 },
 ///     duration_s: 0.01,
 ///     signals: closed,
 /// });
-/// let together = Abreast::of(&struts.each_ref()).advance(struts.each_mut(), &moves);
+/// let together = StrutsAbreast::new(struts).advance(&moves);
 /// assert_eq!(together[2], alone.advance_with_speeds(-0.01, 0.0, 1.0, 0.01, closed));
 /// # Ok::<(), oleo_plant_sim::model_file::InvalidValue>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct Abreast {
+pub struct StrutsAbreast {
+    /// Of what flows they have only what is read between steps where it stands in the vectors.
+    struts: [Strut; LANES],
     side_by_side: Option<SideBySide<Vectors>>,
 }
 
-impl Abreast {
-    /// For four struts, now and as long as they are the same struts in whatever state.
+impl StrutsAbreast {
+    /// Four struts in their present states.
     #[must_use]
-    pub fn of(struts: &[&Strut; LANES]) -> Self {
+    pub fn new(struts: [Strut; LANES]) -> Self {
         Self {
-            side_by_side: vectors().and_then(|simd| SideBySide::of(simd, struts)),
+            side_by_side: vectors().and_then(|simd| SideBySide::of(simd, &struts.each_ref())),
+            struts,
         }
     }
 
     /// Makes a move with each strut; the outputs at their ends.
-    pub fn advance(&self, mut struts: [&mut Strut; LANES], moves: &[StrutMove; LANES]) -> [StrutOutput; LANES] {
-        match &self.side_by_side {
-            Some(side_by_side) => side_by_side.advance(struts, moves),
+    pub fn advance(&mut self, moves: &[StrutMove; LANES]) -> [StrutOutput; LANES] {
+        let struts = &mut self.struts;
+        match &mut self.side_by_side {
+            Some(side_by_side) => advance(side_by_side, struts, moves),
             None => each_lane(|lane| struts[lane].advance_by(&moves[lane])),
         }
     }
-}
 
-/// The hydraulics of four struts in vectors.
-#[derive(Debug, Clone)]
-struct SideBySide<S: Simd> {
-    simd: S,
-    hydraulics: Hydraulics<Four<S>>,
-}
-
-impl<S: Simd> SideBySide<S> {
-    fn of(simd: S, struts: &[&Strut; LANES]) -> Option<Self> {
-        let hydraulics = Hydraulics::abreast(&struts.map(|strut| &strut.hydraulics), Four::zero(simd))?;
-        Some(Self { simd, hydraulics })
+    /// Forces and pressures now.
+    #[must_use]
+    pub fn output(&self) -> [StrutOutput; LANES] {
+        each_lane(|lane| self.struts[lane].output())
     }
 
-    fn advance(&self, mut struts: [&mut Strut; LANES], moves: &[StrutMove; LANES]) -> [StrutOutput; LANES] {
-        let mut intervals = each_lane(|lane| struts[lane].begin(&moves[lane]));
-        while let Some(first) = intervals.iter().position(|interval| !interval.is_over()) {
-            // Where a strut has arrived, the first that has not is computed once more, and nothing is kept of it.
-            let computed = each_lane(|lane| if intervals[lane].is_over() { first } else { lane });
-            let steps = each_lane(|lane| struts[computed[lane]].next_step(&intervals[computed[lane]]));
-            self.simd.vectorize(TakeStep {
-                hydraulics: &self.hydraulics,
-                like: Four::zero(self.simd),
-                struts: &mut struts,
-                steps: &steps,
-                computed,
-            });
-            for lane in (0..LANES).filter(|lane| computed[*lane] == *lane) {
-                struts[lane].conclude(&steps[lane], &mut intervals[lane]);
+    /// The present states.
+    #[must_use]
+    pub fn snapshot(&self) -> [StrutSnapshot; LANES] {
+        each_lane(|lane| match &self.side_by_side {
+            Some(side_by_side) => {
+                let mut strut = self.struts[lane].clone();
+                side_by_side.take_out(lane, &mut strut);
+                strut.snapshot()
             }
+            None => self.struts[lane].snapshot(),
+        })
+    }
+
+    /// Puts the struts into states that they, or others of the same models, were in.
+    pub fn restore(&mut self, kept: [&StrutSnapshot; LANES]) {
+        for (strut, kept) in self.struts.iter_mut().zip(kept) {
+            strut.restore(kept);
         }
-        each_lane(|lane| struts[lane].finish(&intervals[lane]))
+        if let Some(side_by_side) = &mut self.side_by_side {
+            side_by_side.take_in(&self.struts.each_ref());
+        }
     }
 }
 
-/// One step of four struts, of which some may stand in for others.
-struct TakeStep<'a, 'b, S: Simd> {
-    hydraulics: &'a Hydraulics<Four<S>>,
-    like: Four<S>,
-    struts: &'a mut [&'b mut Strut; LANES],
-    steps: &'a [Step; LANES],
-    /// Which strut each lane computes.
-    computed: [usize; LANES],
-}
-
-impl<S: Simd> pulp::NullaryFnOnce for TakeStep<'_, '_, S> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let Self {
-            hydraulics,
-            like,
-            struts,
-            steps,
-            computed,
-        } = self;
-        let step = Step::side_by_side(&each_lane(|lane| &steps[lane]), like);
-        let mut flowing = Flowing::side_by_side(&each_lane(|lane| &struts[computed[lane]].flowing), like);
-        hydraulics.step(&mut flowing, &step);
+fn advance<S: Simd>(
+    side_by_side: &mut SideBySide<S>,
+    struts: &mut [Strut; LANES],
+    moves: &[StrutMove; LANES],
+) -> [StrutOutput; LANES] {
+    let mut intervals = each_lane(|lane| struts[lane].begin(&moves[lane]));
+    while intervals.iter().all(|interval| !interval.is_over()) {
         for lane in 0..LANES {
-            if computed[lane] == lane {
-                struts[lane].flowing = flowing.part(lane);
-            }
+            side_by_side.steps.put(lane, &struts[lane].next_step(&intervals[lane]));
+        }
+        side_by_side.step();
+        for lane in 0..LANES {
+            side_by_side.tell(lane, &mut struts[lane]);
+            struts[lane].conclude(&side_by_side.steps.part(lane), &mut intervals[lane]);
         }
     }
+    if intervals.iter().any(|interval| !interval.is_over()) {
+        arrive(side_by_side, struts, &mut intervals);
+    }
+    each_lane(|lane| struts[lane].finish(&intervals[lane]))
+}
+
+/// Lets those struts arrive that have more steps to take than others, each alone.
+#[cold]
+fn arrive<S: Simd>(side_by_side: &mut SideBySide<S>, struts: &mut [Strut; LANES], intervals: &mut [Interval; LANES]) {
+    for (lane, (strut, interval)) in struts.iter_mut().zip(intervals).enumerate() {
+        side_by_side.take_out(lane, strut);
+        strut.take_steps(interval);
+    }
+    side_by_side.take_in(&struts.each_ref());
 }
 
 #[cfg(test)]
@@ -204,14 +203,15 @@ mod tests {
             let mut alone = together.clone();
             let mut moves = each_lane(|_| moves(300, &mut random).into_iter());
             let mut by = each_lane(|_| REST);
-            let side_by_side = SideBySide::of(simd, &together.each_ref()).unwrap();
+            let mut side_by_side = SideBySide::of(simd, &together.each_ref()).unwrap();
             for k in 0..300 {
                 by = each_lane(|lane| moves[lane].next().unwrap_or(by[lane]));
-                let outputs = side_by_side.advance(together.each_mut(), &by);
+                let outputs = advance(&mut side_by_side, &mut together, &by);
                 assert_eq!(outputs, each_lane(|lane| alone[lane].advance_by(&by[lane])), "move {k}");
                 assert!(outputs.iter().all(|output| output.force_n.is_finite()));
             }
             for lane in 0..LANES {
+                side_by_side.take_out(lane, &mut together[lane]);
                 // The state too: it comes to rest alone as if it had never been beside others.
                 let mut rest = by[lane];
                 (rest.segment.from_m_s, rest.segment.to_m_s) = (0.0, 0.0);

@@ -139,6 +139,12 @@ impl<N: Number> Gas<N> {
         }
     }
 
+    /// Where there is no more room for oil than the gas law is followed to.
+    #[inline(always)]
+    pub(super) fn is_full(&self, state: GasState<N>) -> N::Mask {
+        state.volume_m3.up_to(self.least_volume_m3)
+    }
+
     /// One implicit step of `duration_s` with a flow of oil into the accumulator, `flow` (m3/s), from `base`.
     #[inline(always)]
     #[must_use]

@@ -159,35 +159,6 @@ impl Step<[f64; LANES]> {
     }
 }
 
-impl Step {
-    /// Those of several struts side by side, `like` any number of their kind.
-    #[inline(always)]
-    pub fn side_by_side<N: Number>(each: &[&Self], like: N) -> Step<N> {
-        let opening = |i: usize| {
-            StrutValves::new(
-                like.gather_from(each, |step| step.opening[i][Valve::Bypass1]),
-                like.gather_from(each, |step| step.opening[i][Valve::Bypass2]),
-                like.gather_from(each, |step| step.opening[i][Valve::Spring]),
-            )
-        };
-        Step {
-            begins_s: like.gather_from(each, |step| step.begins_s),
-            duration_s: like.gather_from(each, |step| step.duration_s),
-            from_m: like.gather_from(each, |step| step.from_m),
-            middle: [
-                like.gather_from(each, |step| step.middle[0]),
-                like.gather_from(each, |step| step.middle[1]),
-            ],
-            end: [
-                like.gather_from(each, |step| step.end[0]),
-                like.gather_from(each, |step| step.end[1]),
-            ],
-            opening: [opening(0), opening(1)],
-            friction_n: like.gather_from(each, |step| step.friction_n),
-        }
-    }
-}
-
 impl Hydraulics {
     pub fn of(model: &StrutModel) -> Self {
         let effects = &model.effects;

@@ -242,12 +242,18 @@ impl Strut {
     /// Makes a move.
     pub fn advance_by(&mut self, by: &StrutMove) -> StrutOutput {
         let mut interval = self.begin(by);
-        while !interval.is_over() {
-            let step = self.next_step(&interval);
-            self.hydraulics.step(&mut self.flowing, &step);
-            self.conclude(&step, &mut interval);
-        }
+        self.take_steps(&mut interval);
         self.finish(&interval)
+    }
+
+    /// Takes the steps of an interval that are left.
+    #[inline(always)]
+    pub(super) fn take_steps(&mut self, interval: &mut Interval) {
+        while !interval.is_over() {
+            let step = self.next_step(interval);
+            self.hydraulics.step(&mut self.flowing, &step);
+            self.conclude(&step, interval);
+        }
     }
 
     /// Begins to make a move.

@@ -29,7 +29,7 @@
 //! | `network` | the hydraulic network and its solver: one implicit stage |
 //! | `hydraulics` | a step of oil, gas and mount, of one strut or of several side by side |
 //! | `integrator` | the strut in time: steps, valves' edges, the rod |
-//! | `abreast` | four struts that are advanced together, in the vectors of the processor |
+//! | `abreast`, `side_by_side` | four struts that are advanced together, and their hydraulics in the vectors of the processor |
 //! | `valve`, `rod_forces`, `rod_state`, `friction` | movement of a valve; forces between rod and cylinder, and what they depend on |
 //! | `gas`, `nitrogen`, `orifice`, `damper`, `characteristic` | laws of the elements |
 //! | `instruments` | what faulty instruments make of the columns |
@@ -61,11 +61,12 @@ mod rod_course;
 mod rod_forces;
 mod rod_state;
 mod run;
+mod side_by_side;
 mod smoothing;
 mod terms;
 mod valve;
 
-pub use abreast::Abreast;
+pub use abreast::StrutsAbreast;
 pub use characteristic::Characteristic;
 pub use damper::DamperTable;
 pub use flow_path::FlowPath;

@@ -6,11 +6,12 @@
 
 use pulp::Simd;
 
-use super::hydraulics::{Flowing, Hydraulics, Step};
+use super::hydraulics::Hydraulics;
 use super::inputs::Inputs;
 use super::model::StrutModel;
 use super::run::{Replayed, Run};
-use crate::lanes::{Four, LANES, Number, each_lane, vectors};
+use super::side_by_side::SideBySide;
+use crate::lanes::{Four, LANES, each_lane, vectors};
 use crate::model_file::InvalidValue;
 
 /// A recording's inputs that are to be simulated with a model.
@@ -123,16 +124,14 @@ impl<'r, 'a, S: Simd> Seats<'r, 'a, S> {
 
     /// Takes steps until a run is over; whether any could be taken, which is not so where runs differ in kind.
     fn go_on_until_one_is_over(&mut self) -> bool {
-        let (like, seated) = (Four::zero(self.simd), &mut self.seated);
+        let seated = &mut self.seated;
         // A lane for which there is no run computes what the first one computes.
         let computed = each_lane(|lane| if lane < seated.len() { lane } else { 0 });
-        let Some(hydraulics) = Hydraulics::abreast(&each_lane(|lane| &seated[computed[lane]].strut.hydraulics), like)
-        else {
+        let Some(mut side_by_side) = SideBySide::of(self.simd, &each_lane(|lane| &seated[computed[lane]].strut)) else {
             return false;
         };
-        let mut flowing = Flowing::side_by_side(&each_lane(|lane| &seated[computed[lane]].strut.flowing), like);
-        let mut steps = Step::<[f64; LANES]>::default();
         'steps: loop {
+            let steps = &mut side_by_side.steps;
             for (lane, run) in seated.iter_mut().enumerate() {
                 let Some(step) = run.next_step() else { break 'steps };
                 steps.put(lane, &step);
@@ -140,40 +139,16 @@ impl<'r, 'a, S: Simd> Seats<'r, 'a, S> {
             for (lane, &stands_in) in computed.iter().enumerate().skip(seated.len()) {
                 steps.put(lane, &steps.part(stands_in));
             }
-            self.simd.vectorize(TakeStep {
-                hydraulics: &hydraulics,
-                like,
-                flowing: &mut flowing,
-                steps: &steps,
-            });
+            side_by_side.step();
             for (lane, run) in seated.iter_mut().enumerate() {
-                run.strut.flowing.pressure_pa = flowing.pressure_in(lane);
-                run.strut.flowing.state.q2_m3_s = flowing.state.q2_m3_s.lane(lane);
-                run.conclude(&steps.part(lane));
+                side_by_side.tell(lane, &mut run.strut);
+                run.conclude(&side_by_side.steps.part(lane));
             }
         }
         for (lane, run) in seated.iter_mut().enumerate() {
-            run.strut.flowing = flowing.part(lane);
+            side_by_side.take_out(lane, &mut run.strut);
         }
         true
-    }
-}
-
-/// One step of all lanes.
-struct TakeStep<'a, S: Simd> {
-    hydraulics: &'a Hydraulics<Four<S>>,
-    like: Four<S>,
-    flowing: &'a mut Flowing<Four<S>>,
-    steps: &'a Step<[f64; LANES]>,
-}
-
-impl<S: Simd> pulp::NullaryFnOnce for TakeStep<'_, S> {
-    type Output = ();
-
-    #[inline(always)]
-    fn call(self) {
-        let step = self.steps.in_vectors(self.like);
-        self.hydraulics.step(self.flowing, &step);
     }
 }
 

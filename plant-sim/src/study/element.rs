@@ -12,6 +12,8 @@
 //! sixth of the static volume the gas line goes on straight along its tangent: defined for every displacement. Stops
 //! are those of the vehicle as sold.
 
+use oleo_interface::Corners;
+
 use crate::strut::ATMOSPHERE_PA;
 use crate::vehicle::BaselineParameters;
 use crate::vehicle::suspension::{Motion, SuspensionElement};
@@ -67,6 +69,7 @@ impl GasElement {
 
 impl SuspensionElement for GasElement {
     type Signal = ();
+    type Four = Corners<Self>;
 
     fn advance(&mut self, motion: Motion, (): ()) -> f64 {
         let p = &self.baseline;

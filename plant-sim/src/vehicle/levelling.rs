@@ -6,9 +6,10 @@
 //! `x + q t / A`. The stops feel the piston itself. The seal's friction takes its speed from the sum, which is wrong by the
 //! levelling's own speed (10 mm/s against the Stribeck speed of 20 mm/s); it is below 3 % of a strut's force.
 
-use oleo_interface::StrutValves;
+use oleo_interface::{Corners, StrutValves};
 
-use super::suspension::{Motion, StrutElement, SuspensionElement};
+use super::strut_element::StrutElement;
+use super::suspension::{Motion, SuspensionElement};
 use crate::model_file::InvalidValue;
 use crate::strut::{BumpStop, Strut, StrutModel, StrutOutput};
 
@@ -94,6 +95,7 @@ impl LevelledStrut {
 
 impl SuspensionElement for LevelledStrut {
     type Signal = (StrutValves<bool>, Levelling);
+    type Four = Corners<Self>;
 
     fn advance(&mut self, motion: Motion, (valves, levelling): Self::Signal) -> f64 {
         let flow_m3_s = match levelling {

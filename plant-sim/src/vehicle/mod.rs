@@ -24,6 +24,7 @@ mod parameters;
 mod payload;
 mod ride;
 mod seat;
+mod strut_element;
 pub mod suspension;
 
 pub use gas_temperature::TemperedStrut;
@@ -39,3 +40,4 @@ pub use parameters::{
 pub use payload::Payload;
 pub use ride::{BaselineVehicle, BodyMotion, RideError, RideModel, RideVehicle, WheelMotion};
 pub use seat::{Seat, SeatAcceleration, Seats};
+pub use strut_element::{FourStruts, StrutElement, StrutElementSnapshot};

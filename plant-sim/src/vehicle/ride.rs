@@ -22,7 +22,8 @@ use super::contact::{Contact, Tyre};
 use super::equations::{Coordinates, Equations};
 use super::inertial::{InertialReading, RigidMotion};
 use super::parameters::VehicleParameters;
-use super::suspension::{CoilElement, Motion, StrutElement, Suspension, SuspensionElement, tension_n};
+use super::strut_element::StrutElement;
+use super::suspension::{CoilElement, FourElements, Motion, SuspensionElement, tension_n};
 use crate::road::Road;
 use crate::strut::{Strut, StrutOutput};
 
@@ -91,9 +92,9 @@ pub struct WheelMotion {
 const STATIC_LOAD_TOLERANCE: f64 = 0.25;
 
 /// The 7-degree-of-freedom ride model on any suspension.
-pub struct RideModel<E> {
+pub struct RideModel<E: SuspensionElement> {
     equations: Equations,
-    suspension: Suspension<E>,
+    suspension: E::Four,
     contacts: Corners<Contact>,
     tyres: Corners<Tyre>,
     step_s: f64,
@@ -191,7 +192,7 @@ impl<E: SuspensionElement> RideModel<E> {
         });
         let mut model = Self {
             equations,
-            suspension: Suspension::new(elements),
+            suspension: elements.into(),
             contacts,
             tyres,
             step_s: parameters.solver.step_s,
@@ -304,11 +305,6 @@ impl<E: SuspensionElement> RideModel<E> {
     /// Force of the four suspension elements, N, compression positive.
     pub fn suspension_force_n(&self) -> Corners<f64> {
         self.suspension.force_n()
-    }
-
-    /// The four suspension elements.
-    pub fn elements(&self) -> &Corners<E> {
-        self.suspension.elements()
     }
 
     /// Motion of the sprung mass.

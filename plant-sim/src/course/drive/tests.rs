@@ -4,7 +4,8 @@ use super::*;
 use crate::course::{LaneChange, Run};
 use crate::road::{Bend, Flat, Road, SideSlope, belgian::belgian_block};
 use crate::strut::{Strut, StrutModel};
-use crate::vehicle::suspension::{CoilElement, StrutElement};
+use crate::vehicle::StrutElement;
+use crate::vehicle::suspension::CoilElement;
 use crate::vehicle::{GRAVITY_M_S2, Load};
 
 const SPEED_M_S: f64 = 60.0 / 3.6;

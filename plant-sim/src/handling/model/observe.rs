@@ -8,7 +8,7 @@ use crate::handling::attitude::yaw_pitch_roll;
 use crate::handling::axle_place::AxleCoordinates;
 use crate::handling::motion::HandlingMotion;
 use crate::handling::wheel::WheelState;
-use crate::vehicle::suspension::SuspensionElement;
+use crate::vehicle::suspension::{FourElements, SuspensionElement};
 use crate::vehicle::{GRAVITY_M_S2, InertialReading, RigidMotion, SeatAcceleration};
 
 impl<E: SuspensionElement> HandlingModel<E> {
@@ -103,11 +103,6 @@ impl<E: SuspensionElement> HandlingModel<E> {
     /// Force of the four suspension elements, N, compression positive.
     pub fn suspension_force_n(&self) -> Corners<f64> {
         self.suspension.force_n()
-    }
-
-    /// The four suspension elements.
-    pub fn elements(&self) -> &Corners<E> {
-        self.suspension.elements()
     }
 
     /// What an accelerometer at a place of the body reads; the place in body axes (ahead, left, up) from its centre of mass, m.

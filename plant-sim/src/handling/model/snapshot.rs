@@ -10,7 +10,7 @@ use crate::handling::axle_place::AxleCoordinates;
 use crate::handling::dynamics::Accelerations;
 use crate::handling::steering::SteeringState;
 use crate::handling::wheel::{ContactState, WheelState};
-use crate::vehicle::suspension::StrutElementSnapshot;
+use crate::vehicle::StrutElementSnapshot;
 
 /// Everything that a vehicle carries from one step to the next. A vehicle of the same parameters on the same road that is put into this state goes
 /// on with the same bits.

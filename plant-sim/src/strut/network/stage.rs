@@ -153,6 +153,7 @@ impl<N: Number> Network<N> {
         let mut round = 0;
         // A lane that is done is given the same trial again until all are: the same answer, to the bit.
         let mut done = zero.above(zero);
+        let mut is_prediction = true;
         loop {
             let one = path1.answer(&first, d1, &mut segment[0], &mut line1);
             let p1 = one.oil_pa + one.line_pa + d1;
@@ -168,6 +169,17 @@ impl<N: Number> Network<N> {
                 flow2_slope = N::choose(connected, flow2_slope, zero);
             }
             let two = path2.answer_to_flow(&second, flow2, flow2_slope);
+            if is_prediction {
+                is_prediction = false;
+                // What an instant has been told from may predict more oil than an accumulator holds. From there Newton's method would take hundreds
+                // of rounds, and from drops of zero it takes a few.
+                let hopeless = path1.gas.is_full(one.gas) | path2.gas.is_full(two.gas);
+                if hopeless.any() {
+                    d1 = N::choose(hopeless, zero, d1);
+                    d2 = N::choose(hopeless, zero, d2);
+                    continue;
+                }
+            }
             let (mut d3, mut d3_by) = (zero, [zero; 2]);
             let (mut step1, mut step2, mut gain) = (zero, zero, [zero; 2]);
             if VALVE_3 != CLOSED {

@@ -74,9 +74,12 @@ impl<N: Number> EnergyStep<N> {
         let k = self.duration_s * self.heating_pa_k * self.inverse_heat_capacity_k_j;
         let s = self.duration_s * cooling_rate_1_s;
         let divisor = s + 1.0 - k * self.flow_m3_s;
-        let inverse = divisor.at_least(divisor.of(0.05)).recip();
+        let least = divisor.of(0.05);
+        let inverse = divisor.at_least(least).recip();
         let t = (self.temperature_before_k + s * self.ambient_k) * inverse;
-        (t, t * k * self.volume_before_m3 * self.inverse_volume_1_m3 * inverse)
+        let by_flow = t * k * self.volume_before_m3 * self.inverse_volume_1_m3 * inverse;
+        // Where the divisor is kept, the flow heats no further: with another slope Newton's method would not come back from such a trial.
+        (t, N::choose(divisor.above(least), by_flow, divisor.of(0.0)))
     }
 }
 
@@ -116,5 +119,12 @@ mod tests {
         let exact = 293.15 * 296.8 / 743.0 * 1e-8 / 1e-4;
         assert!(((t - 293.15) / exact - 1.0).abs() < 1e-3);
         assert!((slope / (exact / 1e-4) - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_trial_that_would_heat_the_gas_without_end_has_the_slope_of_what_is_kept() {
+        let temperature = |flow_m3_s: f64| step(flow_m3_s, 1e-2, 293.15).temperature(1.0);
+        let (hopeless, slope) = temperature(0.1);
+        assert_eq!((hopeless, slope), (temperature(0.2).0, 0.0));
     }
 }

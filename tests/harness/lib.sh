@@ -71,6 +71,20 @@ need() {
     command -v "$@" > /dev/null
 }
 
+# cargo_tool NAME: whether a tool of cargo is there, after building and installing it if it is not. One is built at a time, so that a step
+# waits for what ./test has begun.
+cargo_tool() {
+    local name=$1
+    cargo "${name#cargo-}" --version > /dev/null 2>&1 && return 0
+    echo "   installing $name"
+    (
+        flock 9
+        cargo "${name#cargo-}" --version > /dev/null 2>&1 && exit 0
+        # Without optimisation: building takes longer than running. In a folder of its own: cargo locks the one in which it builds.
+        CARGO_PROFILE_DEV_DEBUG=0 cargo install --quiet --debug --locked --target-dir "$CARGO_TARGET_DIR/tools" "$name" > "$OLEO_LOGS/$name.log" 2>&1
+    ) 9> "$CARGO_TARGET_DIR/tools.lock"
+}
+
 # Where Python packages for the tests are installed.
 # shellcheck disable=SC2034 # read by the steps
 readonly PYTHON_PACKAGES=$CARGO_TARGET_DIR/test-python

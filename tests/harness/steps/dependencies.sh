@@ -14,14 +14,10 @@ first_command() {
 check "the first command builds at most $MOST_CRATES crates" first_command
 sed 's/^/   /' "$log"
 
-if ! cargo deny --version > /dev/null 2>&1; then
-    echo "   installing cargo-deny, which takes some minutes"
-    # Without optimisation: building takes longer than running.
-    CARGO_PROFILE_DEV_DEBUG=0 cargo install --quiet --debug --locked cargo-deny > "$OLEO_LOGS/cargo-deny.log" 2>&1 || {
-        skip "licences, sources, versions and advisories" "no cargo-deny, and none to be installed"
-        exit 0
-    }
-fi
+cargo_tool cargo-deny || {
+    skip "licences, sources, versions and advisories" "no cargo-deny, and none to be installed"
+    exit 0
+}
 for what in licenses sources bans; do
     check "deny.toml: $what" cargo deny --locked --log-level error check --hide-inclusion-graph -D unmatched-skip "$what"
 done

@@ -16,11 +16,7 @@ copy=$(mktemp -d)
 mkdir "$copy/oleo" "$copy/firmware"
 cp -r Cargo.toml src "$copy/oleo"
 cp -r firmware/Cargo.toml firmware/src firmware/bench "$copy/firmware"
-if cargo machete --version > /dev/null 2>&1 || {
-    echo "   installing cargo-machete"
-    # Without optimisation: building takes longer than running.
-    CARGO_PROFILE_DEV_DEBUG=0 cargo install --quiet --debug --locked cargo-machete > "$OLEO_LOGS/cargo-machete.log" 2>&1
-}; then
+if cargo_tool cargo-machete; then
     for package in "$copy/oleo" interface controller xcp plant-sim hil diagnose report python fmu fmu-import "$copy/firmware" fuzz; do
         check "no unused dependency in $(basename "$package")" cargo machete "$package"
     done

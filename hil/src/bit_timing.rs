@@ -46,11 +46,6 @@ pub fn wire_bits(frame: &Frame) -> u32 {
     stream.count + stream.stuff_bits() + UNSTUFFED_BITS
 }
 
-/// Length of every frame of a trace, bit times.
-pub fn trace_bits(trace: &[TraceEntry]) -> Vec<u32> {
-    trace.iter().map(|entry| wire_bits(&entry.frame)).collect()
-}
-
 /// The stuffed part of a frame, at most 118 bits, the last one sent in the lowest place.
 #[derive(Clone, Copy, Default)]
 struct BitStream {
@@ -129,17 +124,63 @@ pub struct WireModel {
     pub end_us: Vec<u64>,
 }
 
+/// A frame of a trace when its turn has come.
+#[derive(Clone, Copy, Debug)]
+struct Turn {
+    tick: u32,
+    direction: Direction,
+    /// Place in the trace.
+    index: usize,
+    bits: u32,
+    /// Place among the messages on the bus.
+    message: Option<usize>,
+}
+
+/// The frames of a trace in the order in which a wire sends them, which is the same at every rate.
+#[derive(Clone, Debug)]
+pub struct SendingOrder {
+    turns: Vec<Turn>,
+    on_bus: Vec<Contract>,
+}
+
+impl SendingOrder {
+    /// The plant's frames of a tick come first, then the controller's, and among these the lowest identifier. `trace` must be in the order of
+    /// ticks.
+    pub fn of(trace: &[TraceEntry]) -> Self {
+        let on_bus = contracts(trace);
+        let mut turns = Vec::with_capacity(trace.len());
+        let mut begin = 0;
+        for group in trace.chunk_by(|a, b| a.tick == b.tick) {
+            for direction in [Direction::Sent, Direction::Received] {
+                let from = turns.len();
+                let going = group
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, entry)| entry.direction == direction);
+                turns.extend(going.map(|(i, entry)| Turn {
+                    tick: entry.tick,
+                    direction,
+                    index: begin + i,
+                    bits: wire_bits(&entry.frame),
+                    message: (on_bus.iter()).position(|contract| Some(contract.id) == entry.frame.standard_id()),
+                }));
+                turns[from..].sort_by_key(|turn| arbitration_key(&trace[turn.index].frame));
+            }
+            begin += group.len();
+        }
+        Self { turns, on_bus }
+    }
+}
+
 impl WireModel {
     /// Sends a trace over a wire. The plant's frames are ready when their tick begins, the controller's when the last of the
-    /// plant's has arrived. `trace` must be in the order of ticks.
-    ///
-    /// `bits` are the lengths of the frames ([`trace_bits`]), which are the same at every rate.
-    pub fn of(trace: &[TraceEntry], bits: &[u32], bit_rate: u32, tick_us: u32, ticks: u32) -> Self {
+    /// plant's has arrived.
+    pub fn of(order: &SendingOrder, bit_rate: u32, tick_us: u32, ticks: u32) -> Self {
         let bit_us = 1e6 / f64::from(bit_rate);
-        let mut end_us = vec![0; trace.len()];
-        let on_bus = contracts(trace);
+        let SendingOrder { turns, on_bus } = order;
+        let mut end_us = vec![0; turns.len()];
         let of_contract = |contract: &Contract| {
-            let bound_us = response_bound_bits(contract, &on_bus, bit_rate).map_or(f64::INFINITY, |bits| bits * bit_us);
+            let bound_us = response_bound_bits(contract, on_bus, bit_rate).map_or(f64::INFINITY, |bits| bits * bit_us);
             MessageTiming {
                 contract: *contract,
                 frames: 0,
@@ -150,36 +191,30 @@ impl WireModel {
         };
         let mut timing: Vec<MessageTiming> = on_bus.iter().map(of_contract).collect();
         let (mut free_us, mut busy_us, mut peak_us) = (0.0f64, 0.0, 0.0f64);
-        let mut begin = 0;
-        for group in trace.chunk_by(|a, b| a.tick == b.tick) {
-            let tick_start_us = group
-                .first()
-                .map_or(0.0, |entry| f64::from(entry.tick) * f64::from(tick_us));
+        for in_tick in turns.chunk_by(|a, b| a.tick == b.tick) {
+            let tick = in_tick.first().map_or(0, |turn| turn.tick);
+            let mut ready_us = f64::from(tick) * f64::from(tick_us);
+            free_us = free_us.max(ready_us);
             let mut busy_in_tick_us = 0.0;
-            let mut ready_us = tick_start_us;
-            for direction in [Direction::Sent, Direction::Received] {
-                let mut queue: Vec<usize> = (0..group.len()).filter(|i| group[*i].direction == direction).collect();
-                queue.sort_by_key(|i| arbitration_key(&group[*i].frame));
-                free_us = free_us.max(ready_us);
-                for index in queue {
-                    let frame = &group[index].frame;
-                    let length_us = f64::from(bits[begin + index]) * bit_us;
+            for going in in_tick.chunk_by(|a, b| a.direction == b.direction) {
+                if going.first().is_some_and(|turn| turn.direction == Direction::Received) {
+                    ready_us = free_us;
+                }
+                for turn in going {
+                    let length_us = f64::from(turn.bits) * bit_us;
                     free_us += length_us;
                     busy_in_tick_us += length_us;
-                    end_us[begin + index] = free_us as u64;
-                    let message = timing.iter_mut().find(|m| Some(m.contract.id) == frame.standard_id());
-                    if let Some(message) = message {
-                        let latency_us = free_us - ready_us;
+                    end_us[turn.index] = free_us as u64;
+                    if let Some(message) = turn.message {
+                        let (message, latency_us) = (&mut timing[message], free_us - ready_us);
                         message.frames += 1;
                         message.mean_us += latency_us;
                         message.max_us = message.max_us.max(latency_us);
                     }
                 }
-                ready_us = free_us;
             }
             busy_us += busy_in_tick_us;
             peak_us = peak_us.max(busy_in_tick_us);
-            begin += group.len();
         }
         for message in &mut timing {
             message.mean_us /= message.frames.max(1) as f64;
@@ -320,7 +355,7 @@ mod tests {
     #[test]
     fn lower_identifiers_go_first_and_the_answer_after_the_question() {
         let trace: Vec<_> = (0..3).flat_map(tick_of_eight).collect();
-        let wire = WireModel::of(&trace, &trace_bits(&trace), 500_000, 5000, 3);
+        let wire = WireModel::of(&SendingOrder::of(&trace), 500_000, 5000, 3);
         assert_eq!(wire.end_us.len(), trace.len());
         assert!(wire.end_us[0] > wire.end_us[5], "0x115 was queued first and sent last");
         assert!(wire.end_us[6] > wire.end_us[0]);

@@ -11,7 +11,7 @@ use oleo_interface::{Corners, StrutValves};
 use oleo_plant_sim::course::Ending;
 use oleo_plant_sim::measures::{RideMeasures, RideMeter};
 
-use crate::bit_timing::{WireModel, trace_bits};
+use crate::bit_timing::{SendingOrder, WireModel};
 use crate::record::{Sample, StrategyReport, controller_account, strategy_reports};
 use crate::run::Outcome;
 use crate::scenario::Scenario;
@@ -76,7 +76,7 @@ impl Metrics {
         let samples = &plant.recording.samples;
         let ticks = samples.len() as u32;
         let account = controller_account(&plant.trace, samples.len());
-        let bits = trace_bits(&plant.trace);
+        let order = SendingOrder::of(&plant.trace);
         let mut meters = [
             RideMeter::new(plant.recording.step_s),
             RideMeter::new(plant.recording.step_s),
@@ -112,7 +112,7 @@ impl Metrics {
             frames_lost: plant.bus_frames_lost + plant.injected.dropped,
             bus_frames_lost: plant.bus_frames_lost,
             e2e_errors: plant.e2e_errors,
-            wires: bus_load::BIT_RATES.map(|rate| WireModel::of(&plant.trace, &bits, rate, TICK_US, ticks)),
+            wires: bus_load::BIT_RATES.map(|rate| WireModel::of(&order, rate, TICK_US, ticks)),
             extremes: Extremes::of(samples),
             answer: scenario
                 .fault_ticks()

@@ -4,8 +4,8 @@ mod slow_and_steady;
 
 use oleo_interface::{StrutValves, Valve};
 use oleo_plant_sim::strut::{
-    Characteristic, DampingFade, GasHeatTransfer, LawArgument, LawPlace, LineInertance, MountCompliance,
-    OilCompressibility, OilCount, Strut, StrutModel, UnlistedLaw,
+    AccumulatorPistonFriction, Characteristic, DampingFade, GasHeatTransfer, LawArgument, LawPlace, LineInertance,
+    MountCompliance, OilCompressibility, OilCount, Strut, StrutModel, UnlistedLaw,
 };
 use slow_and_steady::{
     BYPASS_1, CLOSED, SOFT, STIFF, absolute, bare, beside_pressure, close, slow_pressure, slowly, steady_drop,
@@ -19,6 +19,7 @@ fn law(place: LawPlace, depends_on: LawArgument, argument: [f64; 2], value: [f64
         value: value.to_vec(),
         time_constant_s: None,
         frequency_hz: None,
+        presliding_volume_m3: None,
     }
 }
 
@@ -72,6 +73,7 @@ fn a_choking_valve_3_passes_what_its_law_leaves_even_where_more_drop_means_less_
         value,
         time_constant_s: None,
         frequency_hz: None,
+        presliding_volume_m3: None,
     }];
     let mut strut = Strut::at_rest(&model, STIFF).unwrap();
     slowly(&mut strut, 0.03, STIFF);
@@ -179,6 +181,7 @@ fn swinging(place: LawPlace, middle: f64, amplitude: f64) -> UnlistedLaw {
         value,
         time_constant_s: None,
         frequency_hz: Some(0.5),
+        presliding_volume_m3: None,
     }
 }
 
@@ -313,6 +316,93 @@ fn laws_with_a_memory_and_of_pistons_and_valves() {
     };
     let (believed, longer) = (opens_after(&bare()).unwrap(), opens_after(&with(late)).unwrap());
     assert!((longer as i64 - believed as i64 - 30).abs() <= 1, "{believed} {longer}");
+}
+
+/// A law at a floating piston that holds back a pressure (Pa) at any gas volume.
+fn piston_law(place: LawPlace, held_back_pa: f64, presliding_volume_m3: Option<f64>) -> UnlistedLaw {
+    UnlistedLaw {
+        presliding_volume_m3,
+        ..law(place, LawArgument::RelativeVolume, [0.0, 2.0], [held_back_pa; 2])
+    }
+}
+
+#[test]
+fn a_piston_law_shears_its_seal_over_the_volume_that_it_states() {
+    let term = |presliding_volume_m3| {
+        let mut model = bare();
+        model.effects.accumulator_piston_friction = Some(AccumulatorPistonFriction {
+            pressure_1_pa: 5e4,
+            pressure_2_pa: 8e4,
+            presliding_volume_m3,
+        });
+        model
+    };
+    let laws = |volume| {
+        vec![
+            piston_law(LawPlace::Accumulator1Friction, 5e4, volume),
+            piston_law(LawPlace::Accumulator2Friction, 8e4, volume),
+        ]
+    };
+    // A law that does not say the volume means that of a term that does not.
+    for (volume, said) in [(9e-7, Some(9e-7)), (1e-7, None)] {
+        let missed = misses(&term(volume), laws(said), SOFT);
+        assert!(missed < 1e-4, "{missed}");
+    }
+    assert!(misses(&term(9e-7), laws(Some(1e-7)), SOFT) > 0.05);
+}
+
+#[test]
+fn the_seal_of_a_piston_law_slides_exponentially_over_its_volume() {
+    // ds/dV = (1 - s) / V_s from rest: s = 1 - exp(-V / V_s).
+    let held_pa = |presliding_m3: Option<f64>, to_m: f64| {
+        let mut model = bare();
+        let mut pressures = [0.0; 2];
+        for (pressure, held) in pressures.iter_mut().zip([0.0, 5e4]) {
+            model.effects.unlisted = vec![piston_law(LawPlace::Accumulator1Friction, held, presliding_m3)];
+            let mut strut = Strut::at_rest(&model, STIFF).unwrap();
+            for k in 1..=2000 {
+                *pressure = strut.advance(to_m * f64::from(k) / 2000.0, 1e-3, STIFF).pressure_pa[1];
+            }
+        }
+        pressures[1] - pressures[0]
+    };
+    let to_m = 3e-4;
+    let volume = bare().piston_area_m2() * to_m;
+    for presliding in [2e-7, 1e-6] {
+        close(
+            held_pa(Some(presliding), to_m),
+            5e4 * (1.0 - libm::exp(-volume / presliding)),
+            1e-2,
+        );
+    }
+}
+
+#[test]
+fn a_term_of_the_piston_keeps_its_volume_beside_a_law() {
+    let with = |term_pa, law_volume| {
+        let mut model = bare();
+        model.effects.accumulator_piston_friction = Some(AccumulatorPistonFriction {
+            pressure_1_pa: term_pa,
+            pressure_2_pa: 0.0,
+            presliding_volume_m3: 8e-7,
+        });
+        model.effects.unlisted = vec![piston_law(LawPlace::Accumulator1Friction, 7e4 - term_pa, law_volume)];
+        model
+    };
+    let run = |model: StrutModel| {
+        let mut strut = Strut::at_rest(&model, STIFF).unwrap();
+        let at = |k: u32| 0.01 * libm::sin(0.05 * f64::from(k));
+        (0..200)
+            .map(|k| strut.advance(at(k), 5e-3, STIFF).pressure_pa[1])
+            .collect::<Vec<f64>>()
+    };
+    // The level is shared as it likes between the two; there is one seal.
+    let all = run(with(7e4, Some(1e-7)));
+    for other in [with(3e4, Some(1e-7)), with(0.0, None)] {
+        for (a, b) in all.iter().zip(run(other)) {
+            close(b, *a, 1e-9);
+        }
+    }
 }
 
 #[test]

@@ -111,6 +111,11 @@ fn symbols_of_a_law(law: &UnlistedLaw) -> String {
     let y = quantity(value(law));
     if law.depends_on == LawArgument::Phase {
         format!("Here y is {y}, and t is the time since the start of each recording in s")
+    } else if law.presliding_volume_m3.is_some() {
+        format!(
+            "Here y is {y}, x is {}, and s is the shear of the seal, from -1 to 1, while the oil volume V in m3 flows in with Q in m3/s",
+            quantity(argument(law.depends_on))
+        )
     } else {
         format!("Here y is {y}, and x is {}", quantity(argument(law.depends_on)))
     }
@@ -350,6 +355,18 @@ mod tests {
             symbols_of_a_law(&law),
             "Here y is the flow coefficient in m3/s/sqrt(Pa), and x is the displacement in m"
         );
+        let piston = unlisted::table("pressure held back over volume, accumulator 2", &[4e4, -0.5, 7e-7]);
+        let piston = piston.expect("a law of the list");
+        assert_eq!(piston.presliding_volume_m3, Some(7e-7));
+        assert!(symbols_of_a_law(&piston).ends_with("while the oil volume V in m3 flows in with Q in m3/s"));
+        let symbol = |key| {
+            of(EffectId::Unlisted).symbol_in(
+                SpecimenKind::TwoStageStrut,
+                "pressure held back over volume, accumulator 2",
+                key,
+            )
+        };
+        assert_eq!(symbol("presliding_volume_m3"), Some("V_s"));
         for candidate in unlisted::candidates_of_struts(50.0) {
             let equation = of(EffectId::Unlisted).equation_in(SpecimenKind::TwoStageStrut, &candidate.label);
             let equation = equation.expect("an equation");

@@ -328,6 +328,12 @@ impl Effects {
             argument = [0.0, 0.5, 1.0]
             value = [100.0, -100.0, 100.0]
             frequency_Hz = 0.7
+            [[unlisted]]
+            place = "accumulator-2-friction"
+            depends_on = "relative_volume"
+            argument = [0.5, 1.5]
+            value = [4e4, 3e4]
+            presliding_volume_m3 = 3e-7
             "#,
         )
         .unwrap()
@@ -411,9 +417,10 @@ mod tests {
             of(&e.bump_stop),
             of(&e.mount_compliance),
             of(&e.damping_fade),
-            // No law has both.
+            // No law has all.
             forgotten_keys(&UnlistedLaw {
                 frequency_hz: e.unlisted[1].frequency_hz,
+                presliding_volume_m3: e.unlisted[2].presliding_volume_m3,
                 ..e.unlisted[0].clone()
             }),
         ];

@@ -14,6 +14,7 @@
 //! | `relaxing` | multiplies, and follows what has changed lately | its exponent, time constant of the memory |
 //! | `saturating` | is added, rises and comes to an end | its end, the argument where half of it is reached |
 //! | `settling` | is added or multiplies, and settles with time | its end, time constant |
+//! | `shearing` | is added and never negative, a power of its argument that is reached over a volume of oil | its level, exponent, volume |
 //! | `stops` | is added beyond a threshold in either direction | sizes, thresholds, exponent |
 //! | `swinging` | is added or multiplies, and swings about what is believed | amplitude, phase, frequency |
 //! | `choke` | multiplies what is believed, and falls with the size of its argument | inverse argument, exponent |
@@ -33,6 +34,7 @@ mod rises;
 mod rising;
 mod saturating;
 mod settling;
+mod shearing;
 mod stops;
 mod swinging;
 
@@ -54,5 +56,6 @@ pub use rises::is_of_free_table;
 pub use rising::Rising;
 pub use saturating::Saturating;
 pub use settling::{SettlingAdded, SettlingFactor, SettlingLevel};
+pub use shearing::Shearing;
 pub use stops::Stops;
 pub use swinging::{SwingingAdded, SwingingFactor};

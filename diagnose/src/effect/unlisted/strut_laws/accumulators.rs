@@ -4,8 +4,8 @@ use oleo_plant_sim::strut::LawArgument::{RelativeEnergy, RelativeVolume, Time, V
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
-use crate::effect::unlisted::forms::{Factor, Heated, Level, Relaxing, SettlingFactor};
-use crate::effect::unlisted::knots::{GAS_ENERGY, RELATIVE_VOLUME, TIME_S, VOLUME_CHANGE};
+use crate::effect::unlisted::forms::{Factor, Heated, Relaxing, SettlingFactor, Shearing};
+use crate::effect::unlisted::knots::{GAS_ENERGY, RELATIVE_VOLUME, RELATIVE_VOLUME_FINE, TIME_S, VOLUME_CHANGE};
 use crate::vocabulary::{Branch, Site};
 
 pub(super) const LAWS: &[Law] = &[
@@ -109,16 +109,16 @@ pub(super) const LAWS: &[Law] = &[
         "pressure held back over volume, accumulator 1",
         Site::Accumulator(Branch::First),
         (LawPlace::Accumulator1Friction, RelativeVolume),
-        &Level,
-        RELATIVE_VOLUME,
+        &Shearing,
+        RELATIVE_VOLUME_FINE,
         5e3,
     ),
     law(
         "pressure held back over volume, accumulator 2",
         Site::Accumulator(Branch::Second),
         (LawPlace::Accumulator2Friction, RelativeVolume),
-        &Level,
-        RELATIVE_VOLUME,
+        &Shearing,
+        RELATIVE_VOLUME_FINE,
         5e3,
     ),
 ];

@@ -235,6 +235,11 @@ impl LawPlace {
         path.pick(Self::Accumulator1Friction, Self::Accumulator2Friction)
     }
 
+    /// Whether the place is the seal of a floating piston.
+    pub(super) fn is_floating_piston(self) -> bool {
+        matches!(self, Self::Accumulator1Friction | Self::Accumulator2Friction)
+    }
+
     /// The accumulator at the end of a path.
     pub(super) fn accumulator(path: FlowPath) -> Self {
         path.pick(Self::Accumulator1, Self::Accumulator2)

@@ -5,7 +5,7 @@ mod slow_and_steady;
 use oleo_interface::{StrutValves, Valve};
 use oleo_plant_sim::strut::{
     AccumulatorPistonFriction, Characteristic, DampingFade, GasHeatTransfer, LawArgument, LawPlace, LineInertance,
-    MountCompliance, OilCompressibility, OilCount, Strut, StrutModel, UnlistedLaw,
+    MountCompliance, OilCompressibility, OilCount, RealGas, Strut, StrutModel, UnlistedLaw,
 };
 use slow_and_steady::{
     BYPASS_1, CLOSED, SOFT, STIFF, absolute, bare, beside_pressure, close, slow_pressure, slowly, steady_drop,
@@ -20,6 +20,7 @@ fn law(place: LawPlace, depends_on: LawArgument, argument: [f64; 2], value: [f64
         time_constant_s: None,
         frequency_hz: None,
         presliding_volume_m3: None,
+        attraction: None,
     }
 }
 
@@ -74,6 +75,7 @@ fn a_choking_valve_3_passes_what_its_law_leaves_even_where_more_drop_means_less_
         time_constant_s: None,
         frequency_hz: None,
         presliding_volume_m3: None,
+        attraction: None,
     }];
     let mut strut = Strut::at_rest(&model, STIFF).unwrap();
     slowly(&mut strut, 0.03, STIFF);
@@ -182,6 +184,7 @@ fn swinging(place: LawPlace, middle: f64, amplitude: f64) -> UnlistedLaw {
         time_constant_s: None,
         frequency_hz: Some(0.5),
         presliding_volume_m3: None,
+        attraction: None,
     }
 }
 
@@ -424,9 +427,14 @@ fn a_law_over_the_rate_of_flow_is_an_inertance() {
 /// Largest difference of any pressure between a strut whose effect has a name and one with laws in its place, over what a plain strut differs from the
 /// first, in 20 s of strokes of 40 mm.
 fn misses(named: &StrutModel, laws: Vec<UnlistedLaw>, signals: StrutValves<bool>) -> f64 {
-    let mut nameless = bare();
+    misses_beside(&bare(), named, laws, signals)
+}
+
+/// The same where the plain strut has effects that the two others have too.
+fn misses_beside(plain: &StrutModel, named: &StrutModel, laws: Vec<UnlistedLaw>, signals: StrutValves<bool>) -> f64 {
+    let mut nameless = plain.clone();
     nameless.effects.unlisted = laws;
-    let mut struts = [named, &nameless, &bare()].map(|model| Strut::at_rest(model, signals).unwrap());
+    let mut struts = [named, &nameless, plain].map(|model| Strut::at_rest(model, signals).unwrap());
     let (mut missed, mut changed) = (0.0f64, 0.0f64);
     for k in 0..4000 {
         let at = 0.04 * libm::sin(0.03 * f64::from(k));
@@ -468,6 +476,38 @@ fn a_gas_law_over_its_energy_is_the_energy_equation() {
     // And it is none where one time constant is another one.
     let both = vec![one(LawPlace::Accumulators, 3.0)];
     assert!(misses(&named, both, SOFT) > 0.05);
+}
+
+/// Molecules with a volume that attract each other are nitrogen, also where its work warms it; a factor over the volume is not.
+#[test]
+fn a_gas_law_over_its_density_is_an_equation_of_state() {
+    let mut plain = bare();
+    plain.effects.gas_heat_transfer = Some(GasHeatTransfer {
+        time_constant_1_s: 3.0,
+        time_constant_2_s: 6.0,
+    });
+    let mut named = plain.clone();
+    named.effects.real_gas = Some(RealGas::default());
+    let argument: Vec<f64> = (0..=40).map(|k| 0.1 * f64::from(k)).collect();
+    // In proportion to the pressure at rest: 0.06 and 0.069 at 4.3 MPa.
+    let size = absolute(slow_pressure(&bare(), 0.0, SOFT)) / 4.3e6;
+    let factor = |x: f64| 1.0 / (1.0 - 0.06 * size * x) - 0.069 * size * x;
+    let equation_of_state = UnlistedLaw {
+        value: argument.iter().map(|x| factor(*x)).collect(),
+        argument,
+        attraction: Some(0.069 * size),
+        ..law(LawPlace::Accumulators, LawArgument::RelativeDensity, [0.0; 2], [0.0; 2])
+    };
+    for signals in [SOFT, STIFF] {
+        let missed = misses_beside(&plain, &named, vec![equation_of_state.clone()], signals);
+        assert!(missed < 0.05, "{missed}");
+    }
+    // The same compressibility at ambient temperature without attraction warms as an ideal gas does.
+    let cold = UnlistedLaw {
+        attraction: None,
+        ..equation_of_state
+    };
+    assert!(misses_beside(&plain, &named, vec![cold], STIFF) > 0.2);
 }
 
 #[test]

@@ -111,6 +111,11 @@ fn symbols_of_a_law(law: &UnlistedLaw) -> String {
     let y = quantity(value(law));
     if law.depends_on == LawArgument::Phase {
         format!("Here y is {y}, and t is the time since the start of each recording in s")
+    } else if law.depends_on == LawArgument::RelativeDensity {
+        format!(
+            "Here y is {y}, x is {}, T is the temperature of the gas, and T_0 that of its surroundings, both in K",
+            quantity(argument(law.depends_on))
+        )
     } else if law.presliding_volume_m3.is_some() {
         format!(
             "Here y is {y}, x is {}, and s is the shear of the seal, from -1 to 1, while the oil volume V in m3 flows in with Q in m3/s",
@@ -159,6 +164,7 @@ fn argument(depends_on: LawArgument) -> (&'static str, &'static str) {
         LawArgument::Flow => ("flow", "m3/s"),
         LawArgument::FlowRate => ("rate of flow", "m3/s2"),
         LawArgument::PressureDrop => ("pressure drop", "Pa"),
+        LawArgument::RelativeDensity => ("gas density over static gas density", ""),
         LawArgument::RelativeVolume => ("gas volume over static gas volume", ""),
         LawArgument::Reading => ("reading", ""),
         LawArgument::ReadingRate => ("rate of the reading", "1/s"),
@@ -188,6 +194,11 @@ fn value(law: &UnlistedLaw) -> (&'static str, &'static str) {
         LawPlace::BesideValve3 => ("flow coefficient", "m3/s/sqrt(Pa)"),
         LawPlace::ValveTiming => ("time added to the response", "s"),
         LawPlace::ValveMovement => ("duration of the movement", "s"),
+        LawPlace::Accumulator1 | LawPlace::Accumulator2 | LawPlace::Accumulators
+            if law.depends_on == LawArgument::RelativeDensity =>
+        {
+            ("compressibility factor", "")
+        }
         LawPlace::Accumulator1 | LawPlace::Accumulator2 | LawPlace::Accumulators => ("factor on the gas pressure", ""),
         LawPlace::InstrumentDisplacement => ("value added to the reading", "m"),
         LawPlace::InstrumentForce => ("value added to the reading", "N"),

@@ -125,6 +125,7 @@ mod tests {
             time_constant_s: None,
             frequency_hz: None,
             presliding_volume_m3: None,
+            attraction: None,
         };
         model.effects.seal_friction = Some(SealFriction {
             coulomb_force_n: 100.0,

@@ -6,12 +6,13 @@ use super::stage_end::StageEnd;
 use super::state::State;
 use crate::lanes::{Mask, Number};
 use crate::strut::characteristic::{Characteristic, Line};
+use crate::strut::equation_of_state::EquationOfState;
 use crate::strut::flow_path::FlowPath;
 use crate::strut::gas::{Departure, Gas, GasState};
 use crate::strut::model::StrutModel;
 use crate::strut::orifice::unit_flow;
 use crate::strut::pressure::gauge;
-use crate::strut::terms::{GasLawAnswer, GasLawInputs, LaminarLine, PackFade, PathLaws, PistonSeal};
+use crate::strut::terms::{Compressibility, GasLawAnswer, GasLawInputs, LaminarLine, PackFade, PathLaws, PistonSeal};
 
 /// What a Newton step that is taken without another look may neglect in a pressure drop, Pa. All quantities follow the
 /// step linearly, volumes included, so nothing is lost; the error is that of the curved laws, about
@@ -117,12 +118,17 @@ impl Path {
             valve_coefficient: which.pick(valve_1, valve_2).total_flow_coefficient(),
             leak_coefficient: (effects.damper_leakage.as_ref()).map_or(0.0, |leak| leak.flow_coefficient(which)),
             line: (effects.line_resistance.as_ref()).map_or_else(LaminarLine::default, |lines| lines.line(which)),
-            gas: Gas::charged(
+            gas: Gas::obeying(
+                EquationOfState::of(
+                    effects.real_gas.as_ref().map(|real| real.nitrogen()),
+                    Compressibility::at(&effects.unlisted, which),
+                    model.static_pressure().absolute(),
+                    model.gas.temperature_k,
+                ),
                 model.static_pressure().absolute(),
                 static_gas_m3,
                 model.gas.temperature_k,
                 (effects.gas_heat_transfer.as_ref()).map(|heat| heat.time_constant_s(which)),
-                effects.real_gas.as_ref().map(|real| real.nitrogen()),
             ),
             static_gas_m3,
             piston_seal: (effects.accumulator_piston_friction.as_ref())

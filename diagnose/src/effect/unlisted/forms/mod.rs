@@ -10,6 +10,7 @@
 //! | `parabola` | is added, a polynomial of second degree | its three coefficients |
 //! | `power` | is added and follows a power of its argument | its value at the largest argument, exponent |
 //! | `proportional` | is added and is proportional to its argument | the value at an argument of one |
+//! | `redlich_kwong` | is the compressibility factor of a gas over its density | volume of the molecules, their attraction |
 //! | `remembering` | is added or multiplies, and follows an energy that is held or a recent change | its size, time constant of the memory |
 //! | `relaxing` | multiplies, and follows what has changed lately | its exponent, time constant of the memory |
 //! | `saturating` | is added, rises and comes to an end | its end, the argument where half of it is reached |
@@ -28,6 +29,7 @@ mod level;
 mod parabola;
 mod power;
 mod proportional;
+mod redlich_kwong;
 mod relaxing;
 mod remembering;
 mod rises;
@@ -50,6 +52,7 @@ pub use level::Level;
 pub use parabola::Parabola;
 pub use power::Power;
 pub use proportional::{Proportional, ProportionalAmount};
+pub use redlich_kwong::RedlichKwong;
 pub use relaxing::Relaxing;
 pub use remembering::{Fading, Heated, Lingering};
 pub use rises::is_of_free_table;

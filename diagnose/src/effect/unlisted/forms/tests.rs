@@ -91,7 +91,7 @@ fn stops_do_nothing_between_their_thresholds() {
 
 #[test]
 fn each_form_has_as_many_numbers_as_its_starts() {
-    let forms: [&dyn Form; 21] = [
+    let forms: [&dyn Form; 22] = [
         &Added,
         &Bell,
         &Choke,
@@ -103,6 +103,7 @@ fn each_form_has_as_many_numbers_as_its_starts() {
         &Proportional("mass_kg"),
         &Parabola(["a", "b", "c"]),
         &Power("drop_Pa"),
+        &RedlichKwong,
         &Relaxing,
         &Rising,
         &Shearing,
@@ -147,6 +148,17 @@ fn what_is_proportional_goes_through_the_origin() {
         Proportional("mass_kg").values(&GRID, &[2.0]),
         [-4.0, -2.0, 0.0, 2.0, 6.0]
     );
+}
+
+#[test]
+fn a_gas_without_molecules_is_ideal() {
+    let knots = &[0.0, 1.0, 2.0];
+    let grid = Grid { knots, ..GRID };
+    assert_eq!(RedlichKwong.values(&grid, &[0.0, 0.0]), [1.0; 3]);
+    // Both parts count as the density does; the factor is one where there is none.
+    let values = RedlichKwong.values(&grid, &[0.1, 0.05]);
+    assert_eq!(values, [1.0, 1.0 / 0.9 - 0.05, 1.25 - 0.1]);
+    assert_eq!(RedlichKwong.attraction(&[0.1, 0.05]), Some(0.05));
 }
 
 #[test]

@@ -70,6 +70,7 @@ pub fn table(label: &str, fitted: &[f64]) -> Option<UnlistedLaw> {
         time_constant_s: law.form.time_constant_s(fitted),
         frequency_hz: law.form.frequency_hz(fitted),
         presliding_volume_m3: law.form.presliding_volume_m3(fitted),
+        attraction: law.form.attraction(fitted),
     })
 }
 

@@ -121,6 +121,7 @@ mod tests {
             time_constant_s: None,
             frequency_hz: (depends_on == LawArgument::Phase).then_some(0.25),
             presliding_volume_m3: None,
+            attraction: None,
         }
     }
 

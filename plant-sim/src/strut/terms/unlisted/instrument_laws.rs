@@ -100,6 +100,7 @@ mod tests {
             time_constant_s: None,
             frequency_hz: None,
             presliding_volume_m3: None,
+            attraction: None,
         }
     }
 

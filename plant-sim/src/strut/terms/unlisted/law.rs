@@ -23,6 +23,7 @@ use crate::strut::terms::accumulator_piston_friction::PRESLIDING_VOLUME_M3;
 ///     time_constant_s: None,
 ///     frequency_hz: None,
 ///     presliding_volume_m3: None,
+///     attraction: None,
 /// };
 /// assert!((law.characteristic().value(0.025) - 0.95).abs() < 1e-15);
 /// let mut model = StrutModel::defender110(8000.0);
@@ -51,6 +52,12 @@ pub struct UnlistedLaw {
     /// model too, its volume holds for both, because there is one seal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub presliding_volume_m3: Option<f64>,
+    /// Part of the compressibility factor that the attraction of the molecules takes away at the static density and ambient temperature, 0 to 1,
+    /// about 0.07 for nitrogen at 4.3 MPa. It grows with the density and falls with the temperature to the power 3/2 (Redlich & Kwong, Chem. Rev.
+    /// 44(1), 1949); the other part does not change with the temperature. Only a law over [`LawArgument::RelativeDensity`] has one, and 0 is meant
+    /// where it has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attraction: Option<f64>,
 }
 
 impl Checked for UnlistedLaw {
@@ -64,6 +71,7 @@ impl Checked for UnlistedLaw {
         Limit::optional("presliding_volume_m3", PRESLIDING_VOLUME_M3, "m3", |law| {
             law.presliding_volume_m3
         }),
+        Limit::optional("attraction", Range::FromTo(0.0, 1.0), "", |law| law.attraction),
     ];
 
     fn check_together(&self) -> Result<(), InvalidValue> {
@@ -102,6 +110,10 @@ impl Checked for UnlistedLaw {
                 word(&LawPlace::Accumulator2Friction)
             );
             return Err(InvalidValue::new("presliding_volume_m3", what));
+        }
+        if self.attraction.is_some() && self.depends_on != LawArgument::RelativeDensity {
+            let what = format!("belongs to laws over {}", word(&LawArgument::RelativeDensity));
+            return Err(InvalidValue::new("attraction", what));
         }
         increasing("argument", &self.argument)?;
         if self.depends_on == LawArgument::Phase
@@ -222,6 +234,7 @@ mod tests {
             time_constant_s: None,
             frequency_hz: None,
             presliding_volume_m3: None,
+            attraction: None,
         }
     }
 
@@ -311,6 +324,31 @@ mod tests {
              is sheared by oil"
         );
         assert!(with(LawPlace::Accumulator1Friction, 0.0).check().is_err());
+    }
+
+    #[test]
+    fn only_an_equation_of_state_has_an_attraction() {
+        let good = UnlistedLaw {
+            attraction: Some(0.07),
+            ..law(LawPlace::Accumulators, LawArgument::RelativeDensity, [1.0, 0.98])
+        };
+        assert!(good.check().is_ok());
+        let toml = toml::to_string(&good).unwrap();
+        assert!(toml.contains("attraction = 0.07"), "{toml}");
+        assert_eq!(toml::from_str::<UnlistedLaw>(&toml).unwrap(), good);
+        let over_volume = UnlistedLaw {
+            depends_on: LawArgument::RelativeVolume,
+            ..good.clone()
+        };
+        assert_eq!(
+            over_volume.check().unwrap_err().to_string(),
+            "attraction belongs to laws over \"relative_density\""
+        );
+        let repelling = UnlistedLaw {
+            attraction: Some(-0.1),
+            ..good
+        };
+        assert!(repelling.check().is_err());
     }
 
     #[test]

@@ -198,7 +198,7 @@ impl PathLaws {
 }
 
 /// The law of the gas of an accumulator is its own or, where it has none, the one of both.
-fn gas(laws: &[UnlistedLaw], path: FlowPath, over: LawArgument) -> Option<&UnlistedLaw> {
+pub(super) fn gas(laws: &[UnlistedLaw], path: FlowPath, over: LawArgument) -> Option<&UnlistedLaw> {
     [LawPlace::accumulator(path), LawPlace::Accumulators]
         .into_iter()
         .find_map(|place| laws.iter().find(|law| law.place == place && law.depends_on == over))
@@ -241,6 +241,7 @@ mod tests {
             time_constant_s: None,
             frequency_hz: None,
             presliding_volume_m3: None,
+            attraction: None,
         }
     }
 

@@ -4,8 +4,8 @@ mod slow_and_steady;
 
 use oleo_interface::{StrutValves, Valve};
 use oleo_plant_sim::strut::{
-    Characteristic, DampingFade, GasHeatTransfer, LawArgument, LawPlace, LineInertance, MountCompliance,
-    OilCompressibility, OilCount, Strut, StrutModel, UnlistedLaw,
+    AccumulatorPistonFriction, Characteristic, DampingFade, GasHeatTransfer, LawArgument, LawPlace, LineInertance,
+    MountCompliance, OilCompressibility, OilCount, RealGas, Strut, StrutModel, UnlistedLaw,
 };
 use slow_and_steady::{
     BYPASS_1, CLOSED, SOFT, STIFF, absolute, bare, beside_pressure, close, slow_pressure, slowly, steady_drop,
@@ -19,6 +19,8 @@ fn law(place: LawPlace, depends_on: LawArgument, argument: [f64; 2], value: [f64
         value: value.to_vec(),
         time_constant_s: None,
         frequency_hz: None,
+        presliding_volume_m3: None,
+        attraction: None,
     }
 }
 
@@ -72,6 +74,8 @@ fn a_choking_valve_3_passes_what_its_law_leaves_even_where_more_drop_means_less_
         value,
         time_constant_s: None,
         frequency_hz: None,
+        presliding_volume_m3: None,
+        attraction: None,
     }];
     let mut strut = Strut::at_rest(&model, STIFF).unwrap();
     slowly(&mut strut, 0.03, STIFF);
@@ -179,6 +183,8 @@ fn swinging(place: LawPlace, middle: f64, amplitude: f64) -> UnlistedLaw {
         value,
         time_constant_s: None,
         frequency_hz: Some(0.5),
+        presliding_volume_m3: None,
+        attraction: None,
     }
 }
 
@@ -315,6 +321,93 @@ fn laws_with_a_memory_and_of_pistons_and_valves() {
     assert!((longer as i64 - believed as i64 - 30).abs() <= 1, "{believed} {longer}");
 }
 
+/// A law at a floating piston that holds back a pressure (Pa) at any gas volume.
+fn piston_law(place: LawPlace, held_back_pa: f64, presliding_volume_m3: Option<f64>) -> UnlistedLaw {
+    UnlistedLaw {
+        presliding_volume_m3,
+        ..law(place, LawArgument::RelativeVolume, [0.0, 2.0], [held_back_pa; 2])
+    }
+}
+
+#[test]
+fn a_piston_law_shears_its_seal_over_the_volume_that_it_states() {
+    let term = |presliding_volume_m3| {
+        let mut model = bare();
+        model.effects.accumulator_piston_friction = Some(AccumulatorPistonFriction {
+            pressure_1_pa: 5e4,
+            pressure_2_pa: 8e4,
+            presliding_volume_m3,
+        });
+        model
+    };
+    let laws = |volume| {
+        vec![
+            piston_law(LawPlace::Accumulator1Friction, 5e4, volume),
+            piston_law(LawPlace::Accumulator2Friction, 8e4, volume),
+        ]
+    };
+    // A law that does not say the volume means that of a term that does not.
+    for (volume, said) in [(9e-7, Some(9e-7)), (1e-7, None)] {
+        let missed = misses(&term(volume), laws(said), SOFT);
+        assert!(missed < 1e-4, "{missed}");
+    }
+    assert!(misses(&term(9e-7), laws(Some(1e-7)), SOFT) > 0.05);
+}
+
+#[test]
+fn the_seal_of_a_piston_law_slides_exponentially_over_its_volume() {
+    // ds/dV = (1 - s) / V_s from rest: s = 1 - exp(-V / V_s).
+    let held_pa = |presliding_m3: Option<f64>, to_m: f64| {
+        let mut model = bare();
+        let mut pressures = [0.0; 2];
+        for (pressure, held) in pressures.iter_mut().zip([0.0, 5e4]) {
+            model.effects.unlisted = vec![piston_law(LawPlace::Accumulator1Friction, held, presliding_m3)];
+            let mut strut = Strut::at_rest(&model, STIFF).unwrap();
+            for k in 1..=2000 {
+                *pressure = strut.advance(to_m * f64::from(k) / 2000.0, 1e-3, STIFF).pressure_pa[1];
+            }
+        }
+        pressures[1] - pressures[0]
+    };
+    let to_m = 3e-4;
+    let volume = bare().piston_area_m2() * to_m;
+    for presliding in [2e-7, 1e-6] {
+        close(
+            held_pa(Some(presliding), to_m),
+            5e4 * (1.0 - libm::exp(-volume / presliding)),
+            1e-2,
+        );
+    }
+}
+
+#[test]
+fn a_term_of_the_piston_keeps_its_volume_beside_a_law() {
+    let with = |term_pa, law_volume| {
+        let mut model = bare();
+        model.effects.accumulator_piston_friction = Some(AccumulatorPistonFriction {
+            pressure_1_pa: term_pa,
+            pressure_2_pa: 0.0,
+            presliding_volume_m3: 8e-7,
+        });
+        model.effects.unlisted = vec![piston_law(LawPlace::Accumulator1Friction, 7e4 - term_pa, law_volume)];
+        model
+    };
+    let run = |model: StrutModel| {
+        let mut strut = Strut::at_rest(&model, STIFF).unwrap();
+        let at = |k: u32| 0.01 * libm::sin(0.05 * f64::from(k));
+        (0..200)
+            .map(|k| strut.advance(at(k), 5e-3, STIFF).pressure_pa[1])
+            .collect::<Vec<f64>>()
+    };
+    // The level is shared as it likes between the two; there is one seal.
+    let all = run(with(7e4, Some(1e-7)));
+    for other in [with(3e4, Some(1e-7)), with(0.0, None)] {
+        for (a, b) in all.iter().zip(run(other)) {
+            close(b, *a, 1e-9);
+        }
+    }
+}
+
 #[test]
 fn a_law_over_the_rate_of_flow_is_an_inertance() {
     let mut named = bare();
@@ -334,9 +427,14 @@ fn a_law_over_the_rate_of_flow_is_an_inertance() {
 /// Largest difference of any pressure between a strut whose effect has a name and one with laws in its place, over what a plain strut differs from the
 /// first, in 20 s of strokes of 40 mm.
 fn misses(named: &StrutModel, laws: Vec<UnlistedLaw>, signals: StrutValves<bool>) -> f64 {
-    let mut nameless = bare();
+    misses_beside(&bare(), named, laws, signals)
+}
+
+/// The same where the plain strut has effects that the two others have too.
+fn misses_beside(plain: &StrutModel, named: &StrutModel, laws: Vec<UnlistedLaw>, signals: StrutValves<bool>) -> f64 {
+    let mut nameless = plain.clone();
     nameless.effects.unlisted = laws;
-    let mut struts = [named, &nameless, &bare()].map(|model| Strut::at_rest(model, signals).unwrap());
+    let mut struts = [named, &nameless, plain].map(|model| Strut::at_rest(model, signals).unwrap());
     let (mut missed, mut changed) = (0.0f64, 0.0f64);
     for k in 0..4000 {
         let at = 0.04 * libm::sin(0.03 * f64::from(k));
@@ -378,6 +476,38 @@ fn a_gas_law_over_its_energy_is_the_energy_equation() {
     // And it is none where one time constant is another one.
     let both = vec![one(LawPlace::Accumulators, 3.0)];
     assert!(misses(&named, both, SOFT) > 0.05);
+}
+
+/// Molecules with a volume that attract each other are nitrogen, also where its work warms it; a factor over the volume is not.
+#[test]
+fn a_gas_law_over_its_density_is_an_equation_of_state() {
+    let mut plain = bare();
+    plain.effects.gas_heat_transfer = Some(GasHeatTransfer {
+        time_constant_1_s: 3.0,
+        time_constant_2_s: 6.0,
+    });
+    let mut named = plain.clone();
+    named.effects.real_gas = Some(RealGas::default());
+    let argument: Vec<f64> = (0..=40).map(|k| 0.1 * f64::from(k)).collect();
+    // In proportion to the pressure at rest: 0.06 and 0.069 at 4.3 MPa.
+    let size = absolute(slow_pressure(&bare(), 0.0, SOFT)) / 4.3e6;
+    let factor = |x: f64| 1.0 / (1.0 - 0.06 * size * x) - 0.069 * size * x;
+    let equation_of_state = UnlistedLaw {
+        value: argument.iter().map(|x| factor(*x)).collect(),
+        argument,
+        attraction: Some(0.069 * size),
+        ..law(LawPlace::Accumulators, LawArgument::RelativeDensity, [0.0; 2], [0.0; 2])
+    };
+    for signals in [SOFT, STIFF] {
+        let missed = misses_beside(&plain, &named, vec![equation_of_state.clone()], signals);
+        assert!(missed < 0.05, "{missed}");
+    }
+    // The same compressibility at ambient temperature without attraction warms as an ideal gas does.
+    let cold = UnlistedLaw {
+        attraction: None,
+        ..equation_of_state
+    };
+    assert!(misses_beside(&plain, &named, vec![cold], STIFF) > 0.2);
 }
 
 #[test]

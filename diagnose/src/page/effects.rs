@@ -111,6 +111,16 @@ fn symbols_of_a_law(law: &UnlistedLaw) -> String {
     let y = quantity(value(law));
     if law.depends_on == LawArgument::Phase {
         format!("Here y is {y}, and t is the time since the start of each recording in s")
+    } else if law.depends_on == LawArgument::RelativeDensity {
+        format!(
+            "Here y is {y}, x is {}, T is the temperature of the gas, and T_0 that of its surroundings, both in K",
+            quantity(argument(law.depends_on))
+        )
+    } else if law.presliding_volume_m3.is_some() {
+        format!(
+            "Here y is {y}, x is {}, and s is the shear of the seal, from -1 to 1, while the oil volume V in m3 flows in with Q in m3/s",
+            quantity(argument(law.depends_on))
+        )
     } else {
         format!("Here y is {y}, and x is {}", quantity(argument(law.depends_on)))
     }
@@ -154,6 +164,7 @@ fn argument(depends_on: LawArgument) -> (&'static str, &'static str) {
         LawArgument::Flow => ("flow", "m3/s"),
         LawArgument::FlowRate => ("rate of flow", "m3/s2"),
         LawArgument::PressureDrop => ("pressure drop", "Pa"),
+        LawArgument::RelativeDensity => ("gas density over static gas density", ""),
         LawArgument::RelativeVolume => ("gas volume over static gas volume", ""),
         LawArgument::Reading => ("reading", ""),
         LawArgument::ReadingRate => ("rate of the reading", "1/s"),
@@ -183,6 +194,11 @@ fn value(law: &UnlistedLaw) -> (&'static str, &'static str) {
         LawPlace::BesideValve3 => ("flow coefficient", "m3/s/sqrt(Pa)"),
         LawPlace::ValveTiming => ("time added to the response", "s"),
         LawPlace::ValveMovement => ("duration of the movement", "s"),
+        LawPlace::Accumulator1 | LawPlace::Accumulator2 | LawPlace::Accumulators
+            if law.depends_on == LawArgument::RelativeDensity =>
+        {
+            ("compressibility factor", "")
+        }
         LawPlace::Accumulator1 | LawPlace::Accumulator2 | LawPlace::Accumulators => ("factor on the gas pressure", ""),
         LawPlace::InstrumentDisplacement => ("value added to the reading", "m"),
         LawPlace::InstrumentForce => ("value added to the reading", "N"),
@@ -350,6 +366,18 @@ mod tests {
             symbols_of_a_law(&law),
             "Here y is the flow coefficient in m3/s/sqrt(Pa), and x is the displacement in m"
         );
+        let piston = unlisted::table("pressure held back over volume, accumulator 2", &[4e4, -0.5, 7e-7]);
+        let piston = piston.expect("a law of the list");
+        assert_eq!(piston.presliding_volume_m3, Some(7e-7));
+        assert!(symbols_of_a_law(&piston).ends_with("while the oil volume V in m3 flows in with Q in m3/s"));
+        let symbol = |key| {
+            of(EffectId::Unlisted).symbol_in(
+                SpecimenKind::TwoStageStrut,
+                "pressure held back over volume, accumulator 2",
+                key,
+            )
+        };
+        assert_eq!(symbol("presliding_volume_m3"), Some("V_s"));
         for candidate in unlisted::candidates_of_struts(50.0) {
             let equation = of(EffectId::Unlisted).equation_in(SpecimenKind::TwoStageStrut, &candidate.label);
             let equation = equation.expect("an equation");

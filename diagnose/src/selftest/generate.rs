@@ -361,6 +361,7 @@ impl<'a> Ruler<'a> {
 mod tests {
     use super::*;
     use crate::estimation::{LeastSquares, fit};
+    use crate::search::Screen;
 
     #[test]
     fn a_complete_campaign_is_met_by_its_own_truth_to_the_noise() {
@@ -392,6 +393,32 @@ mod tests {
         };
         // A quarter of a turn on, the sine is at its highest.
         assert!((first_p2(1e4) - first_p2(0.0) - 1e4).abs() < 1e-3);
+    }
+
+    /// The term is left out of the model, and the law at its piston must find its level and the volume that shears its seal.
+    #[test]
+    fn the_law_of_a_floating_piston_finds_the_volume_that_shears_its_seal() {
+        let g = generate("test:piston", &[(EffectId::AccumulatorPistonFriction, 10.0)], &[], None).unwrap();
+        let branch = g.truth[0].place.branch().unwrap();
+        let strut = TwoStageStrut::new(g.given, g.recordings).unwrap();
+        let label = format!("pressure held back over volume, accumulator {}", branch.number());
+        let law = strut.candidates().iter().position(|c| c.label == label).unwrap();
+        let stop = AtomicBool::new(false);
+        let problem = LeastSquares::new(&strut, &stop);
+        let calibrated = fit(&problem, Point::nominal(&strut), problem.criteria.fitting.converged).unwrap();
+        let screened = Screen::new(&problem, &calibrated)
+            .and_then(|screen| screen.all(&[law]))
+            .unwrap();
+        let start = screened[0].as_ref().unwrap().point.clone();
+        let fitted = fit(&problem, start, problem.criteria.fitting.converged).unwrap();
+        let ratio = (fitted.cost / problem.residuals() as f64).sqrt();
+        let found = fitted.point.hypothesis(&strut).effects[0].1.clone();
+        let (level, volume) = (found[0] / g.truth[0].value, found[2] / g.truth[1].value);
+        assert!(
+            ratio < 1.06 && (level - 1.0).abs() < 0.05 && (volume - 1.0).abs() < 0.1,
+            "{ratio} {found:?} {:?}",
+            g.truth
+        );
     }
 
     #[test]

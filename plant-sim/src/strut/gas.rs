@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use oleo_interface::Absolute;
 
+use super::equation_of_state::EquationOfState;
 use super::nitrogen::Nitrogen;
 use super::terms::EnergyStep;
 use crate::lanes::{Mask, Number};
@@ -43,7 +44,7 @@ pub struct Gas<N: Number = f64> {
     ambient_k: N,
     /// Inverse of the thermal time constant, 1/s; none: isothermal.
     cooling_rate_1_s: Option<N>,
-    real: Option<N::Each<Nitrogen>>,
+    real: Option<N::Each<EquationOfState>>,
     gas_constant: N,
     inverse_heat_capacity: N,
     /// The volume below which a state makes no sense; the gas law is continued by its tangent there.
@@ -61,6 +62,18 @@ impl Gas {
         time_constant_s: Option<f64>,
         real: Option<Nitrogen>,
     ) -> Self {
+        let real = EquationOfState::of(real, None, pressure, ambient_k);
+        Self::obeying(real, pressure, volume_m3, ambient_k, time_constant_s)
+    }
+
+    /// The same of a gas that obeys an equation of state; none for an ideal one.
+    pub(super) fn obeying(
+        real: Option<EquationOfState>,
+        pressure: Absolute<f64>,
+        volume_m3: f64,
+        ambient_k: f64,
+        time_constant_s: Option<f64>,
+    ) -> Self {
         let density = match &real {
             None => pressure.pa() / (NITROGEN_R_J_KG_K * ambient_k),
             Some(gas) => gas.density(pressure, ambient_k),
@@ -70,7 +83,7 @@ impl Gas {
             mass_kg,
             ambient_k,
             cooling_rate_1_s: time_constant_s.map(|tau| 1.0 / tau),
-            gas_constant: real.as_ref().map_or(NITROGEN_R_J_KG_K, Nitrogen::gas_constant),
+            gas_constant: real.as_ref().map_or(NITROGEN_R_J_KG_K, EquationOfState::gas_constant),
             inverse_heat_capacity: 1.0 / (mass_kg * NITROGEN_CV_J_KG_K),
             real: real.map(|gas| [gas]),
             least_volume_m3: 0.02 * volume_m3,
@@ -232,7 +245,7 @@ impl<N: Number> Departure<N> {
     /// The same, but what the real gases of some lanes add is looked up around another density and temperature.
     #[cold]
     #[inline(never)]
-    fn looked_up(&self, gases: &N::Each<Nitrogen>, moved: &N::Each<bool>, density: N, temperature_k: N) -> Self {
+    fn looked_up(&self, gases: &N::Each<EquationOfState>, moved: &N::Each<bool>, density: N, temperature_k: N) -> Self {
         let lane = |lane: usize| {
             if !moved.as_ref()[lane] {
                 return self.part(lane);

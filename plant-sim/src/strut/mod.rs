@@ -31,7 +31,7 @@
 //! | `integrator` | the strut in time: steps, valves' edges, the rod |
 //! | `abreast`, `side_by_side` | four struts that are advanced together, and their hydraulics in the vectors of the processor |
 //! | `valve`, `rod_forces`, `rod_state`, `friction` | movement of a valve; forces between rod and cylinder, and what they depend on |
-//! | `gas`, `nitrogen`, `orifice`, `damper`, `characteristic` | laws of the elements |
+//! | `gas`, `equation_of_state`, `nitrogen`, `orifice`, `damper`, `characteristic` | laws of the elements |
 //! | `instruments` | what faulty instruments make of the columns |
 //! | `motion`, `smoothing` | a motion from sample to sample, and how a recorded displacement becomes one |
 //! | `inputs`, `prediction` | what a recording says was done to a strut, and what its instruments would read |
@@ -41,6 +41,7 @@
 mod abreast;
 mod characteristic;
 mod damper;
+mod equation_of_state;
 mod flow_path;
 mod friction;
 mod gas;

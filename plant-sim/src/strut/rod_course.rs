@@ -124,6 +124,8 @@ mod tests {
             value: vec![20.0, 90.0],
             time_constant_s: None,
             frequency_hz: None,
+            presliding_volume_m3: None,
+            attraction: None,
         };
         model.effects.seal_friction = Some(SealFriction {
             coulomb_force_n: 100.0,

@@ -132,6 +132,14 @@ pub const CHAMBER_FINE_PA: &[f64] = &[
 ];
 /// Gas volume over the static one.
 pub const RELATIVE_VOLUME: &[f64] = &[0.3, 0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0];
+/// Density of a gas over the static one: dense enough for what is a hundredth of the pressure.
+pub const RELATIVE_DENSITY: &[f64] = &[
+    0.0, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0, 2.25, 2.5, 2.75, 3.0, 3.25, 3.5, 3.75, 4.0, 4.5, 5.0, 6.0,
+];
+/// Gas volume over the static one, dense enough for a power.
+pub const RELATIVE_VOLUME_FINE: &[f64] = &[
+    0.15, 0.2, 0.25, 0.3, 0.36, 0.43, 0.5, 0.6, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0,
+];
 /// Acceleration, m/s2: a line.
 pub const ACCELERATION_M_S2: &[f64] = &[-100.0, 100.0];
 /// Time since the start, s: dense enough for an exponential of 0.1 s and more.

@@ -109,6 +109,8 @@ pub fn law(drawn: &Drawn, variant: usize, amount: f64) -> (UnlistedLaw, Vec<True
         value,
         time_constant_s: None,
         frequency_hz: Some(frequency_hz),
+        presliding_volume_m3: None,
+        attraction: None,
     };
     let numbers = vec![
         TrueNumber::new(swing.site.clone(), swing.key, amplitude),

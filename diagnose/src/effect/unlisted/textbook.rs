@@ -204,6 +204,8 @@ pub fn law(drawn: &Drawn, amount: f64) -> (UnlistedLaw, Vec<TrueNumber>) {
         value,
         time_constant_s: None,
         frequency_hz: None,
+        presliding_volume_m3: None,
+        attraction: None,
     };
     (table, vec![TrueNumber::present(law.site.clone())])
 }

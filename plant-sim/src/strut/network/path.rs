@@ -6,12 +6,13 @@ use super::stage_end::StageEnd;
 use super::state::State;
 use crate::lanes::{Mask, Number};
 use crate::strut::characteristic::{Characteristic, Line};
+use crate::strut::equation_of_state::EquationOfState;
 use crate::strut::flow_path::FlowPath;
 use crate::strut::gas::{Departure, Gas, GasState};
 use crate::strut::model::StrutModel;
 use crate::strut::orifice::unit_flow;
 use crate::strut::pressure::gauge;
-use crate::strut::terms::{GasLawAnswer, GasLawInputs, LaminarLine, PackFade, PathLaws, PistonSeal};
+use crate::strut::terms::{Compressibility, GasLawAnswer, GasLawInputs, LaminarLine, PackFade, PathLaws, PistonSeal};
 
 /// What a Newton step that is taken without another look may neglect in a pressure drop, Pa. All quantities follow the
 /// step linearly, volumes included, so nothing is lost; the error is that of the curved laws, about
@@ -19,9 +20,6 @@ use crate::strut::terms::{GasLawAnswer, GasLawInputs, LaminarLine, PackFade, Pat
 pub(super) const NEGLECTED_PA: f64 = 5.0;
 /// The same where only a kink of the pack's table is in question: the step across it, Pa.
 const ACROSS_KINK_PA: f64 = 50.0;
-
-/// Oil volume that shears the seal of a floating piston to sliding where no term says it, m3.
-const PRESLIDING_M3: f64 = 1e-7;
 
 /// One path as the network sees it.
 #[derive(Debug, Clone)]
@@ -106,31 +104,37 @@ impl Path {
         let [valve_1, valve_2, _] = &model.valve;
         let charge_error = (effects.gas_charge_error.as_ref()).map_or(0.0, |error| error.relative_error(which));
         let static_gas_m3 = which.pick(accumulator_1, accumulator_2).static_gas_volume_m3 * (1.0 + charge_error);
+        let laws = (!effects.unlisted.is_empty()).then(|| {
+            let static_energy_j = model.static_pressure().absolute().pa() * static_gas_m3;
+            Box::new(PathLaws::of(&effects.unlisted, which, static_energy_j))
+        });
+        // A seal that only a law without a name makes rub shears as the law says.
+        let without_term = PistonSeal {
+            presliding_m3: (laws.as_deref()).map_or(PistonSeal::FREE.presliding_m3, PathLaws::presliding_m3),
+            ..PistonSeal::FREE
+        };
         Self {
             pack: [which.pick(damper_1, damper_2).characteristic()],
             valve_coefficient: which.pick(valve_1, valve_2).total_flow_coefficient(),
             leak_coefficient: (effects.damper_leakage.as_ref()).map_or(0.0, |leak| leak.flow_coefficient(which)),
             line: (effects.line_resistance.as_ref()).map_or_else(LaminarLine::default, |lines| lines.line(which)),
-            gas: Gas::charged(
+            gas: Gas::obeying(
+                EquationOfState::of(
+                    effects.real_gas.as_ref().map(|real| real.nitrogen()),
+                    Compressibility::at(&effects.unlisted, which),
+                    model.static_pressure().absolute(),
+                    model.gas.temperature_k,
+                ),
                 model.static_pressure().absolute(),
                 static_gas_m3,
                 model.gas.temperature_k,
                 (effects.gas_heat_transfer.as_ref()).map(|heat| heat.time_constant_s(which)),
-                effects.real_gas.as_ref().map(|real| real.nitrogen()),
             ),
             static_gas_m3,
-            piston_seal: (effects.accumulator_piston_friction.as_ref()).map_or(
-                PistonSeal {
-                    presliding_m3: PRESLIDING_M3,
-                    ..PistonSeal::FREE
-                },
-                |friction| friction.seal(which),
-            ),
+            piston_seal: (effects.accumulator_piston_friction.as_ref())
+                .map_or(without_term, |friction| friction.seal(which)),
             fade: (effects.damping_fade.as_ref()).map_or_else(PackFade::default, |fade| fade.pack(which)),
-            laws: (!effects.unlisted.is_empty()).then(|| {
-                let static_energy_j = model.static_pressure().absolute().pa() * static_gas_m3;
-                Box::new(PathLaws::of(&effects.unlisted, which, static_energy_j))
-            }),
+            laws,
         }
     }
 

@@ -25,10 +25,16 @@ pub struct AccumulatorPistonFriction {
     pub presliding_volume_m3: f64,
 }
 
-/// 0.05 mm of a 50 mm piston, m3. *Assumed*; a diagnosis fits it.
+/// Oil volume that shears a seal where a model file does not say: 0.05 mm of a 50 mm piston, m3. *Assumed*; a diagnosis fits it.
+pub(in crate::strut::terms) const PRESLIDING_M3: f64 = 1e-7;
+
+/// The same, as serde calls it.
 fn presliding_volume() -> f64 {
-    1e-7
+    PRESLIDING_M3
 }
+
+/// Oil volume that may shear a seal, m3.
+pub(in crate::strut::terms) const PRESLIDING_VOLUME_M3: Range = Range::FromTo(1e-12, 1.0);
 
 /// Breakaway pressure, Pa.
 const PRESSURE_PA: Range = Range::FromTo(0.0, 1e9);
@@ -37,7 +43,7 @@ impl Checked for AccumulatorPistonFriction {
     const LIMITS: &'static [Limit<Self>] = &[
         Limit::one("pressure_1_Pa", PRESSURE_PA, "Pa", |t| t.pressure_1_pa),
         Limit::one("pressure_2_Pa", PRESSURE_PA, "Pa", |t| t.pressure_2_pa),
-        Limit::one("presliding_volume_m3", Range::FromTo(1e-12, 1.0), "m3", |t| {
+        Limit::one("presliding_volume_m3", PRESLIDING_VOLUME_M3, "m3", |t| {
             t.presliding_volume_m3
         }),
     ];

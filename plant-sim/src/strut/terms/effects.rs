@@ -328,6 +328,18 @@ impl Effects {
             argument = [0.0, 0.5, 1.0]
             value = [100.0, -100.0, 100.0]
             frequency_Hz = 0.7
+            [[unlisted]]
+            place = "accumulator-2-friction"
+            depends_on = "relative_volume"
+            argument = [0.5, 1.5]
+            value = [4e4, 3e4]
+            presliding_volume_m3 = 3e-7
+            [[unlisted]]
+            place = "accumulator-1..2"
+            depends_on = "relative_density"
+            argument = [0.0, 4.0]
+            value = [1.0, 0.95]
+            attraction = 0.07
             "#,
         )
         .unwrap()
@@ -411,9 +423,11 @@ mod tests {
             of(&e.bump_stop),
             of(&e.mount_compliance),
             of(&e.damping_fade),
-            // No law has both.
+            // No law has all.
             forgotten_keys(&UnlistedLaw {
                 frequency_hz: e.unlisted[1].frequency_hz,
+                presliding_volume_m3: e.unlisted[2].presliding_volume_m3,
+                attraction: e.unlisted[3].attraction,
                 ..e.unlisted[0].clone()
             }),
         ];

@@ -59,6 +59,16 @@ pub trait Form: Sync {
         None
     }
 
+    /// Oil volume that shears the seal of a law at a floating piston, m3, from the fitted numbers.
+    fn presliding_volume_m3(&self, _fitted: &[f64]) -> Option<f64> {
+        None
+    }
+
+    /// What attraction takes away of the compressibility factor of a law over the density of a gas, from the fitted numbers.
+    fn attraction(&self, _fitted: &[f64]) -> Option<f64> {
+        None
+    }
+
     /// The law of a quantity as an equation with the fitted numbers; `None` for a form that is drawn.
     fn equation(&self, _quantity: &str, _fitted: &[f64]) -> Option<String> {
         None

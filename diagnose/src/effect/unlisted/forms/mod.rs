@@ -10,10 +10,12 @@
 //! | `parabola` | is added, a polynomial of second degree | its three coefficients |
 //! | `power` | is added and follows a power of its argument | its value at the largest argument, exponent |
 //! | `proportional` | is added and is proportional to its argument | the value at an argument of one |
+//! | `redlich_kwong` | is the compressibility factor of a gas over its density | volume of the molecules, their attraction |
 //! | `remembering` | is added or multiplies, and follows an energy that is held or a recent change | its size, time constant of the memory |
 //! | `relaxing` | multiplies, and follows what has changed lately | its exponent, time constant of the memory |
 //! | `saturating` | is added, rises and comes to an end | its end, the argument where half of it is reached |
 //! | `settling` | is added or multiplies, and settles with time | its end, time constant |
+//! | `shearing` | is added and never negative, a power of its argument that is reached over a volume of oil | its level, exponent, volume |
 //! | `stops` | is added beyond a threshold in either direction | sizes, thresholds, exponent |
 //! | `swinging` | is added or multiplies, and swings about what is believed | amplitude, phase, frequency |
 //! | `choke` | multiplies what is believed, and falls with the size of its argument | inverse argument, exponent |
@@ -27,12 +29,14 @@ mod level;
 mod parabola;
 mod power;
 mod proportional;
+mod redlich_kwong;
 mod relaxing;
 mod remembering;
 mod rises;
 mod rising;
 mod saturating;
 mod settling;
+mod shearing;
 mod stops;
 mod swinging;
 
@@ -48,11 +52,13 @@ pub use level::Level;
 pub use parabola::Parabola;
 pub use power::Power;
 pub use proportional::{Proportional, ProportionalAmount};
+pub use redlich_kwong::RedlichKwong;
 pub use relaxing::Relaxing;
 pub use remembering::{Fading, Heated, Lingering};
 pub use rises::is_of_free_table;
 pub use rising::Rising;
 pub use saturating::Saturating;
 pub use settling::{SettlingAdded, SettlingFactor, SettlingLevel};
+pub use shearing::Shearing;
 pub use stops::Stops;
 pub use swinging::{SwingingAdded, SwingingFactor};

@@ -91,7 +91,7 @@ fn stops_do_nothing_between_their_thresholds() {
 
 #[test]
 fn each_form_has_as_many_numbers_as_its_starts() {
-    let forms: [&dyn Form; 20] = [
+    let forms: [&dyn Form; 22] = [
         &Added,
         &Bell,
         &Choke,
@@ -103,8 +103,10 @@ fn each_form_has_as_many_numbers_as_its_starts() {
         &Proportional("mass_kg"),
         &Parabola(["a", "b", "c"]),
         &Power("drop_Pa"),
+        &RedlichKwong,
         &Relaxing,
         &Rising,
+        &Shearing,
         &Saturating("volume_m3", "half_at_Pa"),
         &Stops,
         &SettlingAdded("force_N"),
@@ -146,6 +148,29 @@ fn what_is_proportional_goes_through_the_origin() {
         Proportional("mass_kg").values(&GRID, &[2.0]),
         [-4.0, -2.0, 0.0, 2.0, 6.0]
     );
+}
+
+#[test]
+fn a_gas_without_molecules_is_ideal() {
+    let knots = &[0.0, 1.0, 2.0];
+    let grid = Grid { knots, ..GRID };
+    assert_eq!(RedlichKwong.values(&grid, &[0.0, 0.0]), [1.0; 3]);
+    // Both parts count as the density does; the factor is one where there is none.
+    let values = RedlichKwong.values(&grid, &[0.1, 0.05]);
+    assert_eq!(values, [1.0, 1.0 / 0.9 - 0.05, 1.25 - 0.1]);
+    assert_eq!(RedlichKwong.attraction(&[0.1, 0.05]), Some(0.05));
+}
+
+#[test]
+fn a_seal_that_shears_has_its_level_where_the_gas_is_as_at_rest() {
+    let knots = &[0.5, 1.0, 2.0];
+    let grid = Grid { knots, ..GRID };
+    assert_eq!(Shearing.values(&grid, &[4e4, -1.0, 7e-7]), [8e4, 4e4, 2e4]);
+    assert_eq!(Shearing.values(&grid, &[4e4, 0.0, 7e-7]), [4e4; 3]);
+    assert_eq!(Shearing.presliding_volume_m3(&[4e4, 0.0, 7e-7]), Some(7e-7));
+    // Each volume is tried with each level.
+    let volumes: Vec<f64> = Shearing.starts(&grid).iter().map(|start| start[2]).collect();
+    assert_eq!(volumes, [1e-7, 1e-7, 1e-6, 1e-6]);
 }
 
 #[test]

@@ -1,11 +1,13 @@
 //! Laws of the accumulators: gas, and floating pistons.
 
-use oleo_plant_sim::strut::LawArgument::{RelativeEnergy, RelativeVolume, Time, VolumeChange};
+use oleo_plant_sim::strut::LawArgument::{RelativeDensity, RelativeEnergy, RelativeVolume, Time, VolumeChange};
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
-use crate::effect::unlisted::forms::{Factor, Heated, Level, Relaxing, SettlingFactor};
-use crate::effect::unlisted::knots::{GAS_ENERGY, RELATIVE_VOLUME, TIME_S, VOLUME_CHANGE};
+use crate::effect::unlisted::forms::{Factor, Heated, RedlichKwong, Relaxing, SettlingFactor, Shearing};
+use crate::effect::unlisted::knots::{
+    GAS_ENERGY, RELATIVE_DENSITY, RELATIVE_VOLUME, RELATIVE_VOLUME_FINE, TIME_S, VOLUME_CHANGE,
+};
 use crate::vocabulary::{Branch, Site};
 
 pub(super) const LAWS: &[Law] = &[
@@ -47,6 +49,15 @@ pub(super) const LAWS: &[Law] = &[
         (LawPlace::Accumulators, RelativeVolume),
         &Factor,
         RELATIVE_VOLUME,
+        0.01,
+    ),
+    // One gas is in both.
+    law(
+        "compressibility factor over density, both accumulators",
+        Site::Accumulators,
+        (LawPlace::Accumulators, RelativeDensity),
+        &RedlichKwong,
+        RELATIVE_DENSITY,
         0.01,
     ),
     law(
@@ -109,16 +120,16 @@ pub(super) const LAWS: &[Law] = &[
         "pressure held back over volume, accumulator 1",
         Site::Accumulator(Branch::First),
         (LawPlace::Accumulator1Friction, RelativeVolume),
-        &Level,
-        RELATIVE_VOLUME,
+        &Shearing,
+        RELATIVE_VOLUME_FINE,
         5e3,
     ),
     law(
         "pressure held back over volume, accumulator 2",
         Site::Accumulator(Branch::Second),
         (LawPlace::Accumulator2Friction, RelativeVolume),
-        &Level,
-        RELATIVE_VOLUME,
+        &Shearing,
+        RELATIVE_VOLUME_FINE,
         5e3,
     ),
 ];

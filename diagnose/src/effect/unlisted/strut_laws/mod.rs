@@ -69,6 +69,8 @@ pub fn table(label: &str, fitted: &[f64]) -> Option<UnlistedLaw> {
         value: law.form.values(&law.grid(LEAST_DURATION_S), fitted),
         time_constant_s: law.form.time_constant_s(fitted),
         frequency_hz: law.form.frequency_hz(fitted),
+        presliding_volume_m3: law.form.presliding_volume_m3(fitted),
+        attraction: law.form.attraction(fitted),
     })
 }
 

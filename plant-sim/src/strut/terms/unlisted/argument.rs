@@ -24,6 +24,10 @@ pub enum LawArgument {
     FlowRate,
     /// Pressure drop across the pack, Pa; across a valve its size, without the sign.
     PressureDrop,
+    /// Density of the gas over the one at static pressure, the inverse of the relative volume. A law over it is an equation of state: its value is
+    /// the compressibility factor at ambient temperature, the gas is warmed by its work as this equation says, and at rest it has the static
+    /// pressure.
+    RelativeDensity,
     /// Gas volume over the one at static pressure.
     RelativeVolume,
     /// The same less its mean over the time constant of the law (a first-order lag): what has changed lately. A law over it has a memory.

@@ -58,6 +58,8 @@ mod tests {
             value: value.to_vec(),
             time_constant_s: None,
             frequency_hz: None,
+            presliding_volume_m3: None,
+            attraction: None,
         };
         let laws = ChamberLaws::of(&[law(LawPlace::MainChamber, LawArgument::P1, [0.0, 1e-5])]);
         let (volume, slope) = laws.volume(5e6).unwrap();

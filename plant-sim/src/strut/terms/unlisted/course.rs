@@ -120,6 +120,8 @@ mod tests {
             value: value.to_vec(),
             time_constant_s: None,
             frequency_hz: (depends_on == LawArgument::Phase).then_some(0.25),
+            presliding_volume_m3: None,
+            attraction: None,
         }
     }
 

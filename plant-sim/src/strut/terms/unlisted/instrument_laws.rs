@@ -99,6 +99,8 @@ mod tests {
             value: vec![-slope, slope],
             time_constant_s: None,
             frequency_hz: None,
+            presliding_volume_m3: None,
+            attraction: None,
         }
     }
 

@@ -8,6 +8,7 @@ use super::place::{LawForm, LawPlace};
 use crate::model_file::limits::{as_many, increasing};
 use crate::model_file::{Checked, InvalidValue, Limit, Range};
 use crate::strut::characteristic::Characteristic;
+use crate::strut::terms::accumulator_piston_friction::PRESLIDING_VOLUME_M3;
 
 /// An unmodelled law: a table at a place, linear between its points and beyond its ends.
 ///
@@ -21,6 +22,8 @@ use crate::strut::characteristic::Characteristic;
 ///     value: vec![1.0, 0.9],
 ///     time_constant_s: None,
 ///     frequency_hz: None,
+///     presliding_volume_m3: None,
+///     attraction: None,
 /// };
 /// assert!((law.characteristic().value(0.025) - 0.95).abs() < 1e-15);
 /// let mut model = StrutModel::defender110(8000.0);
@@ -44,6 +47,17 @@ pub struct UnlistedLaw {
     /// Frequency of the oscillation, Hz; a law over [`LawArgument::Phase`] has one, others have none.
     #[serde(default, rename = "frequency_Hz", skip_serializing_if = "Option::is_none")]
     pub frequency_hz: Option<f64>,
+    /// Oil volume that shears the seal of a floating piston from rest to sliding, m3, 1e-12 to 1 (Dahl 1968). Only a law at a floating piston has
+    /// one, and 1e-7 is meant where it has none. Where the term [`AccumulatorPistonFriction`](super::super::AccumulatorPistonFriction) is in the
+    /// model too, its volume holds for both, because there is one seal.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub presliding_volume_m3: Option<f64>,
+    /// Part of the compressibility factor that the attraction of the molecules takes away at the static density and ambient temperature, 0 to 1,
+    /// about 0.07 for nitrogen at 4.3 MPa. It grows with the density and falls with the temperature to the power 3/2 (Redlich & Kwong, Chem. Rev.
+    /// 44(1), 1949); the other part does not change with the temperature. Only a law over [`LawArgument::RelativeDensity`] has one, and 0 is meant
+    /// where it has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attraction: Option<f64>,
 }
 
 impl Checked for UnlistedLaw {
@@ -54,6 +68,10 @@ impl Checked for UnlistedLaw {
             law.time_constant_s
         }),
         Limit::optional("frequency_Hz", Range::FromTo(1e-4, 1e3), "Hz", |law| law.frequency_hz),
+        Limit::optional("presliding_volume_m3", PRESLIDING_VOLUME_M3, "m3", |law| {
+            law.presliding_volume_m3
+        }),
+        Limit::optional("attraction", Range::FromTo(0.0, 1.0), "", |law| law.attraction),
     ];
 
     fn check_together(&self) -> Result<(), InvalidValue> {
@@ -84,6 +102,18 @@ impl Checked for UnlistedLaw {
                 word(&LawArgument::Phase)
             );
             return Err(InvalidValue::new("frequency_Hz", what));
+        }
+        if self.presliding_volume_m3.is_some() && !self.place.is_floating_piston() {
+            let what = format!(
+                "belongs to laws at {} and {}: no other place has a seal that is sheared by oil",
+                word(&LawPlace::Accumulator1Friction),
+                word(&LawPlace::Accumulator2Friction)
+            );
+            return Err(InvalidValue::new("presliding_volume_m3", what));
+        }
+        if self.attraction.is_some() && self.depends_on != LawArgument::RelativeDensity {
+            let what = format!("belongs to laws over {}", word(&LawArgument::RelativeDensity));
+            return Err(InvalidValue::new("attraction", what));
         }
         increasing("argument", &self.argument)?;
         if self.depends_on == LawArgument::Phase
@@ -203,6 +233,8 @@ mod tests {
             value: value.to_vec(),
             time_constant_s: None,
             frequency_hz: None,
+            presliding_volume_m3: None,
+            attraction: None,
         }
     }
 
@@ -265,6 +297,58 @@ mod tests {
                 .check()
                 .is_err()
         );
+    }
+
+    #[test]
+    fn only_a_floating_piston_has_a_seal_that_oil_shears() {
+        let with = |place, volume: f64| UnlistedLaw {
+            presliding_volume_m3: Some(volume),
+            ..law(place, LawArgument::RelativeVolume, [4e4, 4e4])
+        };
+        let good = with(LawPlace::Accumulator2Friction, 7e-7);
+        assert!(good.check().is_ok());
+        let toml = toml::to_string(&good).unwrap();
+        assert!(toml.contains("presliding_volume_m3 = "), "{toml}");
+        assert_eq!(toml::from_str::<UnlistedLaw>(&toml).unwrap(), good);
+        // It may be left out.
+        let without = law(LawPlace::Accumulator2Friction, LawArgument::RelativeVolume, [4e4, 4e4]);
+        let toml = toml::to_string(&without).unwrap();
+        assert!(
+            !toml.contains("presliding_volume_m3") && without.check().is_ok(),
+            "{toml}"
+        );
+        assert_eq!(toml::from_str::<UnlistedLaw>(&toml).unwrap(), without);
+        assert_eq!(
+            with(LawPlace::Accumulator2, 7e-7).check().unwrap_err().to_string(),
+            "presliding_volume_m3 belongs to laws at \"accumulator-1-friction\" and \"accumulator-2-friction\": no other place has a seal that \
+             is sheared by oil"
+        );
+        assert!(with(LawPlace::Accumulator1Friction, 0.0).check().is_err());
+    }
+
+    #[test]
+    fn only_an_equation_of_state_has_an_attraction() {
+        let good = UnlistedLaw {
+            attraction: Some(0.07),
+            ..law(LawPlace::Accumulators, LawArgument::RelativeDensity, [1.0, 0.98])
+        };
+        assert!(good.check().is_ok());
+        let toml = toml::to_string(&good).unwrap();
+        assert!(toml.contains("attraction = 0.07"), "{toml}");
+        assert_eq!(toml::from_str::<UnlistedLaw>(&toml).unwrap(), good);
+        let over_volume = UnlistedLaw {
+            depends_on: LawArgument::RelativeVolume,
+            ..good.clone()
+        };
+        assert_eq!(
+            over_volume.check().unwrap_err().to_string(),
+            "attraction belongs to laws over \"relative_density\""
+        );
+        let repelling = UnlistedLaw {
+            attraction: Some(-0.1),
+            ..good
+        };
+        assert!(repelling.check().is_err());
     }
 
     #[test]

@@ -18,11 +18,13 @@
 //! | `argument` | the quantities |
 //! | `law` | the table in a model file and its check |
 //! | `path_laws`, `chamber_laws`, `seal_law` | the tables as the solver reads them, at the places of the network |
+//! | `compressibility` | the equation of state of a gas that a law says |
 //! | `course` | laws over time, which two kinds of argument state: time since the start, and the phase of an oscillation |
 //! | `instrument_laws` | what instruments add to their readings |
 
 mod argument;
 mod chamber_laws;
+mod compressibility;
 mod course;
 mod instrument_laws;
 mod law;
@@ -35,6 +37,7 @@ pub use law::{EQUATION, UnlistedLaw};
 pub use place::{LawForm, LawPlace};
 
 pub(in crate::strut) use chamber_laws::ChamberLaws;
+pub(in crate::strut) use compressibility::Compressibility;
 pub(in crate::strut) use course::{Course, longest_step_s};
 pub(in crate::strut) use instrument_laws::InstrumentLaws;
 pub(in crate::strut) use law::law_at;

@@ -6,6 +6,7 @@ use super::law::{Remembered, UnlistedLaw, law_at};
 use super::place::LawPlace;
 use crate::strut::characteristic::Characteristic;
 use crate::strut::flow_path::FlowPath;
+use crate::strut::terms::accumulator_piston_friction::PRESLIDING_M3;
 
 /// A factor never falls below this fraction of what the model has: an element does not turn round.
 const LEAST_FACTOR: f64 = 0.01;
@@ -35,6 +36,8 @@ pub(in crate::strut) struct PathLaws {
     static_energy_j: f64,
     pack_energy: Option<Remembered>,
     held_back: Option<Characteristic>,
+    /// Oil volume that shears the seal of the floating piston, m3.
+    presliding_m3: f64,
 }
 
 /// What the laws of a gas are asked about: a trial of a stage.
@@ -85,6 +88,9 @@ impl PathLaws {
             gas_energy: gas(laws, path, LawArgument::RelativeEnergy).and_then(Remembered::of),
             pack_energy: Remembered::at(laws, LawPlace::pack(path), LawArgument::Energy),
             held_back: law_at(laws, LawPlace::piston(path), LawArgument::RelativeVolume),
+            presliding_m3: (laws.iter().find(|law| law.place == LawPlace::piston(path)))
+                .and_then(|law| law.presliding_volume_m3)
+                .unwrap_or(PRESLIDING_M3),
         }
     }
 
@@ -179,6 +185,11 @@ impl PathLaws {
         (self.gas_memory.as_ref()).map_or(0.0, |memory| memory.left(duration_s))
     }
 
+    /// Oil volume that shears the seal of the floating piston to sliding, m3, by its law; where this does not say, by what is assumed of seals.
+    pub fn presliding_m3(&self) -> f64 {
+        self.presliding_m3
+    }
+
     /// Pressure that the floating piston holds back at a gas volume over the static one, Pa, if there is such a law.
     #[inline]
     pub fn held_back_pa(&self, relative_volume: f64) -> Option<f64> {
@@ -187,7 +198,7 @@ impl PathLaws {
 }
 
 /// The law of the gas of an accumulator is its own or, where it has none, the one of both.
-fn gas(laws: &[UnlistedLaw], path: FlowPath, over: LawArgument) -> Option<&UnlistedLaw> {
+pub(super) fn gas(laws: &[UnlistedLaw], path: FlowPath, over: LawArgument) -> Option<&UnlistedLaw> {
     [LawPlace::accumulator(path), LawPlace::Accumulators]
         .into_iter()
         .find_map(|place| laws.iter().find(|law| law.place == place && law.depends_on == over))
@@ -229,6 +240,8 @@ mod tests {
             value: value.to_vec(),
             time_constant_s: None,
             frequency_hz: None,
+            presliding_volume_m3: None,
+            attraction: None,
         }
     }
 
@@ -307,6 +320,21 @@ mod tests {
             (one.throttled_fraction(1e9) - 0.99).abs() < 1e-12,
             "a valve never turns its flow round"
         );
+    }
+
+    #[test]
+    fn each_piston_has_the_seal_of_its_own_law() {
+        let seal = |place, presliding_volume_m3| UnlistedLaw {
+            presliding_volume_m3,
+            ..law(place, LawArgument::RelativeVolume, [0.0, 2.0], [5e4, 1e4])
+        };
+        let laws = [
+            seal(LawPlace::Accumulator1Friction, None),
+            seal(LawPlace::Accumulator2Friction, Some(6e-7)),
+        ];
+        let [one, two] = FlowPath::ALL.map(|path| PathLaws::of(&laws, path, 1.0));
+        assert_eq!((one.presliding_m3(), two.presliding_m3()), (1e-7, 6e-7));
+        assert_eq!((one.held_back_pa(1.0), two.held_back_pa(1.0)), (Some(3e4), Some(3e4)));
     }
 
     #[test]

@@ -55,13 +55,13 @@ pub enum LawPlace {
     /// Every valve: a factor on its flow.
     #[serde(rename = "valve-1..3")]
     Valves,
-    /// Accumulator 1: a factor on its gas pressure.
+    /// Accumulator 1: a factor on its gas pressure; over the density the compressibility factor of its gas.
     #[serde(rename = "accumulator-1")]
     Accumulator1,
-    /// Accumulator 2: a factor on its gas pressure.
+    /// Accumulator 2: the same.
     #[serde(rename = "accumulator-2")]
     Accumulator2,
-    /// Both accumulators: a factor on the gas pressure of each.
+    /// Both accumulators: the same of each.
     #[serde(rename = "accumulator-1..2")]
     Accumulators,
     /// Floating piston of accumulator 1: the level of a friction against its motion, Pa.
@@ -154,6 +154,7 @@ impl LawPlace {
             Self::ValveTiming | Self::ValveMovement => &[LawArgument::PressureDrop],
             Self::Accumulator1 | Self::Accumulator2 | Self::Accumulators => &[
                 LawArgument::RelativeVolume,
+                LawArgument::RelativeDensity,
                 LawArgument::VolumeChange,
                 LawArgument::RelativeEnergy,
                 LawArgument::Time,
@@ -233,6 +234,11 @@ impl LawPlace {
     /// The floating piston at the end of a path.
     pub(super) fn piston(path: FlowPath) -> Self {
         path.pick(Self::Accumulator1Friction, Self::Accumulator2Friction)
+    }
+
+    /// Whether the place is the seal of a floating piston.
+    pub(super) fn is_floating_piston(self) -> bool {
+        matches!(self, Self::Accumulator1Friction | Self::Accumulator2Friction)
     }
 
     /// The accumulator at the end of a path.

@@ -70,6 +70,8 @@ mod tests {
                 value: vec![0.0, 10.0],
                 time_constant_s: None,
                 frequency_hz: (depends_on == LawArgument::Phase).then_some(0.45),
+                presliding_volume_m3: None,
+                attraction: None,
             }];
             let found = SealLaw::all_at(&laws, LawPlace::MainSealFriction);
             assert!(found.len() == 1 && (found[0].value_n(&rod) - value).abs() < 1e-12);

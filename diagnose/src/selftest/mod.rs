@@ -20,6 +20,7 @@ mod ledger;
 mod nominal_strut;
 mod page;
 mod plan;
+mod rate;
 mod save;
 mod summary;
 mod trial;

@@ -3,7 +3,8 @@
 use oleo_report::{Axis, Column, Curves, Field, FieldStyle, Page, Style, Table, Verdict, significant};
 
 use super::plan::SIZES;
-use super::summary::{Nameless, Rate, Summary};
+use super::rate::Rate;
+use super::summary::{Nameless, Summary};
 use crate::effect::in_struts;
 use crate::vocabulary::EffectId;
 

@@ -1,61 +1,26 @@
 //! Summarises the campaigns of a self-test: detection rate, confusion, coverage, calibration of the confidence, false
 //! alarms.
 
+mod flawed;
+mod nameless;
+mod several;
+
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use strum::VariantArray;
-
 use super::calibrate::{Calibration, calibrate};
-use super::flaw::Flaw;
 use super::plan::{COMPLETE, SIZES};
+use super::rate::Rate;
 use super::trial::{Trial, covers};
 use crate::effect::in_struts;
 use crate::vocabulary::EffectId;
-
-/// A part of a number of trials.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub struct Rate {
-    /// Number of campaigns in which it was so.
-    pub hits: usize,
-    /// Times it could have been.
-    pub of: usize,
-}
-
-impl Rate {
-    fn count(&mut self, hit: bool) {
-        self.of += 1;
-        self.hits += usize::from(hit);
-    }
-
-    /// The part, not a number where nothing was tried.
-    #[must_use]
-    pub fn part(self) -> f64 {
-        self.hits as f64 / self.of as f64
-    }
-
-    /// 95 % score interval (Wilson, J. Amer. Statist. Assoc. 22, 1927).
-    #[must_use]
-    pub fn interval(self) -> [f64; 2] {
-        const Z: f64 = 1.959_964;
-        let (n, p) = (self.of as f64, self.part());
-        if self.of == 0 {
-            return [0.0, 1.0];
-        }
-        let middle = p + Z * Z / (2.0 * n);
-        let half = Z * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
-        let below = 1.0 + Z * Z / n;
-        // Exact at the ends, where rounding would leave a trace.
-        let low = if self.hits == 0 { 0.0 } else { (middle - half) / below };
-        let high = if self.hits == self.of {
-            1.0
-        } else {
-            (middle + half) / below
-        };
-        [low, high]
-    }
-}
+pub use flawed::Flawed;
+use flawed::instruments;
+pub use nameless::Nameless;
+use nameless::nameless;
+pub use several::Several;
+use several::{of_all_sizes, several};
 
 /// What became of one term at one size.
 #[derive(Debug, Clone, Serialize)]
@@ -72,19 +37,6 @@ pub struct Power {
     pub sized: Rate,
     /// Something that is not there reported as well or instead.
     pub false_beside: Rate,
-}
-
-/// What became of campaigns with several concealed effects, by size.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Several {
-    /// Number of effects that each of the campaigns conceals.
-    pub concealed: usize,
-    /// Size on the grid, in units of noise.
-    pub size: f64,
-    /// Concealed effects of about this size: those that were found.
-    pub found: Rate,
-    /// Campaigns whose smallest concealed effect has about this size: those in which exactly the concealed effects were reported.
-    pub exact: Rate,
 }
 
 /// How often intervals hold the truth.
@@ -111,48 +63,6 @@ pub struct Reliability {
     pub mean: f64,
     /// How many are there, at their place.
     pub there: Rate,
-}
-
-/// What was said of a term that the search was not allowed.
-#[derive(Debug, Clone, Serialize)]
-pub struct Nameless {
-    /// Effect that was removed from the search.
-    pub term: EffectId,
-    /// Campaigns in which `unlisted` was reported instead.
-    pub unlisted: Rate,
-    /// With a law at the place of the effect, or laws at its parts.
-    pub placed: Rate,
-    /// Another name reported instead or beside.
-    pub misnamed: Rate,
-    /// Median noise ratio on unseen recordings, recalibrated model.
-    pub before: f64,
-    /// The same with what was reported.
-    pub after: f64,
-    /// The same of the true model.
-    pub floor: f64,
-    /// Campaigns in which what was reported predicts unseen recordings to within [`NEAR_FLOOR`] times what the true model reaches.
-    pub near_floor: Rate,
-    /// Places reported, with counts.
-    pub places: BTreeMap<String, usize>,
-}
-
-/// What was said of campaigns whose instruments have a flaw.
-#[derive(Debug, Clone, Serialize)]
-pub struct Flawed {
-    /// What is wrong with the instruments.
-    pub flaw: Flaw,
-    /// Campaigns in which that was said.
-    pub said: Rate,
-    /// Campaigns in which something else was said of an instrument.
-    pub said_else: Rate,
-    /// Campaigns in which an effect was reported that is not there, the unnamed remainder left out.
-    pub false_effect: Rate,
-    /// Campaigns in which an unnamed remainder was reported.
-    pub remainder: Rate,
-    /// Concealed effects that were found, where there are any.
-    pub found: Rate,
-    /// Median noise ratio of the improved model on held-out blocks.
-    pub noise_ratio: f64,
 }
 
 /// All tables of a self-test.
@@ -199,8 +109,6 @@ pub struct Summary {
     pub unseen_better: Rate,
 }
 
-/// A model predicts unseen recordings as well as can be asked if it comes within this multiple of the true model.
-pub const NEAR_FLOOR: f64 = 1.2;
 /// Edges of confidence in the table.
 const CONFIDENCE: [f64; 6] = [0.5, 0.6, 0.7, 0.8, 0.9, 1.0];
 /// Said where nothing is reported.
@@ -252,34 +160,6 @@ impl Summary {
     }
 }
 
-fn instruments(trials: &[&Trial]) -> Vec<Flawed> {
-    (Flaw::VARIANTS.iter())
-        .filter_map(|&flaw| {
-            let own: Vec<&Trial> = trials.iter().copied().filter(|t| t.flaw == Some(flaw)).collect();
-            let mut row = Flawed {
-                flaw,
-                said: Rate::default(),
-                said_else: Rate::default(),
-                false_effect: Rate::default(),
-                remainder: Rate::default(),
-                found: Rate::default(),
-                noise_ratio: median(own.iter().map(|t| t.noise_ratio.1).collect()),
-            };
-            for t in &own {
-                let is_own = |said: &&(String, String)| said.0 == flaw.is_said_as();
-                row.said.count(t.said.iter().any(|s| is_own(&s)));
-                row.said_else.count(!t.said.iter().all(|s| is_own(&s)));
-                let named = |r: &&super::trial::Reported| r.gain.is_some();
-                row.false_effect
-                    .count(t.reported.iter().filter(named).any(|r| !t.there(r)));
-                row.remainder.count(t.reported.iter().any(|r| r.gain.is_none()));
-                t.hidden_ids().iter().for_each(|id| row.found.count(t.found(*id)));
-            }
-            (!own.is_empty()).then_some(row)
-        })
-        .collect()
-}
-
 /// The grid's size nearest in the logarithm.
 fn nearest_size(size: f64) -> f64 {
     let distance = |s: f64| (libm::log(s.max(1e-9)) - libm::log(size.max(1e-9))).abs();
@@ -287,52 +167,6 @@ fn nearest_size(size: f64) -> f64 {
         .into_iter()
         .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
         .unwrap_or(1.0)
-}
-
-fn several(trials: &[&Trial]) -> Vec<Several> {
-    let most = trials.iter().map(|t| t.hidden.len()).max().unwrap_or(0);
-    let mut rows = Vec::new();
-    for concealed in 2..=most {
-        for size in SIZES {
-            let mut row = Several {
-                concealed,
-                size,
-                found: Rate::default(),
-                exact: Rate::default(),
-            };
-            for t in trials.iter().filter(|t| t.hidden.len() == concealed) {
-                let each = t.each_found();
-                for (_, found) in each.iter().filter(|(reached, _)| nearest_size(*reached) == size) {
-                    row.found.count(*found);
-                }
-                let smallest = each.iter().map(|(reached, _)| *reached).fold(f64::INFINITY, f64::min);
-                if nearest_size(smallest) == size {
-                    let [hidden, reported] = t.concealed_and_reported();
-                    row.exact.count(hidden == reported);
-                }
-            }
-            if row.found.of > 0 {
-                rows.push(row);
-            }
-        }
-    }
-    rows
-}
-
-/// The rows of one number of concealed effects, added.
-fn of_all_sizes(rows: &[Several], concealed: usize) -> Several {
-    let sum = |rate: &dyn Fn(&Several) -> Rate| {
-        (rows.iter().filter(|row| row.concealed == concealed)).fold(Rate::default(), |sum, row| Rate {
-            hits: sum.hits + rate(row).hits,
-            of: sum.of + rate(row).of,
-        })
-    };
-    Several {
-        concealed,
-        size: f64::NAN,
-        found: sum(&|row| row.found),
-        exact: sum(&|row| row.exact),
-    }
 }
 
 fn power(trials: &[&Trial]) -> Vec<Power> {
@@ -439,42 +273,6 @@ fn reliability(trials: &[&Trial]) -> Vec<Reliability> {
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
-}
-
-fn nameless(trials: &[&Trial]) -> Vec<Nameless> {
-    in_struts()
-        .into_iter()
-        .filter_map(|term| {
-            let own: Vec<&&Trial> = trials.iter().filter(|t| t.left_out == Some(term)).collect();
-            if own.is_empty() {
-                return None;
-            }
-            let mut row = Nameless {
-                term,
-                unlisted: Rate::default(),
-                placed: Rate::default(),
-                misnamed: Rate::default(),
-                places: BTreeMap::new(),
-                before: median(own.iter().map(|t| t.unseen.0).collect()),
-                after: median(own.iter().map(|t| t.unseen.1).collect()),
-                floor: median(own.iter().map(|t| t.unseen_floor).collect()),
-                near_floor: Rate::default(),
-            };
-            for t in own {
-                row.unlisted.count(t.found(EffectId::Unlisted));
-                row.placed.count(t.law_is_placed());
-                row.near_floor.count(t.unseen.1 <= NEAR_FLOOR * t.unseen_floor);
-                row.misnamed
-                    .count(t.reported.iter().any(|r| r.id != EffectId::Unlisted));
-                for r in &t.reported {
-                    *row.places
-                        .entry(format!("{}@{}", r.id, r.place.as_reported()))
-                        .or_default() += 1;
-                }
-            }
-            Some(row)
-        })
-        .collect()
 }
 
 #[cfg(test)]
@@ -624,17 +422,5 @@ mod tests {
         let s = Summary::of(1, &[without(&[both], &[both], 1.19), without(&[both], &[&first], 1.21)]);
         let row = &s.nameless[0];
         assert_eq!((row.placed.hits, row.near_floor.hits, row.near_floor.of), (1, 1, 2));
-    }
-
-    #[test]
-    fn wilson_intervals_are_those_of_the_books() {
-        // Newcombe, Statist. Med. 17, 1998, table I: 81 of 263, and 0 of 20.
-        let [low, high] = Rate { hits: 81, of: 263 }.interval();
-        assert!(
-            (low - 0.2553).abs() < 1e-4 && (high - 0.3662).abs() < 1e-4,
-            "{low} {high}"
-        );
-        let [low, high] = Rate { hits: 0, of: 20 }.interval();
-        assert!(low == 0.0 && (high - 0.1611).abs() < 1e-4, "{high}");
     }
 }

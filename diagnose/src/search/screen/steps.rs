@@ -1,0 +1,230 @@
+//! The steps of a candidate beside the model so far: damped Gauss-Newton steps of its own coordinates, to which those of the model respond linearly.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{Screen, ScreenedCandidate};
+use crate::error::DiagnoseError;
+use crate::estimation::bounded_step::bounded_step;
+use crate::estimation::normal_equations::{extended, extended_with_residuals, sum, total_cost};
+use crate::estimation::{NormalEquations, Point, Sensitivity};
+use crate::specimen::Series;
+use crate::vocabulary::Column;
+
+/// Damping of the first step, and the smallest.
+const DAMPING: (f64, f64) = (1e-3, 1e-9);
+/// A step that fails raises the damping by this factor ...
+const DAMPING_UP: f64 = 30.0;
+/// ... and one that succeeds changes it by this one.
+const DAMPING_DOWN: f64 = 0.1;
+/// Dampings tried for one step.
+const DAMPINGS_TRIED: usize = 3;
+/// Damping of the model's response, against rounding only.
+pub(super) const RESPONSE_DAMPING: f64 = 1e-9;
+/// A candidate has arrived when a step gains less than this fraction of the cost.
+const TOLERANCE: f64 = 1e-3;
+
+/// A candidate with the derivatives from which it can step on.
+pub(super) struct Linearised {
+    pub candidate: ScreenedCandidate,
+    /// Residuals and derivatives with respect to the candidate's coordinates.
+    added: Vec<Sensitivity>,
+}
+
+/// A point that was simulated.
+pub(super) struct Tried {
+    /// Its cost with the response of the model's own coordinates.
+    pub cost: f64,
+    /// True quantities for going on from it; `None` where they are those of the model so far.
+    pub truths: Option<Vec<Series>>,
+    pub residuals: Vec<Series>,
+}
+
+impl Screen<'_, '_> {
+    /// True quantities at a point that differs from the model so far by a candidate only; `None` where they are those of the
+    /// model. The fault of an instrument leaves the physics alone, but for the displacement, which is an input.
+    pub(super) fn truths_at(&self, point: &Point) -> Result<Option<Vec<Series>>, DiagnoseError> {
+        let leaves_physics_alone = point.effects.last().is_some_and(|&c| {
+            let candidate = &self.specimen().candidates()[c];
+            (candidate.is_instrument_fault() || candidate.is_unlisted())
+                && candidate.place.sensor() != Some(&Column::DISPLACEMENT)
+                && candidate.parameters.iter().all(|p| p.instrument_only)
+        });
+        if leaves_physics_alone {
+            Ok(None)
+        } else {
+            self.problem.evaluation.truths(point).map(Some)
+        }
+    }
+
+    /// A candidate at a point; its true quantities may be given where they are known.
+    pub(super) fn at(&self, point: Point, known: Option<&[Series]>) -> Result<Linearised, DiagnoseError> {
+        let simulated = if known.is_some() { None } else { self.truths_at(&point)? };
+        let truths = known.or(simulated.as_deref()).unwrap_or(&self.truths);
+        let new = self.fit.point.z.len()..point.z.len();
+        let answering: Vec<usize> = new.clone().filter(|&k| self.answers(&point, k)).collect();
+        let mut added = self
+            .problem
+            .evaluation
+            .sensitivities(&point, &answering, Some(truths))?;
+        for s in &mut added {
+            for k in new.clone().filter(|k| !answering.contains(k)) {
+                let nothing: Series = s.residual.iter().map(|channel| vec![0.0; channel.len()]).collect();
+                s.columns.insert(k - new.start, nothing);
+            }
+        }
+        let normals = self.extended(&added);
+        let (response, cost) = self.response(&point, &normals);
+        let candidate = ScreenedCandidate {
+            point,
+            normals,
+            response,
+            cost,
+            damping: DAMPING.0,
+            arrived: new.is_empty(),
+            advanced: false,
+        };
+        Ok(Linearised { candidate, added })
+    }
+
+    /// False for a coordinate of the candidate that changes nothing at a point: a number besides the sizes, while these are zero.
+    fn answers(&self, point: &Point, coordinate: usize) -> bool {
+        let specimen = self.specimen();
+        let Some((candidate, values)) = point.hypothesis(specimen).effects.pop() else {
+            return true;
+        };
+        let candidate = &specimen.candidates()[candidate];
+        let own = coordinate - self.fit.point.z.len();
+        candidate.parameters[own].is_size || !candidate.absent_at(&values)
+    }
+
+    /// The cost at a point, and what follows from its simulation.
+    pub(super) fn cost_at(&self, point: &Point) -> Result<Tried, DiagnoseError> {
+        let truths = self.truths_at(point)?;
+        let evaluation = &self.problem.evaluation;
+        let shown = evaluation.observed(point, truths.as_deref().unwrap_or(&self.truths));
+        let residuals: Vec<Sensitivity> = (evaluation.residuals(&shown).into_iter())
+            .map(|residual| Sensitivity {
+                residual,
+                columns: Vec::new(),
+            })
+            .collect();
+        let cost = self.response(point, &self.extended(&residuals)).1;
+        let residuals = residuals.into_iter().map(|s| s.residual).collect();
+        Ok(Tried {
+            cost,
+            truths,
+            residuals,
+        })
+    }
+
+    /// Takes a candidate some steps further, each with derivatives of its own; only its own coordinates move.
+    pub(super) fn advance(&self, candidate: &mut ScreenedCandidate, steps: usize) -> Result<(), DiagnoseError> {
+        let mut truths: Option<Vec<Series>> = None;
+        for _ in 0..steps {
+            if candidate.arrived {
+                break;
+            }
+            let there = self.at(candidate.point.clone(), truths.as_deref())?;
+            let mut next = Linearised {
+                candidate: ScreenedCandidate {
+                    damping: candidate.damping,
+                    advanced: candidate.advanced,
+                    ..there.candidate
+                },
+                added: there.added,
+            };
+            truths = self.step(&mut next)?;
+            *candidate = next.candidate;
+        }
+        Ok(())
+    }
+
+    /// One step of a candidate; the true quantities at its end, where there was one and they were simulated. The derivatives stay those of its
+    /// beginning: most candidates get no further one.
+    pub(super) fn step(&self, begun: &mut Linearised) -> Result<Option<Vec<Series>>, DiagnoseError> {
+        let candidate = &mut begun.candidate;
+        if candidate.arrived {
+            return Ok(None);
+        }
+        let old = self.fit.point.z.len();
+        let ranges = candidate.point.ranges(self.specimen());
+        let prior = candidate.point.prior(self.specimen());
+        let (h, g) = sum(&candidate.normals, &prior, &candidate.point.z);
+        for _ in 0..DAMPINGS_TRIED {
+            let z = &candidate.point.z;
+            let Some(step) = bounded_step(&h, &g, candidate.damping, z, &ranges) else {
+                candidate.damping *= DAMPING_UP;
+                continue;
+            };
+            let mut trial = candidate.point.clone();
+            for k in old..trial.z.len() {
+                trial.z[k] = (trial.z[k] + step[k]).clamp(ranges[k].0, ranges[k].1);
+            }
+            if trial == candidate.point {
+                break;
+            }
+            match self.cost_at(&trial) {
+                Ok(tried) if tried.cost < candidate.cost => {
+                    for (s, residual) in begun.added.iter_mut().zip(tried.residuals) {
+                        s.residual = residual;
+                    }
+                    let (blocks, base) = (&self.problem.blocks, &self.base);
+                    candidate.normals =
+                        extended_with_residuals(blocks, &candidate.normals, base, &self.answering, &begun.added);
+                    (candidate.response, _) = self.response(&trial, &candidate.normals);
+                    candidate.arrived = candidate.cost - tried.cost < TOLERANCE * tried.cost;
+                    candidate.damping = (candidate.damping * DAMPING_DOWN).max(DAMPING.1);
+                    (candidate.point, candidate.cost) = (trial, tried.cost);
+                    return Ok(tried.truths);
+                }
+                Ok(_) | Err(DiagnoseError::Simulation { .. }) => candidate.damping *= DAMPING_UP,
+                Err(other) => return Err(other),
+            }
+        }
+        candidate.arrived = true;
+        Ok(None)
+    }
+
+    /// Cost that a step would leave if everything were linear, as far as the ranges allow.
+    pub(super) fn left_by_linear_step(&self, candidate: &ScreenedCandidate) -> f64 {
+        let (point, specimen) = (&candidate.point, self.specimen());
+        let (h, g) = sum(&candidate.normals, &point.prior(specimen), &point.z);
+        let Some(step) = bounded_step(&h, &g, candidate.damping, &point.z, &point.ranges(specimen)) else {
+            return candidate.cost;
+        };
+        let raw = total_cost(&candidate.normals) + point.prior_cost(specimen);
+        raw - 2.0 * g.dot(&step) + step.dot(&(&h * &step))
+    }
+
+    /// The step that the model's own coordinates make in response to the candidate, and the cost then.
+    pub(super) fn response(&self, point: &Point, normals: &[NormalEquations]) -> (DVector<f64>, f64) {
+        let old = self.fit.point.z.len();
+        let (z, prior) = (&self.fit.point.z, &self.fit.prior);
+        let (mut h, mut g) = (DMatrix::zeros(old, old), DVector::zeros(old));
+        for n in normals {
+            h += n.h.view((0, 0), (old, old));
+            g += n.g.rows(0, old);
+        }
+        for k in 0..old {
+            h[(k, k)] += prior[k];
+            g[k] -= prior[k] * z[k];
+        }
+        // The candidate may free a value of the model from its tolerance.
+        let ranges = &point.ranges(self.specimen())[..old];
+        let response = bounded_step(&h, &g, RESPONSE_DAMPING, z, ranges).unwrap_or_else(|| DVector::zeros(old));
+        let raw = total_cost(normals) + point.prior_cost(self.specimen());
+        let cost = raw - 2.0 * g.dot(&response) + response.dot(&(&h * &response));
+        (response, cost)
+    }
+
+    /// Normal equations of the model's coordinates, frozen, and the candidate's together.
+    pub(super) fn extended(&self, added: &[Sensitivity]) -> Vec<NormalEquations> {
+        extended(
+            &self.problem.blocks,
+            &self.fit.normals,
+            &self.base,
+            &self.answering,
+            added,
+        )
+    }
+}

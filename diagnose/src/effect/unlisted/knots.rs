@@ -176,8 +176,6 @@ pub const EDGE_FINE_PA: &[f64] = &[
 ];
 /// Rate of flow, m3/s2: a line.
 pub const FLOW_RATE_M3_S2: &[f64] = &[-1.0, 1.0];
-/// The same, a few.
-pub const FEW_EDGES_PA: &[f64] = &[0.0, 2.0 * P, 8.0 * P];
 /// Energy held by a gas over its static pressure times its static volume: a line.
 pub const GAS_ENERGY: &[f64] = &[-1.0, 1.0];
 /// Energy held by the oil of a pack, J, dense enough for a factor that falls by a fraction of itself.

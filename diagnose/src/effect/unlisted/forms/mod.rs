@@ -7,7 +7,7 @@
 //! | `level` | is added and never negative | the value at each knot |
 //! | `factor` | multiplies what is believed; one at rest | logarithmic rises from knot to knot |
 //! | `bell` | is added around one argument | height, position, half width |
-//! | `parabola` | is added, a polynomial of second degree | its three coefficients |
+//! | `parabola` | is added, a polynomial of second degree, of any sign or never negative | its three coefficients |
 //! | `power` | is added and follows a power of its argument | its value at the largest argument, exponent |
 //! | `proportional` | is added and is proportional to its argument | the value at an argument of one |
 //! | `redlich_kwong` | is the compressibility factor of a gas over its density | volume of the molecules, their attraction |
@@ -49,7 +49,7 @@ pub use choke::Choke;
 pub use factor::Factor;
 pub use form::{ClosedForm, Form, Grid};
 pub use level::Level;
-pub use parabola::Parabola;
+pub use parabola::{LevelParabola, Parabola};
 pub use power::Power;
 pub use proportional::{Proportional, ProportionalAmount};
 pub use redlich_kwong::RedlichKwong;

@@ -1,10 +1,37 @@
-//! A value that is added, a polynomial of second degree over its argument, which is never negative: `a + b x + c x^2`.
+//! A value that is added, a polynomial of second degree over its argument, which is never negative: `a + b x + c x^2`. The value may be of any
+//! sign, or it may not be negative either.
 
 use super::form::{ClosedForm, Form, Grid};
 use crate::parameter::Parameter;
 
+/// Levels that are tried beside none, over one that would be visible: beside none an answer may not be in proportion to the level.
+const LARGER: [f64; 2] = [5.0, 20.0];
+
 /// The keys of its three numbers.
 pub struct Parabola(pub [&'static str; 3]);
+
+/// A value that is never negative; the keys of its three numbers.
+pub struct LevelParabola(pub [&'static str; 3]);
+
+impl Form for LevelParabola {
+    fn closed(&self) -> Option<ClosedForm> {
+        Parabola(self.0).closed()
+    }
+
+    fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
+        Parabola(self.0).parameters(grid)
+    }
+
+    fn starts(&self, grid: &Grid) -> Vec<Vec<f64>> {
+        LARGER.map(|size| vec![size * grid.visible, 0.0, 0.0]).to_vec()
+    }
+
+    fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        (Parabola(self.0).values(grid, fitted).into_iter())
+            .map(|value| value.max(0.0))
+            .collect()
+    }
+}
 
 impl Form for Parabola {
     fn closed(&self) -> Option<ClosedForm> {

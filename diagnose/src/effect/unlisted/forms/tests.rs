@@ -70,6 +70,9 @@ fn bubbles_under_pressure_obey_boyle() {
 fn a_parabola_has_its_value_slope_and_curvature() {
     let values = Parabola(["a", "b", "c"]).values(&GRID, &[1.0, -2.0, 0.5]);
     assert_eq!(values, [7.0, 3.5, 1.0, -0.5, -0.5]);
+    // A duration ends at none.
+    let values = LevelParabola(["a", "b", "c"]).values(&GRID, &[1.0, -2.0, 0.5]);
+    assert_eq!(values, [7.0, 3.5, 1.0, 0.0, 0.0]);
 }
 
 #[test]
@@ -91,7 +94,7 @@ fn stops_do_nothing_between_their_thresholds() {
 
 #[test]
 fn each_form_has_as_many_numbers_as_its_starts() {
-    let forms: [&dyn Form; 22] = [
+    let forms: [&dyn Form; 23] = [
         &Added,
         &Bell,
         &Choke,
@@ -99,6 +102,7 @@ fn each_form_has_as_many_numbers_as_its_starts() {
         &Fading,
         &Heated,
         &Level,
+        &LevelParabola(["a", "b", "c"]),
         &Lingering,
         &Proportional("mass_kg"),
         &Parabola(["a", "b", "c"]),

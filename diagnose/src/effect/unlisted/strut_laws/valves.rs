@@ -5,8 +5,8 @@ use oleo_plant_sim::strut::LawArgument::{PressureDrop, Time};
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
-use crate::effect::unlisted::forms::{Added, Choke, Level, Parabola, SettlingLevel};
-use crate::effect::unlisted::knots::{EDGE_FINE_PA, EDGE_PA, FEW_EDGES_PA, TIME_S, VALVE_PA};
+use crate::effect::unlisted::forms::{Added, Choke, LevelParabola, Parabola, SettlingLevel};
+use crate::effect::unlisted::knots::{EDGE_FINE_PA, EDGE_PA, TIME_S, VALVE_PA};
 use crate::vocabulary::Site;
 
 pub(super) const LAWS: &[Law] = &[
@@ -70,8 +70,9 @@ pub(super) const LAWS: &[Law] = &[
         "duration of the movement over pressure drop",
         Site::Valves,
         (LawPlace::ValveMovement, PressureDrop),
-        &Level,
-        FEW_EDGES_PA,
+        // As the response time goes with the pressure, so does the time that a part of it takes.
+        &LevelParabola(["at_rest_s", "per_Pa_s", "per_Pa2_s"]),
+        EDGE_FINE_PA,
         2e-3,
     ),
 ];

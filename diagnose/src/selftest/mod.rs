@@ -20,8 +20,8 @@ mod ledger;
 mod nominal_strut;
 mod page;
 mod plan;
-mod rate;
 mod save;
+mod statistics;
 mod summary;
 mod trial;
 

@@ -3,7 +3,7 @@
 use oleo_report::{Axis, Column, Curves, Field, FieldStyle, Page, Style, Table, Verdict, significant};
 
 use super::plan::SIZES;
-use super::rate::Rate;
+use super::statistics::Rate;
 use super::summary::{Nameless, Summary};
 use crate::effect::in_struts;
 use crate::vocabulary::EffectId;

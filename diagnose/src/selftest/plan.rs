@@ -254,6 +254,15 @@ fn several<const N: usize>(name: String) -> Case {
     }
 }
 
+/// The grid's size nearest in the logarithm.
+pub fn nearest_size(size: f64) -> f64 {
+    let distance = |s: f64| (libm::log(s.max(1e-9)) - libm::log(size.max(1e-9))).abs();
+    SIZES
+        .into_iter()
+        .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+        .unwrap_or(1.0)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::calibrate::{Calibration, calibrate};
-use super::plan::{COMPLETE, SIZES};
-use super::rate::Rate;
+use super::plan::{COMPLETE, SIZES, nearest_size};
+use super::statistics::Rate;
 use super::trial::{Trial, covers};
 use crate::effect::in_struts;
 use crate::vocabulary::EffectId;
@@ -160,15 +160,6 @@ impl Summary {
     }
 }
 
-/// The grid's size nearest in the logarithm.
-fn nearest_size(size: f64) -> f64 {
-    let distance = |s: f64| (libm::log(s.max(1e-9)) - libm::log(size.max(1e-9))).abs();
-    SIZES
-        .into_iter()
-        .min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
-        .unwrap_or(1.0)
-}
-
 fn power(trials: &[&Trial]) -> Vec<Power> {
     let mut all = Vec::new();
     for term in in_struts() {
@@ -268,11 +259,6 @@ fn reliability(trials: &[&Trial]) -> Vec<Reliability> {
             })
         })
         .collect()
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]

@@ -4,9 +4,11 @@
 
 use oleo_interface::Absolute;
 
-use super::gas::NITROGEN_R_J_KG_K;
 use super::nitrogen::{Nitrogen, State};
 use super::terms::Compressibility;
+
+/// Specific gas constant of nitrogen, J/kg/K (recordings README).
+pub const NITROGEN_R_J_KG_K: f64 = 296.8;
 
 /// Steps of Newton's method for a density.
 const ROUNDS: usize = 20;

@@ -8,13 +8,11 @@ use serde::{Deserialize, Serialize};
 
 use oleo_interface::Absolute;
 
-use super::equation_of_state::EquationOfState;
+use super::equation_of_state::{EquationOfState, NITROGEN_R_J_KG_K};
 use super::nitrogen::Nitrogen;
 use super::terms::EnergyStep;
 use crate::lanes::{Mask, Number};
 
-/// Specific gas constant of nitrogen, J/kg/K (recordings README).
-pub const NITROGEN_R_J_KG_K: f64 = 296.8;
 /// Isochoric specific heat of nitrogen, J/kg/K (recordings README).
 pub const NITROGEN_CV_J_KG_K: f64 = 743.0;
 

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::{Screen, ScreenedCandidate};
+use super::beside::{Screen, ScreenedCandidate};
 use crate::error::DiagnoseError;
 use crate::estimation::bounded_step::bounded_step;
 use crate::estimation::normal_equations::{extended, extended_with_residuals, sum, total_cost};

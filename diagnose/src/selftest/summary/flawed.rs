@@ -3,9 +3,8 @@
 use serde::Serialize;
 use strum::VariantArray;
 
-use super::median;
 use crate::selftest::flaw::Flaw;
-use crate::selftest::rate::Rate;
+use crate::selftest::statistics::{Rate, median};
 use crate::selftest::trial::{Reported, Trial};
 
 /// What was said of campaigns whose instruments have a flaw.

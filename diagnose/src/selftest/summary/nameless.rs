@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::median;
 use crate::effect::in_struts;
-use crate::selftest::rate::Rate;
+use crate::selftest::statistics::{Rate, median};
 use crate::selftest::trial::Trial;
 use crate::vocabulary::EffectId;
 

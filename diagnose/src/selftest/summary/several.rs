@@ -2,9 +2,8 @@
 
 use serde::Serialize;
 
-use super::nearest_size;
-use crate::selftest::plan::SIZES;
-use crate::selftest::rate::Rate;
+use crate::selftest::plan::{SIZES, nearest_size};
+use crate::selftest::statistics::Rate;
 use crate::selftest::trial::Trial;
 
 /// What became of campaigns with several concealed effects, by size.

@@ -1,4 +1,4 @@
-//! How often something was so, with its interval.
+//! How often something was so, with its interval, and the middle of figures.
 
 use serde::Serialize;
 
@@ -43,6 +43,12 @@ impl Rate {
         };
         [low, high]
     }
+}
+
+/// The middle one of figures, the upper of two; 0 where there is none.
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]

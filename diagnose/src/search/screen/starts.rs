@@ -1,0 +1,451 @@
+//! Where candidates begin, how the promising ones go on, and what became of all of them.
+
+use std::f64::consts::FRAC_PI_2;
+
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+use super::beside::{Screen, ScreenedCandidate, cost_of, finished};
+use super::steps::{Linearised, RESPONSE_DAMPING};
+use crate::criteria::Screening;
+use crate::error::DiagnoseError;
+use crate::estimation::bounded_step::bounded_step;
+use crate::estimation::normal_equations::{sum, total_cost};
+use crate::estimation::{Fit, Sensitivity};
+use crate::search::oscillation::{Line, Oscillations};
+use crate::search::sizes::starting_sizes;
+use crate::specimen::Series;
+use crate::vocabulary::Column;
+
+/// What the residual of the model so far holds at single frequencies.
+struct Swings {
+    oscillations: Oscillations,
+    lines: Vec<Line>,
+}
+
+impl Screen<'_, '_> {
+    /// Every candidate added alone, in the order given; `None` where it cannot be simulated at all.
+    ///
+    /// # Errors
+    /// [`DiagnoseError::Interrupted`] once the caller asked to stop.
+    pub fn all(&self, candidates: &[usize]) -> Result<Vec<Option<Fit>>, DiagnoseError> {
+        let mut begun = self.begun(candidates)?;
+        let costs: Vec<f64> = begun.iter().map(cost_of).collect();
+        let promising = promising(&costs, self.fit, &self.problem.criteria.screening);
+        self.advance_all(
+            begun
+                .iter_mut()
+                .enumerate()
+                .filter(|(k, _)| promising.contains(k))
+                .map(|(_, c)| c),
+        )?;
+        Ok((begun.iter())
+            .map(|candidate| candidate.as_ref().map(|c| finished(self.problem, self.fit, c)))
+            .collect())
+    }
+
+    /// Candidates after their first steps.
+    ///
+    /// # Errors
+    /// [`DiagnoseError::Interrupted`] once the caller asked to stop.
+    pub fn begun(&self, candidates: &[usize]) -> Result<Vec<Option<ScreenedCandidate>>, DiagnoseError> {
+        let all = self.specimen().candidates();
+        let swings = (candidates.iter().any(|&c| all[c].oscillates)).then(|| self.swings());
+        (candidates.par_iter())
+            .map(|&c| {
+                let begun = match &swings {
+                    Some(swings) if all[c].oscillates => self.begin_oscillation(c, swings),
+                    _ => self.begin(c),
+                };
+                // What cannot be simulated near the model so far is no candidate, and no failure of the diagnosis.
+                match begun {
+                    Err(DiagnoseError::Simulation { .. }) => Ok(None),
+                    other => other,
+                }
+            })
+            .collect()
+    }
+
+    /// Takes promising candidates on.
+    ///
+    /// # Errors
+    /// [`DiagnoseError::Interrupted`] once the caller asked to stop.
+    pub fn advance_all<'c>(
+        &self,
+        promising: impl Iterator<Item = &'c mut Option<ScreenedCandidate>>,
+    ) -> Result<(), DiagnoseError> {
+        let promising: Vec<&mut ScreenedCandidate> = promising.flatten().collect();
+        (promising.into_par_iter()).try_for_each(|candidate| {
+            candidate.advanced = true;
+            // A candidate whose derivatives cannot be simulated stays where its last step led.
+            match self.advance(candidate, self.problem.criteria.screening.more_steps) {
+                Err(DiagnoseError::Simulation { .. }) => Ok(()),
+                other => other,
+            }
+        })
+    }
+
+    /// A candidate after its first steps from the best of its starts.
+    fn begin(&self, candidate: usize) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
+        let description = &self.specimen().candidates()[candidate];
+        let own: Vec<f64> = description.parameters.iter().map(|p| p.start).collect();
+        let starts: Vec<&Vec<f64>> = std::iter::once(&own).chain(&description.starts).collect();
+        if description.is_unlisted() && description.absent_at(&own) {
+            return self.begin_law(candidate, &starts);
+        }
+        let mut best: Option<ScreenedCandidate> = None;
+        for start in &starts {
+            let known = description.absent_at(start).then_some(self.truths.as_slice());
+            self.begin_at(candidate, start, known, &mut best)?;
+        }
+        if description.is_unlisted() || description.is_instrument_fault() || !self.is_gross() {
+            return Ok(best);
+        }
+        let screening = &self.problem.criteria.screening;
+        let mut sizes = Vec::new();
+        for start in starts {
+            for direction in starting_sizes(description, start) {
+                sizes.extend(self.costs_of(candidate, direction)?);
+            }
+        }
+        sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (cost, values) in sizes.into_iter().take(screening.sizes_refined) {
+            let reached = best.as_ref().map_or(f64::INFINITY, |b| b.cost);
+            if cost < self.fit.cost && cost < screening.size_contender * reached {
+                self.begin_at(candidate, &values, None, &mut best)?;
+            }
+        }
+        Ok(best)
+    }
+
+    /// A law after its first steps. At size zero a law changes nothing, so that there the answer of the recordings to its size is that of a
+    /// regression, whatever its other numbers, its *shape*, are. The shape that explains most is stepped from; the other starts of this shape are
+    /// larger sizes, which are simulated too.
+    fn begin_law(&self, candidate: usize, starts: &[&Vec<f64>]) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
+        let (specimen, fit) = (self.specimen(), self.fit);
+        let parameters = &specimen.candidates()[candidate].parameters;
+        let shape_of = |values: &[f64]| -> Vec<f64> {
+            (parameters.iter().zip(values))
+                .map(|(p, v)| if p.is_size { 0.0 } else { *v })
+                .collect()
+        };
+        let mut shapes: Vec<Vec<f64>> = Vec::new();
+        for start in starts {
+            let shape = shape_of(start);
+            if !shapes.contains(&shape) {
+                shapes.push(shape);
+            }
+        }
+        // A law of the instrument of the displacement works the motion out anew, which rounds otherwise: by as much as a slow law changes in a
+        // derivative, so that this starts from what is simulated with the law.
+        let changes_motion = specimen.candidates()[candidate].place.sensor() == Some(&Column::DISPLACEMENT);
+        let known = (!changes_motion).then_some(self.truths.as_slice());
+        let mut best: Option<(f64, Vec<f64>, Linearised)> = None;
+        for shape in shapes {
+            let begun = self.at(fit.point.with_effect(specimen, candidate, &shape), known)?;
+            let left = self.left_by_linear_step(&begun.candidate);
+            if best.as_ref().is_none_or(|(least, ..)| left < *least) {
+                best = Some((left, shape, begun));
+            }
+        }
+        let Some((_, shape, mut begun)) = best else {
+            return Ok(None);
+        };
+        self.step(&mut begun)?;
+        let mut candidate_at_best = begun.candidate;
+        for start in starts
+            .iter()
+            .filter(|start| shape_of(start) == shape && ***start != shape)
+        {
+            let point = fit.point.with_effect(specimen, candidate, start);
+            match self.cost_at(&point) {
+                Ok(tried) if tried.cost < candidate_at_best.cost => {
+                    candidate_at_best = self.at(point, tried.truths.as_deref())?.candidate;
+                }
+                Ok(_) | Err(DiagnoseError::Simulation { .. }) => {}
+                Err(other) => return Err(other),
+            }
+        }
+        if parameters.iter().any(|p| !p.is_size) {
+            candidate_at_best.arrived = false;
+            self.advance(&mut candidate_at_best, self.problem.criteria.screening.first_steps)?;
+        }
+        Ok(Some(candidate_at_best))
+    }
+
+    fn swings(&self) -> Swings {
+        let oscillations = Oscillations::of(self.specimen());
+        let lines = oscillations.lines_of_channels(&self.residuals());
+        Swings { oscillations, lines }
+    }
+
+    fn residuals(&self) -> Vec<&Series> {
+        self.base.iter().map(|recording| &recording.residual).collect()
+    }
+
+    /// A law that swings after its first steps from the frequency that explains most; `None` where the residual holds no frequency that is not
+    /// the excitation's.
+    fn begin_oscillation(&self, candidate: usize, swings: &Swings) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
+        let specimen = self.specimen();
+        let amplitude = self.fit.point.z.len();
+        let numbers = &specimen.candidates()[candidate].parameters;
+        // Of amplitude zero. A law that swings shortens the steps of the simulation, so that also the truth is simulated with it, once for a
+        // frequency.
+        let answers = |frequency_hz: f64, phases: &[f64]| -> Result<Vec<Vec<Sensitivity>>, DiagnoseError> {
+            let evaluation = &self.problem.evaluation;
+            let at = |phase| (self.fit.point).with_effect(specimen, candidate, &[0.0, phase, frequency_hz]);
+            let simulated = if numbers[0].instrument_only {
+                None
+            } else {
+                Some(evaluation.truths(&at(FRAC_PI_2))?)
+            };
+            let truths = simulated.as_deref().unwrap_or(&self.truths);
+            (phases.iter())
+                .map(|&phase| evaluation.sensitivities(&at(phase), &[amplitude], Some(truths)))
+                .collect()
+        };
+        let lowest = numbers[2].lower;
+        let envelopes: Vec<Series> = (answers(lowest, &[FRAC_PI_2])?.into_iter().flatten())
+            .map(|mut s| s.columns.swap_remove(0))
+            .collect();
+        let mut lines = swings.oscillations.lines(&self.residuals(), &envelopes);
+        lines.extend(&swings.lines);
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for line in lines {
+            let f = line.frequency_hz;
+            let mut answers = answers(f, &[0.0, FRAC_PI_2])?.into_iter();
+            let mut both = answers.next().unwrap_or_default();
+            for (both, cosine) in both.iter_mut().zip(answers.flatten()) {
+                both.columns.extend(cosine.columns);
+            }
+            let normals = self.extended(&both);
+            let [prior, z] = [&self.fit.prior, &DVector::from_column_slice(&self.fit.point.z)]
+                .map(|own| own.clone().resize_vertically(amplitude + 2, 0.0));
+            let (h, g) = sum(&normals, &prior, z.as_slice());
+            let mut ranges = self.fit.point.ranges(specimen);
+            ranges.resize(amplitude + 2, (f64::NEG_INFINITY, f64::INFINITY));
+            let Some(step) = bounded_step(&h, &g, RESPONSE_DAMPING, z.as_slice(), &ranges) else {
+                continue;
+            };
+            let gain = 2.0 * g.dot(&step) - step.dot(&(&h * &step));
+            if best.as_ref().is_none_or(|(most, _)| gain > *most) {
+                let (a, b) = (step[amplitude], step[amplitude + 1]);
+                let size = numbers[0].value(libm::hypot(a, b));
+                best = Some((gain, vec![size, libm::atan2(b, a), f]));
+            }
+        }
+        let mut begun = None;
+        if let Some((_, start)) = best {
+            self.begin_at(candidate, &start, None, &mut begun)?;
+        }
+        Ok(begun)
+    }
+
+    /// The first steps of a candidate from a start, kept if they lead lower than `best`. A start that cannot be simulated is
+    /// passed over.
+    fn begin_at(
+        &self,
+        candidate: usize,
+        start: &[f64],
+        known: Option<&[Series]>,
+        best: &mut Option<ScreenedCandidate>,
+    ) -> Result<(), DiagnoseError> {
+        let point = self.fit.point.with_effect(self.specimen(), candidate, start);
+        let begun = self.at(point, known).and_then(|mut begun| {
+            self.step(&mut begun)?;
+            let mut begun = begun.candidate;
+            self.advance(
+                &mut begun,
+                self.problem.criteria.screening.first_steps.saturating_sub(1),
+            )?;
+            Ok(begun)
+        });
+        match begun {
+            Ok(begun) if best.as_ref().is_none_or(|b| begun.cost < b.cost) => *best = Some(begun),
+            Ok(_) | Err(DiagnoseError::Simulation { .. }) => {}
+            Err(other) => return Err(other),
+        }
+        Ok(())
+    }
+
+    /// True if the model so far is so far off that a derivative at size zero may not show where an effect is.
+    fn is_gross(&self) -> bool {
+        let ratio = self.problem.criteria.screening.gross_noise_ratio;
+        total_cost(&self.fit.normals) > ratio * ratio * self.problem.residuals() as f64
+    }
+
+    /// Sizes of a candidate, the smallest first, with the cost of each, up to the first that is too large.
+    fn costs_of(&self, candidate: usize, sizes: Vec<Vec<f64>>) -> Result<Vec<(f64, Vec<f64>)>, DiagnoseError> {
+        let mut costs = Vec::new();
+        // One a decade is enough to step on from.
+        for values in sizes.into_iter().step_by(2) {
+            let point = self.fit.point.with_effect(self.specimen(), candidate, &values);
+            match self.cost_at(&point) {
+                Ok(tried) if tried.cost < self.problem.criteria.screening.size_overshoot * self.fit.cost => {
+                    costs.push((tried.cost, values));
+                }
+                Ok(_) | Err(DiagnoseError::Simulation { .. }) => break,
+                Err(other) => return Err(other),
+            }
+        }
+        Ok(costs)
+    }
+}
+
+/// Indices of the promising of screened costs beside a fitted model, the lowest first.
+pub fn promising(costs: &[f64], fit: &Fit, screening: &Screening) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..costs.len()).filter(|&k| costs[k].is_finite()).collect();
+    order.sort_by(|&a, &b| costs[a].total_cmp(&costs[b]));
+    order.truncate(screening.promising);
+    if let Some(&first) = order.first() {
+        let least = screening.gain_of_promising * (fit.cost - costs[first]);
+        order.retain(|&k| fit.cost - costs[k] >= least);
+    }
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analytic::{Analytic, CUBIC, FORTY_SINES, FRAGILE, FRICTION, GAIN, RUN, Recipe, VIBRATION};
+    use crate::estimation::fit;
+    use crate::estimation::{LeastSquares, Point};
+    use std::sync::atomic::AtomicBool;
+
+    fn calibrated<'a>(specimen: &'a Analytic) -> (LeastSquares<'a>, Fit) {
+        let problem = LeastSquares::new(specimen, &RUN);
+        let fit = fit(&problem, Point::nominal(specimen), problem.criteria.fitting.converged).expect("a fit");
+        (problem, fit)
+    }
+
+    fn with_cubic() -> Analytic {
+        Recipe {
+            truth: vec![(CUBIC, vec![0.3])],
+            ..Recipe::default()
+        }
+        .make()
+    }
+
+    #[test]
+    fn the_right_candidate_has_the_lowest_cost_and_about_its_true_size() {
+        let specimen = with_cubic();
+        let (problem, calibrated) = calibrated(&specimen);
+        let candidates = [FRICTION, CUBIC, VIBRATION, GAIN];
+        let fits = Screen::new(&problem, &calibrated)
+            .and_then(|s| s.all(&candidates))
+            .expect("screened");
+        let costs: Vec<f64> = fits.iter().flatten().map(|f| f.cost).collect();
+        assert!((0..4).all(|k| k == 1 || costs[1] < 0.5 * costs[k]), "{costs:?}");
+        let found = fits[1].as_ref().expect("a fit").point.hypothesis(&specimen);
+        assert!((found.effects[0].1[0] - 0.3).abs() < 0.01, "{found:?}");
+    }
+
+    /// Where everything is linear, the linear response of the model's own parameters is exact: screening ends where a full
+    /// fit ends.
+    #[test]
+    fn screening_a_linear_candidate_ends_where_the_full_fit_does() {
+        let specimen = with_cubic();
+        let (problem, calibrated) = calibrated(&specimen);
+        let screened = Screen::new(&problem, &calibrated)
+            .and_then(|s| s.all(&[CUBIC]))
+            .expect("screened");
+        let screened = screened[0].as_ref().expect("a fit");
+        let start = Point::nominal(&specimen).with_effect(&specimen, CUBIC, &[0.0]);
+        let full = fit(&problem, start, problem.criteria.fitting.converged).expect("a fit");
+        assert!(screened.screened && !full.screened);
+        assert!(
+            (screened.cost / full.cost - 1.0).abs() < 1e-4,
+            "{} {}",
+            screened.cost,
+            full.cost
+        );
+        for (a, b) in screened.point.z.iter().zip(&full.point.z) {
+            assert!((a - b).abs() < 0.02, "{:?} {:?}", screened.point, full.point);
+        }
+    }
+
+    #[test]
+    fn the_model_is_recalibrated_while_a_candidate_is_screened() {
+        // A gain of 0.4 % is within the tolerance of the stiffness: beside recalibration it explains nearly nothing.
+        let specimen = Recipe {
+            truth: vec![(GAIN, vec![0.004])],
+            ..Recipe::default()
+        }
+        .make();
+        let (problem, calibrated) = calibrated(&specimen);
+        let fits = Screen::new(&problem, &calibrated)
+            .and_then(|s| s.all(&[GAIN]))
+            .expect("screened");
+        let gained = calibrated.cost - fits[0].as_ref().expect("a fit").cost;
+        assert!((0.0..5.0).contains(&gained), "{gained}");
+    }
+
+    #[test]
+    fn the_fault_of_an_instrument_costs_no_simulation() {
+        let specimen = with_cubic();
+        let (problem, calibrated) = calibrated(&specimen);
+        let screen = Screen::new(&problem, &calibrated).expect("a screen");
+        let before = problem.evaluation.simulated();
+        let _ = screen.all(&[GAIN]).expect("screened");
+        assert_eq!(problem.evaluation.simulated(), before);
+        let _ = screen.all(&[CUBIC]).expect("screened");
+        assert!(problem.evaluation.simulated() > before);
+    }
+
+    #[test]
+    fn a_start_is_tried_beside_the_parameters_own() {
+        let recipe = Recipe {
+            truth: vec![(VIBRATION, vec![0.08, 2.3])],
+            ..Recipe::default()
+        };
+        let cost = |starts: Vec<Vec<f64>>| {
+            let mut specimen = recipe.make();
+            specimen.give_starts(VIBRATION, starts);
+            let (problem, calibrated) = calibrated(&specimen);
+            let fits = Screen::new(&problem, &calibrated)
+                .and_then(|s| s.all(&[VIBRATION]))
+                .expect("screened");
+            fits[0].as_ref().expect("a fit").cost / calibrated.cost
+        };
+        assert!(
+            cost(vec![]) > 0.98,
+            "from 1 rad/s the next local minimum is as far as it gets"
+        );
+        assert!(cost(vec![vec![0.0, 2.28]]) < 0.7);
+    }
+
+    #[test]
+    fn what_cannot_be_simulated_is_no_candidate_and_no_failure() {
+        let mut specimen = with_cubic();
+        specimen.move_start(FRAGILE, 2.0);
+        let (problem, calibrated) = calibrated(&specimen);
+        let fits = Screen::new(&problem, &calibrated)
+            .and_then(|s| s.all(&[FRAGILE, CUBIC]))
+            .expect("screened");
+        assert!(fits[0].is_none() && fits[1].is_some());
+    }
+
+    #[test]
+    fn it_ends_when_asked_to_stop() {
+        let specimen = with_cubic();
+        let (_, calibrated) = calibrated(&specimen);
+        let stop = AtomicBool::new(true);
+        let problem = LeastSquares::new(&specimen, &stop);
+        assert!(matches!(
+            Screen::new(&problem, &calibrated),
+            Err(DiagnoseError::Interrupted)
+        ));
+    }
+
+    #[test]
+    fn order_and_company_change_nothing() {
+        let specimen = with_cubic();
+        let (problem, calibrated) = calibrated(&specimen);
+        let screen = Screen::new(&problem, &calibrated).expect("a screen");
+        let bits = |candidates: &[usize], of: usize| {
+            let fits = screen.all(candidates).expect("screened");
+            fits[of].as_ref().map(|f| f.cost.to_bits())
+        };
+        assert_eq!(bits(&[CUBIC, FRICTION, FORTY_SINES], 0), bits(&[FRICTION, CUBIC], 1));
+    }
+}

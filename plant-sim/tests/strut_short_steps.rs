@@ -24,8 +24,8 @@ fn a_step_of_an_instant_is_no_blow() {
     assert!(settled > before[0] && (settled - slow.pressure_pa[0]).abs() < 100.0);
 }
 
-/// The drops of an instant go on at no rate that could be told: a long step that starts from such a prediction, with more oil than the
-/// accumulator holds, must find back to the pressure of its gas.
+/// How the drops change within an instant says nothing of the step behind it: if that is long, its start is predicted with more oil than the
+/// accumulator holds, and it must find back to the pressure of the gas.
 #[test]
 fn a_long_step_after_an_instant_finds_the_gas() {
     let mut model = StrutModel::defender110(7686.0);

@@ -171,8 +171,8 @@ impl<N: Number> Network<N> {
             let two = path2.answer_to_flow(&second, flow2, flow2_slope);
             if is_prediction {
                 is_prediction = false;
-                // What an instant has been told from may predict more oil than an accumulator holds. From there Newton's method would take hundreds
-                // of rounds, and from drops of zero it takes a few.
+                // A rate that was seen for an instant may predict more oil than an accumulator holds. From there Newton's method would take
+                // hundreds of rounds; from drops of zero it takes a few.
                 let hopeless = path1.gas.is_full(one.gas) | path2.gas.is_full(two.gas);
                 if hopeless.any() {
                     d1 = N::choose(hopeless, zero, d1);

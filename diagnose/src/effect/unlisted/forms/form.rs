@@ -4,6 +4,8 @@ use crate::parameter::Parameter;
 
 /// Largest fitted number over one that would be visible.
 const MOST: f64 = 1e4;
+/// Levels that are tried beside none, over one that would be visible: beside none an answer may not be in proportion to the level.
+const LARGER: [f64; 2] = [5.0, 20.0];
 
 /// Points of a table and what is known of the law there.
 pub struct Grid<'k> {
@@ -22,6 +24,12 @@ impl Grid<'_> {
     #[must_use]
     pub fn most(&self) -> f64 {
         MOST * self.visible
+    }
+
+    /// Levels that are tried beside none where a value is never negative.
+    #[must_use]
+    pub fn larger(&self) -> [f64; 2] {
+        LARGER.map(|size| size * self.visible)
     }
 }
 

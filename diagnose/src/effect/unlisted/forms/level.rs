@@ -3,9 +3,6 @@
 use super::form::{Form, Grid};
 use crate::parameter::Parameter;
 
-/// Levels that are tried beside none, over one that would be visible: beside none an answer may not be in proportion to the level.
-const LARGER: [f64; 2] = [5.0, 20.0];
-
 pub struct Level;
 
 impl Form for Level {
@@ -16,7 +13,7 @@ impl Form for Level {
     }
 
     fn starts(&self, grid: &Grid) -> Vec<Vec<f64>> {
-        LARGER.map(|size| vec![size * grid.visible; grid.knots.len()]).to_vec()
+        grid.larger().map(|level| vec![level; grid.knots.len()]).to_vec()
     }
 
     fn values(&self, _grid: &Grid, fitted: &[f64]) -> Vec<f64> {

@@ -4,9 +4,6 @@
 use super::form::{ClosedForm, Form, Grid};
 use crate::parameter::Parameter;
 
-/// Levels that are tried beside none, over one that would be visible: beside none an answer may not be in proportion to the level.
-const LARGER: [f64; 2] = [5.0, 20.0];
-
 /// The keys of its three numbers.
 pub struct Parabola(pub [&'static str; 3]);
 
@@ -23,7 +20,7 @@ impl Form for LevelParabola {
     }
 
     fn starts(&self, grid: &Grid) -> Vec<Vec<f64>> {
-        LARGER.map(|size| vec![size * grid.visible, 0.0, 0.0]).to_vec()
+        grid.larger().map(|level| vec![level, 0.0, 0.0]).to_vec()
     }
 
     fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {

@@ -11,8 +11,6 @@ use crate::parameter::Parameter;
 const STARTS_M3: [f64; 2] = [1e-7, 1e-6];
 /// Volumes that are possible, m3: a hundredth of a millimetre of a small piston to ten of a large one.
 const RANGE_M3: (f64, f64) = (1e-8, 2e-5);
-/// Levels that are tried beside none, over one that would be visible: beside none an answer may not be in proportion to the level.
-const LARGER: [f64; 2] = [5.0, 20.0];
 /// Largest size of the exponent.
 const STEEPEST: f64 = 3.0;
 
@@ -37,7 +35,7 @@ impl Form for Shearing {
 
     fn starts(&self, grid: &Grid) -> Vec<Vec<f64>> {
         (STARTS_M3.iter())
-            .flat_map(|volume| LARGER.map(|size| vec![size * grid.visible, 0.0, *volume]))
+            .flat_map(|volume| grid.larger().map(|level| vec![level, 0.0, *volume]))
             .collect()
     }
 

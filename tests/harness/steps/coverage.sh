@@ -2,12 +2,8 @@
 # extra: lines of the controller that its own tests run; each that they do not must be explained
 . tests/harness/lib.sh
 
-cargo llvm-cov --version > /dev/null 2>&1 || {
-    echo "   installing cargo-llvm-cov"
-    cargo install --quiet --locked cargo-llvm-cov > "$OLEO_LOGS/cargo-llvm-cov.log" 2>&1
-}
 rustup component add llvm-tools > "$OLEO_LOGS/llvm-tools.log" 2>&1
-cargo llvm-cov --version > /dev/null 2>&1 || { skip "coverage" "no cargo-llvm-cov, and none to be installed"; exit 0; }
+cargo_tool cargo-llvm-cov || { skip "coverage" "no cargo-llvm-cov, and none to be installed"; exit 0; }
 report=$OLEO_LOGS/coverage.lcov
 check "tests run with coverage" cargo llvm-cov --package oleo-controller --lib --tests --lcov --output-path "$report" || exit 0
 check "no uncovered line without an explanation" python3 tests/harness/coverage.py "$report"

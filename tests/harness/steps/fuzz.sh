@@ -3,10 +3,7 @@
 . tests/harness/lib.sh
 readonly seconds=${OLEO_FUZZ_S:-30}
 
-cargo fuzz --version > /dev/null 2>&1 || {
-    echo "   installing cargo-fuzz"
-    cargo install --quiet --locked cargo-fuzz > "$OLEO_LOGS/cargo-fuzz.log" 2>&1
-}
+cargo_tool cargo-fuzz
 if ! cargo +nightly fuzz --version > /dev/null 2>&1; then
     skip "fuzzing" "no cargo-fuzz or no nightly toolchain"
     exit 0

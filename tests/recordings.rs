@@ -345,7 +345,13 @@ fn reproduces(name: &'static str) {
 }
 
 macro_rules! campaigns {
-    ($($test:ident = $name:literal),* $(,)?) => { $(#[test] fn $test() { reproduces($name); })* };
+    ($($test:ident = $name:literal),* $(,)?) => { $(
+        #[test]
+        #[cfg_attr(debug_assertions, ignore = "seconds without optimisation; the recordings step of ./test runs it")]
+        fn $test() {
+            reproduces($name);
+        }
+    )* };
 }
 
 campaigns! {

@@ -24,25 +24,20 @@ const UNSTUFFED_BITS: u32 = 13;
 /// Length of a frame on the wire, bit times: exact, stuff bits included, with the interframe space.
 pub fn wire_bits(frame: &Frame) -> u32 {
     let mut stream = BitStream::default();
-    stream.push(0, 1);
-    let id = frame.raw_id();
-    let remote = u32::from(frame.is_remote());
+    let (id, dlc) = (u64::from(frame.raw_id()), frame.dlc() as u64);
+    let remote = u64::from(frame.is_remote());
     if frame.is_extended() {
-        stream.push(id >> 18, 11);
-        stream.push(0b11, 2); // SRR, IDE recessive
-        stream.push(id & 0x3_FFFF, 18);
-        stream.push(remote, 1);
-        stream.push(0, 2); // r1, r0
+        // SOF, identifier, SRR and IDE recessive, rest of the identifier, RTR, r1 and r0, DLC.
+        let header = id >> 18 << 27 | 0b11 << 25 | (id & 0x3_FFFF) << 7 | remote << 6 | dlc;
+        stream.push(header, 39);
     } else {
-        stream.push(id, 11);
-        stream.push(remote, 1);
-        stream.push(0, 2); // IDE, r0
+        // SOF, identifier, RTR, IDE and r0, DLC.
+        stream.push(id << 7 | remote << 6 | dlc, 19);
     }
-    stream.push(frame.dlc() as u32, 4);
-    for byte in frame.data() {
-        stream.push(u32::from(*byte), 8);
-    }
-    stream.push(u32::from(stream.crc()), 15);
+    let data = frame.data();
+    let value = data.iter().fold(0, |value, byte| value << 8 | u64::from(*byte));
+    stream.push(value, 8 * data.len() as u32);
+    stream.push(u64::from(stream.crc()), 15);
     stream.count + stream.stuff_bits() + UNSTUFFED_BITS
 }
 
@@ -54,7 +49,7 @@ struct BitStream {
 }
 
 impl BitStream {
-    fn push(&mut self, value: u32, count: u32) {
+    fn push(&mut self, value: u64, count: u32) {
         self.bits = self.bits << count | u128::from(value);
         self.count += count;
     }
@@ -297,7 +292,7 @@ mod tests {
     fn crc_of_a_known_frame() {
         // CRC-15/CAN of reveng's catalogue: check value of "123456789" is 0x059E.
         let mut stream = BitStream::default();
-        b"123456789".iter().for_each(|byte| stream.push(u32::from(*byte), 8));
+        b"123456789".iter().for_each(|byte| stream.push(u64::from(*byte), 8));
         assert_eq!(stream.crc(), 0x059E);
     }
 
@@ -324,7 +319,7 @@ mod tests {
             let mut stream = BitStream::default();
             for (k, (ones, count)) in parts.into_iter().enumerate() {
                 let run = if ones { (1 << count) - 1 } else { 0 };
-                stream.push(run ^ u32::from(flips >> k & 3 == 0) & ((1 << count) - 1), count);
+                stream.push(run ^ u64::from(flips >> k & 3 == 0) & ((1 << count) - 1), count);
             }
             prop_assert_eq!((stream.crc(), stream.stuff_bits()), one_by_one(stream));
         }

@@ -40,6 +40,13 @@ pub(super) struct Biquad {
 }
 
 impl Biquad {
+    /// Changes nothing.
+    pub(super) const THROUGH: Self = Self {
+        b: [1.0, 0.0, 0.0],
+        a: [0.0; 2],
+        state: [0.0; 2],
+    };
+
     /// Matched in magnitude to an analogue section.
     pub(super) fn matched(section: &Analogue, sampling_hz: f64) -> Self {
         let wt = 2.0 * PI * section.pole_hz / sampling_hz;
@@ -105,6 +112,36 @@ impl Biquad {
             re * re + im * im
         };
         square(self.b[0], self.b[1], self.b[2]) / square(1.0, self.a[0], self.a[1])
+    }
+}
+
+/// Sections of one place in as many chains, side by side: the same operations on each, which the processor does for several at once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Abreast<const N: usize> {
+    b: [[f64; N]; 3],
+    a: [[f64; N]; 2],
+    state: [[f64; N]; 2],
+}
+
+impl<const N: usize> Abreast<N> {
+    pub(super) fn of(sections: [Biquad; N]) -> Self {
+        Self {
+            b: core::array::from_fn(|k| sections.map(|section| section.b[k])),
+            a: core::array::from_fn(|k| sections.map(|section| section.a[k])),
+            state: core::array::from_fn(|k| sections.map(|section| section.state[k])),
+        }
+    }
+
+    /// Filters one sample of each chain, as [`Biquad::filter`] does.
+    #[inline]
+    pub(super) fn filter(&mut self, input: [f64; N]) -> [f64; N] {
+        let ([b0, b1, b2], [a1, a2], [first, second]) = (&self.b, &self.a, &mut self.state);
+        core::array::from_fn(|k| {
+            let output = b0[k] * input[k] + first[k];
+            first[k] = b1[k] * input[k] - a1[k] * output + second[k];
+            second[k] = b2[k] * input[k] - a2[k] * output;
+            output
+        })
     }
 }
 

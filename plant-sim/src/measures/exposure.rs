@@ -1,6 +1,6 @@
 //! Exposure to vertical vibration: weighted RMS, vibration dose value and motion sickness dose value, sample by sample.
 
-use super::weighting::{WB, WF, WK, WeightingFilter};
+use super::weighting::{WB, WF, WK, WeightingsAbreast};
 
 /// Vertical vibration that a seat has been exposed to so far.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -25,9 +25,8 @@ pub struct RideMeasures {
 #[derive(Debug, Clone)]
 pub struct RideMeter {
     step_s: f64,
-    wb: WeightingFilter,
-    wk: WeightingFilter,
-    wf: WeightingFilter,
+    /// Wb, Wk, Wf.
+    weightings: WeightingsAbreast<3>,
     samples: u64,
     square: f64,
     wb_square: f64,
@@ -40,12 +39,9 @@ pub struct RideMeter {
 impl RideMeter {
     /// For samples `step_s` apart (at most 5 ms: 200 Hz).
     pub fn new(step_s: f64) -> Self {
-        let sampling_hz = 1.0 / step_s;
         Self {
             step_s,
-            wb: WeightingFilter::new(&WB, sampling_hz),
-            wk: WeightingFilter::new(&WK, sampling_hz),
-            wf: WeightingFilter::new(&WF, sampling_hz),
+            weightings: WeightingsAbreast::new([&WB, &WK, &WF], 1.0 / step_s),
             samples: 0,
             square: 0.0,
             wb_square: 0.0,
@@ -59,17 +55,13 @@ impl RideMeter {
     /// One sample that does not count yet, m/s2: only the filters see it, so that their own start is over when counting
     /// begins.
     pub fn settle(&mut self, acceleration_m_s2: f64) {
-        self.filter(acceleration_m_s2);
-    }
-
-    fn filter(&mut self, a: f64) -> (f64, f64, f64) {
-        (self.wb.filter(a), self.wk.filter(a), self.wf.filter(a))
+        self.weightings.filter(acceleration_m_s2);
     }
 
     /// One sample of the vertical acceleration without gravity, m/s2.
     pub fn add(&mut self, acceleration_m_s2: f64) {
         let a = acceleration_m_s2;
-        let (b, k, f) = self.filter(a);
+        let [b, k, f] = self.weightings.filter(a);
         self.samples += 1;
         self.square += a * a;
         self.wb_square += b * b;

@@ -7,7 +7,7 @@
 //!
 //! with the band limit a second-order high pass at f1 and low pass at f2. In ISO's form `K = (f5/f6)^2`.
 
-use super::biquad::{Analogue, Biquad};
+use super::biquad::{Abreast, Analogue, Biquad};
 use core::f64::consts::PI;
 
 /// The constants of a weighting; frequencies in Hz, infinite where a section is absent.
@@ -150,6 +150,32 @@ impl WeightingFilter {
     }
 }
 
+/// Several weightings of the same samples, side by side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct WeightingsAbreast<const N: usize> {
+    sections: [Abreast<N>; 4],
+}
+
+impl<const N: usize> WeightingsAbreast<N> {
+    /// As [`WeightingFilter::new`].
+    pub(super) fn new(weightings: [&Weighting; N], sampling_hz: f64) -> Self {
+        let filters = weightings.map(|weighting| WeightingFilter::new(weighting, sampling_hz));
+        let section = |k: usize| match k {
+            0 => filters.map(|filter| filter.high_pass),
+            _ => filters.map(|filter| filter.rest[k - 1].unwrap_or(Biquad::THROUGH)),
+        };
+        Self {
+            sections: core::array::from_fn(|k| Abreast::of(section(k))),
+        }
+    }
+
+    /// Weighted values of one sample.
+    #[inline]
+    pub(super) fn filter(&mut self, acceleration_m_s2: f64) -> [f64; N] {
+        (self.sections.iter_mut()).fold([acceleration_m_s2; N], |values, section| section.filter(values))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -267,6 +293,18 @@ mod tests {
                 }
             }
             assert!(((2.0 * square).sqrt() / WB.magnitude(f) - 1.0).abs() < 0.003, "{f}");
+        }
+    }
+
+    #[test]
+    fn side_by_side_as_one_after_the_other_to_the_bit() {
+        let weightings = [&WB, &WD, &WF];
+        let mut abreast = WeightingsAbreast::new(weightings, 1000.0);
+        let mut alone = weightings.map(|weighting| WeightingFilter::new(weighting, 1000.0));
+        for i in 0..5000 {
+            let felt = libm::sin(0.01 * f64::from(i * i % 4001));
+            let expected = alone.each_mut().map(|filter| filter.filter(felt).to_bits());
+            assert_eq!(abreast.filter(felt).map(f64::to_bits), expected, "sample {i}");
         }
     }
 }

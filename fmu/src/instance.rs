@@ -14,15 +14,15 @@
 
 use std::path::Path;
 
-use crc::{CRC_32_ISCSI, Crc};
-use serde::{Deserialize, Serialize};
-
+use crate::asked::Asked;
 use crate::complaint::Complaint;
 use crate::definition::Definition;
 use crate::exchange::Exchange;
 use crate::ls_bus::terminal::Terminal;
 use crate::model::Model;
+use crate::phase::Phase;
 use crate::resources::Resources;
+use crate::saved_state::SavedState;
 use crate::variable::{Kind, Role, Variable};
 
 /// The longest step, s: a longer one is an error of the tool.
@@ -35,37 +35,6 @@ const TICK_TOLERANCE: f64 = 1e-6;
 const TIME_TOLERANCE_S: f64 = 1e-7;
 /// Place of time in every table.
 const TIME: usize = 0;
-/// Guards a state that was written to a file.
-const CHECKSUM: Crc<u32> = Crc::<u32>::new(&CRC_32_ISCSI);
-
-/// Where an instance is in its life.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-enum Phase {
-    Instantiated,
-    Initializing,
-    Stepping,
-    Terminated,
-    Configuring,
-    Events,
-}
-
-/// A type of values as FMI asks for them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Asked {
-    /// Numbers.
-    Real,
-    /// Switches.
-    Switch,
-    /// Words, as numbers from 0.
-    Word,
-    /// Bytes.
-    Binary,
-    /// Clocks.
-    Clock,
-    /// A type of which no variable is, by its name.
-    Other(&'static str),
-}
-
 /// An instance of an FMU.
 pub struct Instance {
     definition: Definition,
@@ -77,17 +46,6 @@ pub struct Instance {
     has_begun: bool,
     start_s: f64,
     exchange: Exchange,
-}
-
-/// A state: what is to be known beside the resources to go on.
-#[derive(Serialize, Deserialize)]
-struct Kept {
-    phase: Phase,
-    has_begun: bool,
-    start_s: f64,
-    values: Vec<f64>,
-    exchange: Exchange,
-    model: Vec<u8>,
 }
 
 impl Instance {
@@ -445,7 +403,7 @@ impl Instance {
     /// # Errors
     /// The model cannot be saved.
     pub fn save(&self) -> Result<Vec<u8>, Complaint> {
-        let kept = Kept {
+        let saved = SavedState {
             phase: self.phase,
             has_begun: self.has_begun,
             start_s: self.start_s,
@@ -453,11 +411,7 @@ impl Instance {
             exchange: self.exchange.clone(),
             model: if self.has_begun { self.model.save()? } else { Vec::new() },
         };
-        let body = postcard::to_allocvec(&kept).map_err(Complaint::new)?;
-        let mut bytes = self.token.clone().into_bytes();
-        bytes.extend(CHECKSUM.checksum(&body).to_le_bytes());
-        bytes.extend(body);
-        Ok(bytes)
+        saved.to_bytes(&self.token)
     }
 
     /// Goes back to a state of this FMU, of this instance or another.
@@ -465,15 +419,15 @@ impl Instance {
     /// # Errors
     /// The bytes are not whole, or are of another FMU. The instance is then as it was.
     pub fn load(&mut self, bytes: &[u8]) -> Result<(), Complaint> {
-        let kept = self.kept(bytes)?;
-        if kept.has_begun {
-            self.model.load(&kept.values, &kept.model)?;
+        let saved = self.saved(bytes)?;
+        if saved.has_begun {
+            self.model.load(&saved.values, &saved.model)?;
         }
-        self.values = kept.values;
-        self.exchange = kept.exchange;
-        self.phase = kept.phase;
-        self.has_begun = kept.has_begun;
-        self.start_s = kept.start_s;
+        self.values = saved.values;
+        self.exchange = saved.exchange;
+        self.phase = saved.phase;
+        self.has_begun = saved.has_begun;
+        self.start_s = saved.start_s;
         Ok(())
     }
 
@@ -482,27 +436,11 @@ impl Instance {
     /// # Errors
     /// As [`Self::load`].
     pub fn check_state(&self, bytes: &[u8]) -> Result<(), Complaint> {
-        self.kept(bytes).map(drop)
+        self.saved(bytes).map(drop)
     }
 
-    fn kept(&self, bytes: &[u8]) -> Result<Kept, Complaint> {
-        let damaged =
-            || Complaint::new("the serialized state is damaged or cut off: give the bytes as they were written");
-        let Some(rest) = bytes.strip_prefix(self.token.as_bytes()) else {
-            return Err(Complaint::new(
-                "the serialized state is of another FMU: give one that this file has written",
-            ));
-        };
-        let (checksum, body) = rest.split_first_chunk().ok_or_else(damaged)?;
-        if CHECKSUM.checksum(body) != u32::from_le_bytes(*checksum) {
-            return Err(damaged());
-        }
-        let kept: Kept = postcard::from_bytes(body).map_err(|_| damaged())?;
-        if kept.values.len() == self.values.len() {
-            Ok(kept)
-        } else {
-            Err(damaged())
-        }
+    fn saved(&self, bytes: &[u8]) -> Result<SavedState, Complaint> {
+        SavedState::from_bytes(bytes, &self.token, self.values.len())
     }
 
     fn begin(&mut self) -> Result<(), Complaint> {
@@ -588,31 +526,5 @@ impl Instance {
             Role::Structural => format!("{name} cannot be set now: enter the configuration mode first"),
             _ => format!("{name} cannot be set now: the instance is {}", self.phase.words()),
         }))
-    }
-}
-
-impl Phase {
-    fn words(self) -> &'static str {
-        match self {
-            Self::Instantiated => "before the initialization mode",
-            Self::Initializing => "in the initialization mode",
-            Self::Stepping => "between the initialization mode and the end",
-            Self::Terminated => "after the end",
-            Self::Configuring => "in the configuration mode",
-            Self::Events => "in the event mode",
-        }
-    }
-}
-
-impl Asked {
-    fn words(self) -> &'static str {
-        match self {
-            Self::Real => "a floating-point number",
-            Self::Switch => "a boolean",
-            Self::Word => "an enumeration",
-            Self::Binary => "a binary",
-            Self::Clock => "a clock",
-            Self::Other(name) => name,
-        }
     }
 }

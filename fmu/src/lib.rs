@@ -24,6 +24,7 @@
 //! | `raised_road` | a road with a height of its own under each wheel |
 //! | `resources` | the files inside an FMU from which its model is made |
 //! | `exchange` | bus operations and clocks between a node on a network and a tool |
+//! | `phase`, `asked`, `saved_state` | where an instance is in its life, the types of values, the state as bytes |
 //! | `instance` | one running model: which call is permitted when, values, time, states |
 //! | `boundary` | the functions that tools call |
 //! | `description`, `archive` | the file that tools open (feature `pack`) |
@@ -32,6 +33,7 @@
 
 #[cfg(feature = "pack")]
 mod archive;
+mod asked;
 mod boundary;
 mod can_controller;
 mod complaint;
@@ -46,8 +48,10 @@ mod instance;
 pub mod ls_bus;
 mod model;
 mod numbers;
+mod phase;
 mod raised_road;
 mod resources;
+mod saved_state;
 mod strut;
 mod variable;
 mod vehicle;

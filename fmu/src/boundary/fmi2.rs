@@ -5,8 +5,9 @@ use std::ffi::{CString, c_char, c_int, c_void};
 use super::handle::{ERROR, OK, call, free, instantiate};
 use super::memory::{path_of_uri, place, places, text, values};
 use super::state::{deserialize, free_state, put_state, serialize, state};
+use crate::asked::Asked;
 use crate::complaint::Complaint;
-use crate::instance::{Asked, Instance};
+use crate::instance::Instance;
 use crate::model::switch;
 
 /// `fmi2CoSimulation`: the only type of FMU that this library is.

@@ -6,8 +6,9 @@ use std::path::Path;
 use super::handle::{ERROR, Log, call, free, instantiate};
 use super::memory::{place, places, text, values};
 use super::state::{deserialize, free_state, put_state, serialize, state};
+use crate::asked::Asked;
 use crate::complaint::Complaint;
-use crate::instance::{Asked, Instance};
+use crate::instance::Instance;
 use crate::model::switch;
 
 /// The one category of messages.

@@ -2,8 +2,10 @@
 
 use std::sync::Arc;
 
+use super::map::Map;
+use super::simulator::{Course, Role, Simulator, Stepping, Variable};
 use super::*;
-use crate::specimen::co_simulation::simulator::{Stepping, Variable};
+use crate::vocabulary::EffectId;
 
 const NAMES: [&str; 6] = ["x", "v", "force", "k", "d", "spare"];
 

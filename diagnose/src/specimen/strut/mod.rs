@@ -1,11 +1,13 @@
 //! The two-stage hydropneumatic strut: the belief as a [`StrutModel`] and five compared channels.
 
 mod calibration;
+mod candidates;
 mod channels;
 mod drawing;
 mod floor;
 mod relations;
 mod rod_memory;
+mod unknown_motion;
 
 use std::sync::OnceLock;
 
@@ -15,16 +17,18 @@ use oleo_plant_sim::strut::{COLUMNS, Inputs, Prediction, StrutModel, record_colu
 use rayon::prelude::*;
 
 use calibration::Calibration;
+use candidates::candidates;
 pub use channels::{CHANNELS, columns};
 use channels::{FORCE, Layout, P1, P2, P3, P4};
 use relations::Measured;
 use rod_memory::{RodMemory, Wanted};
+use unknown_motion::Unknown;
 
 use super::channel::{Channel, Series, StateSeries};
 use super::contract::{BelievedModel, Specimen};
 use super::hypothesis::Hypothesis;
 use super::relation::MeasuredRelation;
-use crate::effect::{ALL, Candidate, of, sensor, unlisted};
+use crate::effect::{Candidate, of, unlisted};
 use crate::error::DiagnoseError;
 use crate::excitation;
 use crate::instrument::{Examined, Finding, Flaw, Stated};
@@ -541,73 +545,6 @@ fn smoothed(
     }
 }
 
-/// Most by which the readings may exceed what the estimate of the motion says of its own error, in its variance.
-const MOST_BEYOND_ESTIMATE: f64 = 4.0;
-/// Variance of the second difference of white noise of variance one.
-const OF_WHITE_NOISE: f64 = 6.0;
-
-/// Mean squares over a channel: of the difference that two motions make, of its second difference, and of the second difference
-/// of the residuals.
-#[derive(Clone, Copy, Default)]
-struct Unknown {
-    difference: (f64, usize),
-    second: (f64, usize),
-    residual: (f64, usize),
-}
-
-impl Unknown {
-    fn add(&mut self, measured: &[f64], difference: &[f64], simulated: &[f64]) {
-        let square = |sum: &mut (f64, usize), v: f64| {
-            if !v.is_nan() {
-                *sum = (sum.0 + v * v, sum.1 + 1);
-            }
-        };
-        let second = |a: f64, b: f64, c: f64| a - 2.0 * b + c;
-        difference.iter().for_each(|d| square(&mut self.difference, *d));
-        difference
-            .windows(3)
-            .for_each(|w| square(&mut self.second, second(w[0], w[1], w[2])));
-        let residual: Vec<f64> = measured.iter().zip(simulated).map(|(m, s)| m - s).collect();
-        residual
-            .windows(3)
-            .for_each(|w| square(&mut self.residual, second(w[0], w[1], w[2])));
-    }
-
-    /// Variance that the unknown motion adds to that of the sensor.
-    fn of_motion(&self, sensor: f64) -> f64 {
-        let mean = |(sum, count): (f64, usize)| sum / count.max(1) as f64;
-        let [estimated, second, residual] = [self.difference, self.second, self.residual].map(mean);
-        if second <= 0.0 {
-            return 0.0;
-        }
-        let measured = (residual - OF_WHITE_NOISE * sensor).max(0.0) * estimated / second;
-        measured.min(MOST_BEYOND_ESTIMATE * estimated)
-    }
-}
-
 fn displacement_noise(model: &StrutModel) -> f64 {
     model.noise.get(COLUMNS[0]).copied().unwrap_or(0.0)
-}
-
-/// Everything that a strut's model may lack: physics, then the instruments column by column, then laws without a name.
-fn candidates(model: &StrutModel, excitation: &excitation::Strut, layout: Layout) -> Vec<Candidate> {
-    let of_effect = |id: EffectId| of(id).in_strut().map_or(vec![], |e| e.candidates(model, excitation));
-    let physics = ALL.iter().filter(|id| id.is_physics()).flat_map(|&id| of_effect(id));
-    let mut faults: Vec<Candidate> = sensor::IN_ORDER.into_iter().flat_map(of_effect).collect();
-    faults.sort_by_key(|fault| {
-        COLUMNS
-            .iter()
-            .position(|name| fault.place.sensor().is_some_and(|c| c == name))
-    });
-    let nameless = of_effect(EffectId::Unlisted);
-    (physics.chain(faults).chain(nameless))
-        .filter(|candidate| {
-            let sensor = candidate.place.sensor();
-            sensor.is_none_or(|sensor| layout.unrecorded().all(|name| *sensor != name))
-        })
-        .map(|candidate| {
-            let unseen = layout.unseen(&candidate.place.site);
-            candidate.testable_unless(excitation.still().or(unseen))
-        })
-        .collect()
 }

@@ -56,9 +56,12 @@ packages() {
     fi
     echo "   installing $*"
     get() { "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get "$@" >> "$OLEO_LOGS/apt.log" 2>&1 < /dev/null; }
-    # Lists may be absent or old: fetch them when the first try did not do.
-    get install -qq -y --no-install-recommends "$@" ||
-        { get update -qq; get install -qq -y --no-install-recommends "$@"; }
+    # Lists may be absent or old: fetch them when the first try did not do. One at a time: apt refuses to run twice.
+    (
+        flock 9
+        get install -qq -y --no-install-recommends "$@" ||
+            { get update -qq; get install -qq -y --no-install-recommends "$@"; }
+    ) 9> "$CARGO_TARGET_DIR/apt.lock"
     packages_present "$@"
 }
 
@@ -96,7 +99,11 @@ python_packages() {
     have() { PYTHONPATH=$PYTHON_PACKAGES python3 -c "import $modules" 2> /dev/null; }
     have && return 0
     echo "   installing $modules"
-    python3 -m pip install --quiet --target "$PYTHON_PACKAGES" "$@" > "$OLEO_LOGS/pip-$OLEO_STEP.log" 2>&1
+    # One at a time, into one folder.
+    (
+        flock 9
+        have || python3 -m pip install --quiet --target "$PYTHON_PACKAGES" "$@" > "$OLEO_LOGS/pip-$OLEO_STEP.log" 2>&1
+    ) 9> "$CARGO_TARGET_DIR/pip.lock"
     have
 }
 

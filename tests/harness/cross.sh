@@ -29,9 +29,10 @@ cross_find() {
     return 1
 }
 
-# cargo in firmware/ for the board.
+# cargo in firmware/ for the board. What is read from its images (stacks, lines) needs their debug information.
 cross_cargo() (
     cd firmware || exit 1
+    unset CARGO_PROFILE_RELEASE_DEBUG
     export CARGO_TARGET_DIR=$FIRMWARE_TARGET RUSTC_BOOTSTRAP=1 RUSTFLAGS="-C link-arg=-Tlink.x -Z emit-stack-sizes"
     if [ "$cross_way" = rustup ]; then
         exec cargo "$1" --locked --target $BOARD "${@:2}"
@@ -44,6 +45,7 @@ cross_cargo() (
 # Builds firmware/bench for this machine, into $bench_binary.
 host_bench() (
     cd firmware || exit 1
+    unset CARGO_PROFILE_RELEASE_DEBUG
     CARGO_TARGET_DIR=$FIRMWARE_TARGET cargo build --release --locked -p oleo-bench --target "$(rustc --print host-tuple)"
 )
 bench_binary=$FIRMWARE_TARGET/$(rustc --print host-tuple)/release/oleo-bench

@@ -2,8 +2,8 @@
 # runs the unit, property and end-to-end tests of the workspace (cargo test, dev profile)
 . tests/harness/lib.sh
 libtest "cargo test" cargo test "${FEATURES[@]}" --workspace --locked --no-fail-fast -- --show-output
-# What the first command builds, which lacks the readers of other programs' logs and says so.
-libtest "without features" cargo test --workspace --locked --test convert -- --show-output
+# What the first command builds, which lacks the readers of other programs' logs and says so. Building it is most of the work, so it is not optimised.
+CARGO_PROFILE_DEV_OPT_LEVEL=0 libtest "without features" cargo test --workspace --locked --test convert -- --show-output
 # The board's image holds one strategy.
 libtest "controller as a board has it" cargo test --package oleo-controller --no-default-features --locked --lib --tests -- --show-output
 exit 0

@@ -31,12 +31,11 @@ impl Analogue {
     }
 }
 
-/// A digital second-order section with its state (transposed direct form II).
+/// A digital second-order section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Biquad {
     b: [f64; 3],
     a: [f64; 2],
-    state: [f64; 2],
 }
 
 impl Biquad {
@@ -44,7 +43,6 @@ impl Biquad {
     pub(super) const THROUGH: Self = Self {
         b: [1.0, 0.0, 0.0],
         a: [0.0; 2],
-        state: [0.0; 2],
     };
 
     /// Matched in magnitude to an analogue section.
@@ -76,11 +74,7 @@ impl Biquad {
         let w = 0.5 * (root0 + root1);
         let b0 = 0.5 * (w + (w * w + b2_2).max(0.0).sqrt());
         let b = [b0, 0.5 * (root0 - root1), -b2_2 / (4.0 * b0)];
-        Self {
-            b,
-            a: [a1, a2],
-            state: [0.0; 2],
-        }
+        Self { b, a: [a1, a2] }
     }
 
     /// High pass `(s/w)^2 / (1 + s / (Q w) + (s/w)^2)`, exact at its corner.
@@ -90,16 +84,7 @@ impl Biquad {
         Self {
             b: [scale, -2.0 * scale, scale],
             a: [2.0 * (k * k - 1.0) * scale, (1.0 - k / q + k * k) * scale],
-            state: [0.0; 2],
         }
-    }
-
-    /// Filters one sample.
-    pub(super) fn filter(&mut self, input: f64) -> f64 {
-        let output = self.b[0] * input + self.state[0];
-        self.state[0] = self.b[1] * input - self.a[0] * output + self.state[1];
-        self.state[1] = self.b[2] * input - self.a[1] * output;
-        output
     }
 
     /// Squared magnitude at a frequency.
@@ -115,7 +100,8 @@ impl Biquad {
     }
 }
 
-/// Sections of one place in as many chains, side by side: the same operations on each, which the processor does for several at once.
+/// The sections of one place in several chains with their states (transposed direct form II), side by side: the processor does the same
+/// operation for several at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Abreast<const N: usize> {
     b: [[f64; N]; 3],
@@ -128,11 +114,11 @@ impl<const N: usize> Abreast<N> {
         Self {
             b: core::array::from_fn(|k| sections.map(|section| section.b[k])),
             a: core::array::from_fn(|k| sections.map(|section| section.a[k])),
-            state: core::array::from_fn(|k| sections.map(|section| section.state[k])),
+            state: [[0.0; N]; 2],
         }
     }
 
-    /// Filters one sample of each chain, as [`Biquad::filter`] does.
+    /// Filters one sample of each chain.
     #[inline]
     pub(super) fn filter(&mut self, input: [f64; N]) -> [f64; N] {
         let ([b0, b1, b2], [a1, a2], [first, second]) = (&self.b, &self.a, &mut self.state);
@@ -174,9 +160,10 @@ mod tests {
 
     #[test]
     fn high_pass_blocks_constant_input_and_passes_its_corner_with_q() {
-        let mut section = Biquad::high_pass(0.4, 0.71, 1000.0);
+        let section = Biquad::high_pass(0.4, 0.71, 1000.0);
         assert!((section.power(0.4, 1000.0).sqrt() / 0.71 - 1.0).abs() < 1e-6);
-        let last = (0..20_000).map(|_| section.filter(1.0)).last().unwrap();
+        let mut filter = Abreast::of([section]);
+        let [last] = (0..20_000).map(|_| filter.filter([1.0])).last().unwrap();
         assert!(last.abs() < 1e-6);
     }
 }

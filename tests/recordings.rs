@@ -362,6 +362,10 @@ campaigns! {
 
 /// The instruments of these campaigns are as their models state: nothing is said of them, and no reading is changed.
 #[test]
+#[cfg_attr(
+    debug_assertions,
+    ignore = "seconds without optimisation; the recordings step of ./test runs it"
+)]
 fn instruments_that_are_as_stated_are_left_alone() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/recordings");
     let mut campaigns = Vec::new();

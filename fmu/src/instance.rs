@@ -35,6 +35,7 @@ const TICK_TOLERANCE: f64 = 1e-6;
 const TIME_TOLERANCE_S: f64 = 1e-7;
 /// Place of time in every table.
 const TIME: usize = 0;
+
 /// An instance of an FMU.
 pub struct Instance {
     definition: Definition,

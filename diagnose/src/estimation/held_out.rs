@@ -9,8 +9,8 @@ use crate::criteria::Effort;
 
 /// Costs of the blocks when their fold is held out, and the points fitted without each fold; computed once for each fit.
 ///
-/// By fits of their own where they are cheap, or where the linear approximation around this fit says that leaving out a fold
-/// changes much; else in that approximation.
+/// By fits of their own where they are cheap, where the linear approximation around this fit says that leaving out a fold
+/// changes much, or where it alone says that the model is not complete; else in that approximation.
 pub fn held_out<'f>(fitted: &'f Fit, problem: &LeastSquares<'_>) -> &'f HeldOut {
     fitted.held_out.get_or_init(|| {
         let fitting = problem.criteria.fitting;
@@ -19,13 +19,21 @@ pub fn held_out<'f>(fitted: &'f Fit, problem: &LeastSquares<'_>) -> &'f HeldOut 
             return refitted(fitted, problem, folds, |b| b.fold, fitting.converged);
         }
         let linear = linear(fitted, problem);
-        let limit = fitting.linear_limit * total_cost(&fitted.normals);
-        if fitted.screened || linear.costs.iter().sum::<f64>() < limit {
+        let (cost, cost_held_out) = (total_cost(&fitted.normals), linear.costs.iter().sum::<f64>());
+        let changes_much = cost_held_out >= fitting.linear_limit * cost;
+        if fitted.screened || !(changes_much || decides_completeness(fitted, problem, cost, cost_held_out)) {
             linear
         } else {
             refitted(fitted, problem, folds, |b| b.fold, fitting.quick)
         }
     })
+}
+
+/// True if a model is complete by the blocks that it was fitted to, and not by their held-out cost in the linear approximation.
+fn decides_completeness(fitted: &Fit, problem: &LeastSquares<'_>, cost: f64, cost_held_out: f64) -> bool {
+    let residuals = problem.residuals() as f64;
+    let most = problem.complete_up_to(&fitted.point);
+    (cost / residuals).sqrt() <= most && (cost_held_out / residuals).sqrt() > most
 }
 
 /// Cost of all recordings, each predicted by a fit of the others; computed once for each fit.
@@ -96,6 +104,7 @@ fn linear(fitted: &Fit, problem: &LeastSquares<'_>) -> HeldOut {
 mod tests {
     use super::*;
     use crate::analytic::{CUBIC, FORTY_SINES, RUN, Recipe};
+    use crate::criteria::Criteria;
     use crate::estimation::Point;
 
     /// The analytic specimen is linear, so that the approximation must equal the fits themselves.
@@ -125,6 +134,29 @@ mod tests {
                 assert!((a - b).abs() < 1e-3 * b, "{a} {b}");
             }
         }
+    }
+
+    #[test]
+    fn folds_are_fitted_where_the_approximation_alone_says_that_a_model_is_not_complete() {
+        let specimen = Recipe::default().make();
+        let start = Point::nominal(&specimen).with_effect(&specimen, FORTY_SINES, &[0.0; 40]);
+        let simulated = |complete_up_to: f64| {
+            let mut criteria = Criteria::default();
+            (criteria.completeness.noise_ratio, criteria.completeness.over_floor) = (complete_up_to, 0.0);
+            let problem = LeastSquares::new(&specimen, &RUN).with_criteria(criteria);
+            let fitted = fit(&problem, start.clone(), problem.criteria.fitting.converged).expect("a fit");
+            let before = problem.evaluation.simulated();
+            held_out(&fitted, &problem);
+            problem.evaluation.simulated() - before
+        };
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let fitted = fit(&problem, start.clone(), problem.criteria.fitting.converged).expect("a fit");
+        let ratio = |cost: f64| (cost / problem.residuals() as f64).sqrt();
+        let by_fit = ratio(total_cost(&fitted.normals));
+        let by_approximation = ratio(linear(&fitted, &problem).costs.iter().sum());
+        assert!(simulated(0.5 * (by_fit + by_approximation)) > 0);
+        // Complete by both, and by neither.
+        assert_eq!((simulated(1.01 * by_approximation), simulated(0.99 * by_fit)), (0, 0));
     }
 
     #[test]

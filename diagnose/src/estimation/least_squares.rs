@@ -76,6 +76,21 @@ impl<'a> LeastSquares<'a> {
         self.specimen().simulates_in_milliseconds() && few_folds
     }
 
+    /// Noise ratio that a model at a point would reach if it were complete.
+    #[must_use]
+    pub fn floor(&self, point: &Point) -> f64 {
+        self.specimen().noise_floor(&point.hypothesis(self.specimen()))
+    }
+
+    /// Noise ratio up to which a model at a point counts as complete.
+    #[must_use]
+    pub fn complete_up_to(&self, point: &Point) -> f64 {
+        let completeness = &self.criteria.completeness;
+        completeness
+            .noise_ratio
+            .max(completeness.over_floor * self.floor(point))
+    }
+
     /// Number of residuals: all values of the channels that were measured.
     #[must_use]
     pub fn residuals(&self) -> usize {

@@ -197,13 +197,12 @@ impl<'p, 'a> Selector<'p, 'a> {
 
     /// Noise ratio that a fitted model would reach if it were complete.
     pub fn floor(&self, fit: &Fit) -> f64 {
-        self.specimen().noise_floor(&fit.point.hypothesis(self.specimen()))
+        self.problem.floor(&fit.point)
     }
 
     /// Noise ratio up to which a fitted model counts as complete.
     pub fn complete_up_to(&self, fit: &Fit) -> f64 {
-        let completeness = &self.criteria().completeness;
-        completeness.noise_ratio.max(completeness.over_floor * self.floor(fit))
+        self.problem.complete_up_to(&fit.point)
     }
 }
 

@@ -23,7 +23,7 @@ WIDTHS = (400, 1000, 1600)
 THEMES = {"dark": 0, "light": 1}
 # Browsers at once: one draws a page in one process.
 AT_ONCE = 2
-# A browser that has not answered by then does not.
+# A browser that has not answered by then, or has ended, does not.
 ANSWER_S = 300
 # Contrast of text, by the Web Content Accessibility Guidelines 2.2, level AA.
 CONTRAST = 4.5
@@ -173,6 +173,7 @@ def judged(chromium, page, theme):
         handler = type("Handler", (Server,), {"answers": answers})
         with http.server.ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(handler, directory=name)) as server:
             threading.Thread(target=server.serve_forever, daemon=True).start()
+            said = folder / "said"
             browser = subprocess.Popen(
                 [
                     chromium, "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
@@ -180,12 +181,17 @@ def judged(chromium, page, theme):
                     f"--blink-settings=preferredColorScheme={theme}", f"--user-data-dir={folder / 'profile'}",
                     "--window-size=1700,1300", "--remote-debugging-port=0", f"http://127.0.0.1:{server.server_port}/frames.html",
                 ],
-                stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL, stderr=said.open("wb"),
             )  # fmt: skip
             try:
-                return answers.get(timeout=ANSWER_S)
-            except queue.Empty:
-                return {0: {"found": [f"Chromium gave no answer within {ANSWER_S} s"], "charts": 0}}
+                for _ in range(ANSWER_S):
+                    try:
+                        return answers.get(timeout=1)
+                    except queue.Empty:
+                        if browser.poll() is not None:
+                            break
+                end = said.read_text(errors="replace").strip()[-300:]
+                return {0: {"found": [f"Chromium gave no answer (status {browser.poll()}): {end}"], "charts": 0}}
             finally:
                 browser.terminate()
                 browser.wait()
@@ -199,7 +205,7 @@ PLANTED = [
     ("</main>", "<figure><svg></svg></figure></main>", "a figure without a name"),
     ("</main>", '<div style="width: 3000px">wide</div></main>', "px wide"),
     ("</main>", '<script>console.error("said")</script></main>', "console: said"),
-    ('"title":{"text":"Roll, degrees"}', '"title":{"text":""}', "without a title"),
+    ('"title":{"text":"Roll, degrees"}', '"title":{"text":""}', "without a title: Motion of the body"),
     ('"text":"Pitch, degrees"', '"text":"Pitch, degrees' + ", and so on" * 30 + '"', "outside of its drawing"),
 ]
 

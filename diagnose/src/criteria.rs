@@ -85,8 +85,11 @@ pub struct Screening {
     pub size_overshoot: f64,
     /// How many of the starting sizes are stepped on from: those of lowest cost ...
     pub sizes_refined: usize,
-    /// ... that cost less than none of the effect, and less than this many times what the start at size zero has reached.
+    /// ... that cost less than this many times what the start at size zero has reached, and ...
     pub size_contender: f64,
+    /// ... gain at least this part of what the best of all candidates gains. With sizes a decade apart the right effect gains nearly half of what it
+    /// explains, where it is linear in its size.
+    pub gain_of_size: f64,
     /// From how many starts of an effect a model is fitted again that is not complete when nothing can be added.
     pub shapes_restarted: usize,
     /// Further steps that the promising ones get.
@@ -114,6 +117,7 @@ impl Default for Screening {
             size_overshoot: 1.5,
             sizes_refined: 2,
             size_contender: 3.0,
+            gain_of_size: 0.05,
             shapes_restarted: 8,
             more_steps: 3,
             promising: 6,

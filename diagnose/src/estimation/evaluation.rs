@@ -19,6 +19,10 @@ pub struct Evaluation<'a> {
     specimen: &'a dyn Specimen,
     stop: &'a AtomicBool,
     simulated: Arc<AtomicUsize>,
+    /// Indices of the recordings that are simulated.
+    recordings: Arc<[usize]>,
+    /// True if it is one of many that work at the same time: each keeps one thread as busy as it can, instead of all.
+    one_of_many: bool,
 }
 
 /// Residuals and derivatives of one recording, in units of noise. Both are zero where nothing was measured.
@@ -38,6 +42,8 @@ impl<'a> Evaluation<'a> {
             specimen,
             stop,
             simulated: Arc::default(),
+            recordings: (0..specimen.recordings().len()).collect(),
+            one_of_many: false,
         }
     }
 
@@ -48,10 +54,25 @@ impl<'a> Evaluation<'a> {
         'a: 'b,
     {
         Evaluation {
-            specimen,
-            stop: self.stop,
             simulated: Arc::clone(&self.simulated),
+            ..Evaluation::new(specimen, self.stop)
         }
+    }
+
+    /// Some of the recordings, by their indices, for many who ask at the same time. What is said of every recording is then said of these, in this order.
+    #[must_use]
+    pub fn of(&self, recordings: &[usize]) -> Self {
+        Self {
+            recordings: recordings.into(),
+            one_of_many: true,
+            ..self.clone()
+        }
+    }
+
+    /// Indices of the recordings that are simulated.
+    #[must_use]
+    pub fn recordings(&self) -> &[usize] {
+        &self.recordings
     }
 
     /// The specimen.
@@ -72,18 +93,32 @@ impl<'a> Evaluation<'a> {
     /// A model that cannot be simulated; [`DiagnoseError::Interrupted`] once the caller asked to stop.
     pub fn truths(&self, point: &Point) -> Result<Vec<Series>, DiagnoseError> {
         let hypothesis = point.hypothesis(self.specimen);
-        let wanted: Vec<(&Hypothesis, usize)> = (0..self.specimen.recordings().len())
-            .map(|r| (&hypothesis, r))
-            .collect();
+        let wanted: Vec<(&Hypothesis, usize)> = self.recordings.iter().map(|&r| (&hypothesis, r)).collect();
         self.simulate_all(&wanted)
+    }
+
+    /// The same at several points, each on its own; an error where a point cannot be simulated.
+    #[must_use]
+    pub fn truths_at_each(&self, points: &[Point]) -> Vec<Result<Vec<Series>, DiagnoseError>> {
+        let hypotheses: Vec<Hypothesis> = points.iter().map(|point| point.hypothesis(self.specimen)).collect();
+        let wanted: Vec<(&Hypothesis, usize)> = (hypotheses.iter())
+            .flat_map(|hypothesis| self.recordings.iter().map(move |&r| (hypothesis, r)))
+            .collect();
+        let mut simulated = (wanted.par_chunks(self.at_once(wanted.len())))
+            .flat_map_iter(|wanted| self.simulate_each(wanted))
+            .collect::<Vec<_>>()
+            .into_iter();
+        (points.iter())
+            .map(|_| simulated.by_ref().take(self.recordings.len()).collect())
+            .collect()
     }
 
     /// What the instruments show of given true quantities at a point.
     #[must_use]
     pub fn observed(&self, point: &Point, truths: &[Series]) -> Vec<Series> {
         let hypothesis = point.hypothesis(self.specimen);
-        (truths.par_iter().enumerate())
-            .map(|(r, t)| self.specimen.observe(&hypothesis, r, t))
+        (truths.par_iter().zip(&*self.recordings))
+            .map(|(t, &r)| self.specimen.observe(&hypothesis, r, t))
             .collect()
     }
 
@@ -98,7 +133,9 @@ impl<'a> Evaluation<'a> {
     /// `(measured - predicted) / noise`, every recording; zero where nothing was measured (NaN).
     #[must_use]
     pub fn residuals(&self, predicted: &[Series]) -> Vec<Series> {
-        predicted.iter().enumerate().map(|(r, p)| self.residual(r, p)).collect()
+        (predicted.iter().zip(&*self.recordings))
+            .map(|(p, &r)| self.residual(r, p))
+            .collect()
     }
 
     /// Residuals at a point, every recording.
@@ -129,7 +166,8 @@ impl<'a> Evaluation<'a> {
         };
         let shown = self.observed(point, truths);
         let moved: Vec<Moved> = coordinates.iter().map(|&k| self.moved(point, k)).collect();
-        // All (recording, coordinate) pairs at once keep every core busy; collect restores their order.
+        // All (recording, coordinate) pairs at once keep every core busy; collect restores their order. Of a recording, its place among those that
+        // are simulated.
         let pairs: Vec<(usize, &Moved)> = (0..truths.len())
             .flat_map(|r| moved.iter().map(move |moved| (r, moved)))
             .collect();
@@ -137,9 +175,9 @@ impl<'a> Evaluation<'a> {
             .map(|pairs| self.derivatives(pairs, truths, &shown))
             .collect::<Result<_, _>>()?;
         let mut derivatives = derivatives.into_iter().flatten();
-        Ok((shown.iter().enumerate())
-            .map(|(r, shown)| Sensitivity {
-                residual: self.residual(r, shown),
+        Ok((self.residuals(&shown).into_iter())
+            .map(|residual| Sensitivity {
+                residual,
                 columns: derivatives.by_ref().take(coordinates.len()).collect(),
             })
             .collect())
@@ -168,14 +206,14 @@ impl<'a> Evaluation<'a> {
     ) -> Result<Vec<Series>, DiagnoseError> {
         let wanted: Vec<(&Hypothesis, usize)> = (pairs.iter())
             .filter(|(_, moved)| !moved.instrument_only)
-            .map(|&(recording, moved)| (&moved.hypothesis, recording))
+            .map(|&(place, moved)| (&moved.hypothesis, self.recordings[place]))
             .collect();
         let mut simulated = self.simulate_these(&wanted)?.into_iter();
         Ok((pairs.iter())
-            .map(|&(recording, moved)| {
+            .map(|&(place, moved)| {
                 let simulated = if moved.instrument_only { None } else { simulated.next() };
-                let truth = simulated.as_ref().unwrap_or(&truths[recording]);
-                self.derivative(moved, recording, truth, &shown[recording])
+                let truth = simulated.as_ref().unwrap_or(&truths[place]);
+                self.derivative(moved, self.recordings[place], truth, &shown[place])
             })
             .collect())
     }
@@ -195,6 +233,9 @@ impl<'a> Evaluation<'a> {
 
     /// How many of so many simulations one thread is given at once: all threads have some, and none so many that a wish to stop waits for long.
     fn at_once(&self, simulations: usize) -> usize {
+        if self.one_of_many {
+            return self.specimen.simulations_at_once();
+        }
         let share = simulations.div_ceil(rayon::current_num_threads());
         share.clamp(1, self.specimen.simulations_at_once())
     }
@@ -208,8 +249,12 @@ impl<'a> Evaluation<'a> {
 
     /// Simulations on this thread.
     fn simulate_these(&self, wanted: &[(&Hypothesis, usize)]) -> Result<Vec<Series>, DiagnoseError> {
+        self.simulate_each(wanted).into_iter().collect()
+    }
+
+    fn simulate_each(&self, wanted: &[(&Hypothesis, usize)]) -> Vec<Result<Series, DiagnoseError>> {
         if self.stop.load(Ordering::Relaxed) {
-            return Err(DiagnoseError::Interrupted);
+            return wanted.iter().map(|_| Err(DiagnoseError::Interrupted)).collect();
         }
         self.simulated.fetch_add(wanted.len(), Ordering::Relaxed);
         (self.specimen.simulate_all(wanted).into_iter().zip(wanted))

@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use super::bounded_step::bounded_step;
+use super::evaluation::Sensitivity;
 use super::fit::Fit;
 use super::least_squares::LeastSquares;
 use super::normal_equations::{assemble, sum, total_cost, with_residuals};
@@ -47,14 +48,41 @@ const TOLERANCES_PER_JACOBIAN: f64 = 3.0;
 /// A start that cannot be simulated; [`DiagnoseError::Interrupted`] once the caller asked to stop. A step to where the model
 /// cannot be simulated is only shortened.
 pub fn fit(problem: &LeastSquares<'_>, start: Point, effort: Effort) -> Result<Fit, DiagnoseError> {
-    let (specimen, blocks, evaluation) = (problem.specimen(), &problem.blocks, &problem.evaluation);
-    let (prior, ranges) = (start.prior(specimen), start.ranges(specimen));
-    let mut point = start;
-    for (z, range) in point.z.iter_mut().zip(&ranges) {
-        *z = z.clamp(range.0, range.1);
+    fit_from(problem, &Start::at(problem, start)?, effort)
+}
+
+/// A point with residuals and derivatives, from which a model may be fitted to more than one choice of blocks.
+pub struct Start {
+    point: Point,
+    sensitivities: Vec<Sensitivity>,
+}
+
+impl Start {
+    /// A point, moved into its ranges.
+    ///
+    /// # Errors
+    /// As [`fit`].
+    pub fn at(problem: &LeastSquares<'_>, point: Point) -> Result<Self, DiagnoseError> {
+        let mut point = point;
+        let ranges = point.ranges(problem.specimen());
+        for (z, range) in point.z.iter_mut().zip(ranges) {
+            *z = z.clamp(range.0, range.1);
+        }
+        let all: Vec<usize> = (0..point.z.len()).collect();
+        let sensitivities = problem.evaluation.sensitivities(&point, &all, None)?;
+        Ok(Self { point, sensitivities })
     }
+}
+
+/// The same from a start whose derivatives are known.
+///
+/// # Errors
+/// As [`fit`].
+pub fn fit_from(problem: &LeastSquares<'_>, start: &Start, effort: Effort) -> Result<Fit, DiagnoseError> {
+    let (specimen, blocks, evaluation) = (problem.specimen(), &problem.blocks, &problem.evaluation);
+    let (mut point, mut sensitivities) = (start.point.clone(), start.sensitivities.clone());
+    let (prior, ranges) = (point.prior(specimen), point.ranges(specimen));
     let all: Vec<usize> = (0..point.z.len()).collect();
-    let mut sensitivities = evaluation.sensitivities(&point, &all, None)?;
     let mut normals = assemble(blocks, &sensitivities);
     let mut cost = total_cost(&normals) + point.prior_cost(specimen);
     let mut damping = DAMPING.0;

@@ -2,7 +2,7 @@
 
 use super::blocks::Block;
 use super::fit::{Fit, HeldOut};
-use super::gauss_newton::fit;
+use super::gauss_newton::{Start, fit_from};
 use super::least_squares::LeastSquares;
 use super::normal_equations::total_cost;
 use crate::criteria::Effort;
@@ -59,9 +59,11 @@ fn refitted(
 ) -> HeldOut {
     let mut costs = vec![f64::INFINITY; fitted.normals.len()];
     let mut points = Vec::with_capacity(parts);
+    let start = Start::at(problem, fitted.point.clone()).ok();
     for part in 0..parts {
         let rest = problem.keeping(|b| part_of(b) != part);
-        let point = fit(&rest, fitted.point.clone(), effort).map_or_else(|_| fitted.point.clone(), |f| f.point);
+        let refit = start.as_ref().and_then(|start| fit_from(&rest, start, effort).ok());
+        let point = refit.map_or_else(|| fitted.point.clone(), |f| f.point);
         if let Ok(residuals) = problem.evaluation.residuals_at(&point) {
             for (k, cost) in problem.block_costs(&residuals).into_iter().enumerate() {
                 if part_of(&problem.blocks.as_slice()[k]) == part {
@@ -105,7 +107,7 @@ mod tests {
     use super::*;
     use crate::analytic::{CUBIC, FORTY_SINES, RUN, Recipe};
     use crate::criteria::Criteria;
-    use crate::estimation::Point;
+    use crate::estimation::{Point, fit};
 
     /// The analytic specimen is linear, so that the approximation must equal the fits themselves.
     #[test]

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::blocks::Block;
 use super::covariance;
 use super::fit::Fit;
-use super::gauss_newton::fit;
+use super::gauss_newton::{Start, fit_from};
 use super::least_squares::LeastSquares;
 use crate::error::DiagnoseError;
 
@@ -25,7 +25,7 @@ const WIDER: f64 = 1.46;
 /// the jackknife's over three recordings or more, over blocks of two, over the halves of a single one.
 ///
 /// # Errors
-/// As [`fit`] without one of the parts.
+/// As [`crate::estimation::fit`] without one of the parts.
 pub fn deviations(problem: &LeastSquares<'_>, best: &Fit) -> Result<DVector<f64>, DiagnoseError> {
     let within = covariance::deviations(best);
     if !problem.specimen().simulates_in_milliseconds() {
@@ -37,11 +37,12 @@ pub fn deviations(problem: &LeastSquares<'_>, best: &Fit) -> Result<DVector<f64>
     } else {
         (problem.blocks.folds(), |b| b.fold)
     };
+    let start = Start::at(problem, best.point.clone())?;
     let left_out: Vec<DVector<f64>> = (0..groups)
         .into_par_iter()
         .map(|g| {
             let rest = problem.keeping(|b| part(b) != g);
-            let point = fit(&rest, best.point.clone(), problem.criteria.fitting.converged)?.point;
+            let point = fit_from(&rest, &start, problem.criteria.fitting.converged)?.point;
             Ok(DVector::from_vec(point.z))
         })
         .collect::<Result<_, DiagnoseError>>()?;

@@ -129,22 +129,27 @@ fn add_products(
 }
 
 /// Normal equations of old coordinates, whose sensitivities and products stay as they are, together with those of added
-/// coordinates. The residuals are those of `added`; `answering` is what is known of `base`.
+/// coordinates. The residuals are those of `added`, by recording; where it says nothing, the added coordinates change nothing. `answering` is what is
+/// known of `base`.
 #[must_use]
 pub fn extended(
     blocks: &Blocks,
     old: &[NormalEquations],
     base: &[Sensitivity],
     answering: &Answering,
-    added: &[Sensitivity],
+    added: &[Option<&Sensitivity>],
 ) -> Vec<NormalEquations> {
+    let coordinates = added.iter().flatten().next().map_or(0, |s| s.columns.len());
     (blocks.as_slice().iter().zip(old).zip(&answering.by_block))
         .map(|((b, old), answering)| {
-            let (base, added) = (&base[b.recording], &added[b.recording]);
             let before = old.g.len();
-            let p = before + added.columns.len();
+            let p = before + coordinates;
             let (mut h, mut g) = (DMatrix::zeros(p, p), DVector::zeros(p));
             h.view_mut((0, 0), (before, before)).copy_from(&old.h);
+            let (base, Some(added)) = (&base[b.recording], added[b.recording]) else {
+                g.rows_mut(0, before).copy_from(&old.g);
+                return NormalEquations { h, g, cost: old.cost };
+            };
             let mut cost = 0.0;
             for (c, residual) in added.residual.iter().enumerate() {
                 let r = b.of(residual);
@@ -179,11 +184,13 @@ pub fn extended_with_residuals(
     old: &[NormalEquations],
     base: &[Sensitivity],
     answering: &Answering,
-    added: &[Sensitivity],
+    added: &[Option<&Sensitivity>],
 ) -> Vec<NormalEquations> {
     (blocks.as_slice().iter().zip(old).zip(&answering.by_block))
         .map(|((b, old), answering)| {
-            let (base, added) = (&base[b.recording], &added[b.recording]);
+            let (base, Some(added)) = (&base[b.recording], added[b.recording]) else {
+                return old.clone();
+            };
             let (mut g, mut cost) = (DVector::zeros(old.g.len()), 0.0);
             for (c, residual) in added.residual.iter().enumerate() {
                 let r = b.of(residual);
@@ -261,6 +268,45 @@ mod tests {
             && near(a.cost, b.cost)
     }
 
+    fn of_all(added: &[Sensitivity]) -> Vec<Option<&Sensitivity>> {
+        added.iter().map(Some).collect()
+    }
+
+    #[test]
+    fn where_nothing_was_simulated_added_coordinates_change_nothing() {
+        let specimen = Recipe::default().make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let (blocks, evaluation) = (&problem.blocks, &problem.evaluation);
+        let point = Point::nominal(&specimen).with_effect(&specimen, CUBIC, &[0.1]);
+        let at = |columns: &[usize]| evaluation.sensitivities(&point, columns, None).expect("simulated");
+        let (base, added) = (at(&[0, 1]), at(&[2]));
+        let old = assemble(blocks, &base);
+        let answering = Answering::of(blocks, &base);
+        let mut first_only = vec![None; added.len()];
+        first_only[0] = Some(&added[0]);
+        let whole = extended(blocks, &old, &base, &answering, &of_all(&added));
+        let some = extended(blocks, &old, &base, &answering, &first_only);
+        let mut moved = added.clone();
+        for s in &mut moved {
+            s.residual.iter_mut().flatten().for_each(|r| *r += 0.3);
+        }
+        let mut first_moved = vec![None; added.len()];
+        first_moved[0] = Some(&moved[0]);
+        let renewed = extended_with_residuals(blocks, &some, &base, &answering, &first_moved);
+        for (k, b) in blocks.as_slice().iter().enumerate() {
+            if b.recording == 0 {
+                assert!(close(&some[k], &whole[k]) && !close(&renewed[k], &some[k]));
+            } else {
+                let unchanged = NormalEquations {
+                    h: old[k].h.clone().resize(3, 3, 0.0),
+                    g: old[k].g.clone().resize_vertically(3, 0.0),
+                    cost: old[k].cost,
+                };
+                assert!(close(&some[k], &unchanged) && close(&renewed[k], &unchanged));
+            }
+        }
+    }
+
     #[test]
     fn three_ways_of_assembling_agree() {
         let specimen = Recipe::default().make();
@@ -275,7 +321,8 @@ mod tests {
         // Old coordinates frozen, new ones added.
         let base = at(&[0, 1]);
         let answering = Answering::of(blocks, &base);
-        let grown = extended(blocks, &assemble(blocks, &base), &base, &answering, &at(&[2, 3]));
+        let added = at(&[2, 3]);
+        let grown = extended(blocks, &assemble(blocks, &base), &base, &answering, &of_all(&added));
         assert!(whole.iter().zip(&grown).all(|(a, b)| close(a, b)));
         // New residuals, the same sensitivities.
         let mut moved = all.clone();
@@ -288,7 +335,7 @@ mod tests {
         for s in &mut added {
             s.residual.iter_mut().flatten().for_each(|r| *r += 0.3);
         }
-        let renewed = extended_with_residuals(blocks, &grown, &base, &answering, &added);
+        let renewed = extended_with_residuals(blocks, &grown, &base, &answering, &of_all(&added));
         assert!(assemble(blocks, &moved).iter().zip(&renewed).all(|(a, b)| close(a, b)));
         // The old residuals, whose products are known, and the same with one sample changed.
         let mut added = at(&[2, 3]);
@@ -296,7 +343,7 @@ mod tests {
             added[0].residual[0][5] += changed;
             let mut moved = all.clone();
             moved[0].residual[0][5] += changed;
-            let renewed = extended_with_residuals(blocks, &grown, &base, &answering, &added);
+            let renewed = extended_with_residuals(blocks, &grown, &base, &answering, &of_all(&added));
             assert!(assemble(blocks, &moved).iter().zip(&renewed).all(|(a, b)| close(a, b)));
         }
     }

@@ -42,12 +42,12 @@ impl Selector<'_, '_> {
         begin: Screening<'_>,
     ) -> Result<Option<Fit>, DiagnoseError> {
         let fraction = self.criteria().acceptance.least_fraction_incomplete;
-        let beside_end = self.combination_beside(end, Open::Names)?;
+        let beside_end = self.combination_beside(end, Open::Names, end.model)?;
         if end.model.point.effects.is_empty() {
             return Ok(beside_end);
         }
         let anew = self
-            .combination_beside(begin, Open::Names)?
+            .combination_beside(begin, Open::Names, end.model)?
             .filter(|anew| self.improves(end.model, anew, fraction));
         Ok(match (beside_end, anew) {
             (Some(more), Some(anew)) => {
@@ -63,8 +63,13 @@ impl Selector<'_, '_> {
         })
     }
 
-    /// The strongest combination beside a model, of what may join it.
-    pub fn combination_beside(&mut self, base: Screening<'_>, open: Open) -> Result<Option<Fit>, DiagnoseError> {
+    /// The strongest combination beside a model, of what may join it. It also has to gain over the model `best`.
+    pub fn combination_beside(
+        &mut self,
+        base: Screening<'_>,
+        open: Open,
+        best: &Fit,
+    ) -> Result<Option<Fit>, DiagnoseError> {
         let criteria = &self.criteria().combinations;
         let (seeds, largest) = if self.specimen().simulates_in_milliseconds() {
             (criteria.seeds, criteria.largest)
@@ -80,7 +85,7 @@ impl Selector<'_, '_> {
             .collect();
         for size in 2..=largest.min(room) {
             let grown = self.grown(beam, open)?;
-            if let Some(found) = self.confirmed(&grown, base.model, size)? {
+            if let Some(found) = self.confirmed(&grown, [base.model, best], size)? {
                 return Ok(Some(found));
             }
             beam = grown.into_iter().take(criteria.beam).collect();
@@ -110,14 +115,16 @@ impl Selector<'_, '_> {
     }
 
     /// The best of the first few that held-out blocks confirm, as a whole and each of its last `size` effects in it.
-    fn confirmed(&mut self, grown: &[Fit], best: &Fit, size: usize) -> Result<Option<Fit>, DiagnoseError> {
+    fn confirmed(&mut self, grown: &[Fit], [base, best]: [&Fit; 2], size: usize) -> Result<Option<Fit>, DiagnoseError> {
         let criteria = self.criteria();
         let fraction = criteria.acceptance.least_fraction_incomplete;
         let mut winner: Option<(f64, Fit)> = None;
         for start in grown.iter().take(criteria.combinations.finalists) {
-            let before = self.held_out(best);
-            let gain = self.gain(before, &reached(start));
-            if !gain.is_large(fraction, criteria.screening.margin, &criteria.acceptance) {
+            let is_large = |over: &Fit| {
+                let gain = self.gain(self.held_out(over), &reached(start));
+                gain.is_large(fraction, criteria.screening.margin, &criteria.acceptance)
+            };
+            if !is_large(base) || !is_large(best) {
                 continue;
             }
             let Some(full) = self.fitted_if_simulated(start.point.clone())? else {
@@ -125,7 +132,7 @@ impl Selector<'_, '_> {
             };
             let after = self.held_out(&full);
             let cost: f64 = after.iter().sum();
-            let accepted = self.improves(best, &full, fraction);
+            let accepted = self.improves(base, &full, fraction);
             let better = winner.as_ref().is_none_or(|(least, _)| cost < *least);
             if accepted
                 && better

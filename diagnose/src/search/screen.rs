@@ -7,10 +7,12 @@
 //! | module | what it holds |
 //! |---|---|
 //! | `beside` | the model so far, and a candidate beside it |
+//! | `look` | the recordings on which a candidate is looked at |
 //! | `steps` | the steps of a candidate to its best values |
 //! | `starts` | where candidates begin, and which of them go on |
 
 mod beside;
+mod look;
 mod starts;
 mod steps;
 

@@ -250,7 +250,7 @@ fn grow(
                     model: &best,
                     screened: &screened,
                 };
-                if let Some(pair) = selector.combination_beside(end, Open::TwoLaws)? {
+                if let Some(pair) = selector.combination_beside(end, Open::TwoLaws, &best)? {
                     (best, open, law_pairs) = (pair, Open::TwoLaws, LawPairs::Found);
                     continue;
                 }

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use nalgebra::DVector;
 
+use super::look::Look;
 use crate::error::DiagnoseError;
-use crate::estimation::normal_equations::Answering;
+use crate::estimation::normal_equations::{Answering, total_cost};
 use crate::estimation::{Fit, LeastSquares, NormalEquations, Point, Sensitivity};
-use crate::specimen::{Series, Specimen};
+use crate::specimen::Specimen;
 
 /// The model so far with everything that screening reuses.
 pub struct Screen<'p, 'a> {
@@ -16,7 +17,12 @@ pub struct Screen<'p, 'a> {
     pub(super) base: Arc<Vec<Sensitivity>>,
     /// What is known of `base`.
     pub(super) answering: Answering,
-    pub(super) truths: Vec<Series>,
+    /// All recordings.
+    pub(super) all: Look<'a>,
+    /// Those that hold most of what the model so far leaves, where that is far more than noise and these are fewer.
+    pub(super) most: Option<Look<'a>>,
+    /// Those that hold half of it, likewise.
+    pub(super) half: Option<Look<'a>>,
 }
 
 /// A candidate on its way to its best values.
@@ -33,6 +39,8 @@ pub struct ScreenedCandidate {
     pub cost: f64,
     pub(super) damping: f64,
     pub(super) arrived: bool,
+    /// True while it was looked at on those recordings only that hold most of what the model so far leaves.
+    pub(super) partly: bool,
     /// True once it got the steps of a promising candidate.
     pub advanced: bool,
 }
@@ -43,25 +51,36 @@ impl<'p, 'a> Screen<'p, 'a> {
     /// # Errors
     /// As [`crate::estimation::Evaluation::truths`].
     pub fn new(problem: &'p LeastSquares<'a>, fit: &'p Fit) -> Result<Self, DiagnoseError> {
-        let truths = problem.evaluation.truths(&fit.point)?;
+        let all = Look::at_all(problem, fit)?;
         let base = if let Some(kept) = &fit.sensitivities {
             Arc::clone(kept)
         } else {
-            let all: Vec<usize> = (0..fit.point.z.len()).collect();
-            Arc::new(problem.evaluation.sensitivities(&fit.point, &all, Some(&truths))?)
+            let own: Vec<usize> = (0..fit.point.z.len()).collect();
+            Arc::new(problem.evaluation.sensitivities(&fit.point, &own, Some(&all.truths))?)
         };
+        // What most recordings leave out is less than an effect must explain to be accepted.
+        let gross = is_gross(problem, fit);
+        let part = |part: f64| if gross { all.at_part(part, problem, fit) } else { None };
         Ok(Self {
             problem,
             fit,
             answering: Answering::of(&problem.blocks, &base),
             base,
-            truths,
+            most: part(1.0 - problem.criteria.acceptance.least_fraction),
+            half: part(0.5),
+            all,
         })
     }
 
     pub(super) fn specimen(&self) -> &'a dyn Specimen {
         self.problem.specimen()
     }
+}
+
+/// True if a fitted model is so far off that a derivative at size zero may not show where an effect is.
+pub(super) fn is_gross(problem: &LeastSquares<'_>, fit: &Fit) -> bool {
+    let ratio = problem.criteria.screening.gross_noise_ratio;
+    total_cost(&fit.normals) > ratio * ratio * problem.residuals() as f64
 }
 
 /// The candidate beside a fitted model as a fit: the response is carried out in the linear approximation.

@@ -5,13 +5,14 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-use super::beside::{Screen, ScreenedCandidate, cost_of, finished};
+use super::beside::{Screen, ScreenedCandidate, cost_of, finished, is_gross};
+use super::look::Look;
 use super::steps::{Linearised, RESPONSE_DAMPING};
 use crate::criteria::Screening;
 use crate::error::DiagnoseError;
 use crate::estimation::bounded_step::bounded_step;
-use crate::estimation::normal_equations::{sum, total_cost};
-use crate::estimation::{Fit, Sensitivity};
+use crate::estimation::normal_equations::sum;
+use crate::estimation::{Fit, Point, Sensitivity};
 use crate::search::oscillation::{Line, Oscillations};
 use crate::search::sizes::starting_sizes;
 use crate::specimen::Series;
@@ -21,6 +22,12 @@ use crate::vocabulary::Column;
 struct Swings {
     oscillations: Oscillations,
     lines: Vec<Line>,
+}
+
+/// A candidate after its first steps from its own starts, and larger sizes of it with the cost of each, the lowest first.
+struct Begun {
+    candidate: Option<ScreenedCandidate>,
+    sizes: Vec<(f64, Vec<f64>)>,
 }
 
 impl Screen<'_, '_> {
@@ -44,29 +51,35 @@ impl Screen<'_, '_> {
             .collect())
     }
 
-    /// Candidates after their first steps.
+    /// Candidates after their first steps, from the larger of their sizes too where these gain.
     ///
     /// # Errors
     /// [`DiagnoseError::Interrupted`] once the caller asked to stop.
     pub fn begun(&self, candidates: &[usize]) -> Result<Vec<Option<ScreenedCandidate>>, DiagnoseError> {
         let all = self.specimen().candidates();
         let swings = (candidates.iter().any(|&c| all[c].oscillates)).then(|| self.swings());
-        (candidates.par_iter())
+        let begun: Vec<Option<Begun>> = (candidates.par_iter())
             .map(|&c| {
                 let begun = match &swings {
-                    Some(swings) if all[c].oscillates => self.begin_oscillation(c, swings),
+                    Some(swings) if all[c].oscillates => self.begin_oscillation(c, swings).map(Begun::of),
                     _ => self.begin(c),
                 };
                 // What cannot be simulated near the model so far is no candidate, and no failure of the diagnosis.
                 match begun {
                     Err(DiagnoseError::Simulation { .. }) => Ok(None),
-                    other => other,
+                    other => other.map(Some),
                 }
             })
+            .collect::<Result<_, _>>()?;
+        let least = (begun.iter().flatten())
+            .flat_map(|b| [cost_of(&b.candidate), b.sizes.first().map_or(f64::INFINITY, |s| s.0)])
+            .fold(self.fit.cost, f64::min);
+        (candidates.par_iter().zip(begun))
+            .map(|(&c, begun)| begun.map_or(Ok(None), |begun| self.begin_at_sizes(c, begun, least)))
             .collect()
     }
 
-    /// Takes promising candidates on.
+    /// Takes promising candidates on, on all recordings.
     ///
     /// # Errors
     /// [`DiagnoseError::Interrupted`] once the caller asked to stop.
@@ -77,42 +90,74 @@ impl Screen<'_, '_> {
         let promising: Vec<&mut ScreenedCandidate> = promising.flatten().collect();
         (promising.into_par_iter()).try_for_each(|candidate| {
             candidate.advanced = true;
+            // What was seen of a few recordings has not arrived on all.
+            candidate.arrived &= !std::mem::take(&mut candidate.partly);
             // A candidate whose derivatives cannot be simulated stays where its last step led.
-            match self.advance(candidate, self.problem.criteria.screening.more_steps) {
+            match self.advance(&self.all, candidate, self.problem.criteria.screening.more_steps) {
                 Err(DiagnoseError::Simulation { .. }) => Ok(()),
                 other => other,
             }
         })
     }
 
-    /// A candidate after its first steps from the best of its starts.
-    fn begin(&self, candidate: usize) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
+    /// Where a candidate is looked at before it is known to be promising. What no simulation is needed for is looked at everywhere.
+    fn first_look(&self, candidate: usize) -> &Look<'_> {
+        match &self.most {
+            Some(most) if !self.leaves_physics_alone(candidate) => most,
+            _ => &self.all,
+        }
+    }
+
+    /// Where the shape of a law or its frequency is chosen.
+    fn regression_look(&self, candidate: usize) -> &Look<'_> {
+        match &self.half {
+            Some(half) if !self.leaves_physics_alone(candidate) => half,
+            _ => self.first_look(candidate),
+        }
+    }
+
+    /// A candidate after its first steps from the best of its starts, and what larger sizes cost where the model so far is far off.
+    fn begin(&self, candidate: usize) -> Result<Begun, DiagnoseError> {
         let description = &self.specimen().candidates()[candidate];
         let own: Vec<f64> = description.parameters.iter().map(|p| p.start).collect();
         let starts: Vec<&Vec<f64>> = std::iter::once(&own).chain(&description.starts).collect();
+        let look = self.first_look(candidate);
         if description.is_unlisted() && description.absent_at(&own) {
-            return self.begin_law(candidate, &starts);
+            return self.begin_law(look, candidate, &starts).map(Begun::of);
         }
         let mut best: Option<ScreenedCandidate> = None;
         for start in &starts {
-            let known = description.absent_at(start).then_some(self.truths.as_slice());
-            self.begin_at(candidate, start, known, &mut best)?;
+            let known = description.absent_at(start).then_some(look.truths.as_slice());
+            self.begin_at(look, candidate, start, known, &mut best)?;
         }
-        if description.is_unlisted() || description.is_instrument_fault() || !self.is_gross() {
-            return Ok(best);
+        let mut begun = Begun::of(best);
+        if description.is_unlisted() || description.is_instrument_fault() || !is_gross(self.problem, self.fit) {
+            return Ok(begun);
         }
-        let screening = &self.problem.criteria.screening;
-        let mut sizes = Vec::new();
         for start in starts {
             for direction in starting_sizes(description, start) {
-                sizes.extend(self.costs_of(candidate, direction)?);
+                begun.sizes.extend(self.costs_of(candidate, direction)?);
             }
         }
-        sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
-        for (cost, values) in sizes.into_iter().take(screening.sizes_refined) {
+        begun.sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(begun)
+    }
+
+    /// A candidate stepped on from its larger sizes too, where these may lead lower. `least` is the lowest cost that any candidate has reached: beside
+    /// it, a size that gains little does not become promising.
+    fn begin_at_sizes(
+        &self,
+        candidate: usize,
+        begun: Begun,
+        least: f64,
+    ) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
+        let (screening, look) = (&self.problem.criteria.screening, self.first_look(candidate));
+        let mut best = begun.candidate;
+        for (cost, values) in begun.sizes.into_iter().take(screening.sizes_refined) {
             let reached = best.as_ref().map_or(f64::INFINITY, |b| b.cost);
-            if cost < self.fit.cost && cost < screening.size_contender * reached {
-                self.begin_at(candidate, &values, None, &mut best)?;
+            let gains = self.fit.cost - cost > screening.gain_of_size * (self.fit.cost - least);
+            if gains && cost < screening.size_contender * reached {
+                self.begin_at(look, candidate, &values, None, &mut best)?;
             }
         }
         Ok(best)
@@ -121,7 +166,12 @@ impl Screen<'_, '_> {
     /// A law after its first steps. At size zero a law changes nothing, so that there the answer of the recordings to its size is that of a
     /// regression, whatever its other numbers, its *shape*, are. The shape that explains most is stepped from; the other starts of this shape are
     /// larger sizes, which are simulated too.
-    fn begin_law(&self, candidate: usize, starts: &[&Vec<f64>]) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
+    fn begin_law(
+        &self,
+        look: &Look<'_>,
+        candidate: usize,
+        starts: &[&Vec<f64>],
+    ) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
         let (specimen, fit) = (self.specimen(), self.fit);
         let parameters = &specimen.candidates()[candidate].parameters;
         let shape_of = |values: &[f64]| -> Vec<f64> {
@@ -139,10 +189,18 @@ impl Screen<'_, '_> {
         // A law of the instrument of the displacement works the motion out anew, which rounds otherwise: by as much as a slow law changes in a
         // derivative, so that this starts from what is simulated with the law.
         let changes_motion = specimen.candidates()[candidate].place.sensor() == Some(&Column::DISPLACEMENT);
-        let known = (!changes_motion).then_some(self.truths.as_slice());
+        let begun_at = |look: &Look<'_>, shape: &[f64]| {
+            let known = (!changes_motion).then_some(look.truths.as_slice());
+            self.at(look, fit.point.with_effect(specimen, candidate, shape), known)
+        };
+        let regression = if shapes.len() > 1 {
+            self.regression_look(candidate)
+        } else {
+            look
+        };
         let mut best: Option<(f64, Vec<f64>, Linearised)> = None;
         for shape in shapes {
-            let begun = self.at(fit.point.with_effect(specimen, candidate, &shape), known)?;
+            let begun = begun_at(regression, &shape)?;
             let left = self.left_by_linear_step(&begun.candidate);
             if best.as_ref().is_none_or(|(least, ..)| left < *least) {
                 best = Some((left, shape, begun));
@@ -151,16 +209,19 @@ impl Screen<'_, '_> {
         let Some((_, shape, mut begun)) = best else {
             return Ok(None);
         };
-        self.step(&mut begun)?;
+        if regression.truths.len() < look.truths.len() {
+            begun = begun_at(look, &shape)?;
+        }
+        self.step(look, &mut begun)?;
         let mut candidate_at_best = begun.candidate;
         for start in starts
             .iter()
             .filter(|start| shape_of(start) == shape && ***start != shape)
         {
             let point = fit.point.with_effect(specimen, candidate, start);
-            match self.cost_at(&point) {
+            match self.cost_at(look, &point) {
                 Ok(tried) if tried.cost < candidate_at_best.cost => {
-                    candidate_at_best = self.at(point, tried.truths.as_deref())?.candidate;
+                    candidate_at_best = self.at(look, point, tried.truths.as_deref())?.candidate;
                 }
                 Ok(_) | Err(DiagnoseError::Simulation { .. }) => {}
                 Err(other) => return Err(other),
@@ -168,7 +229,11 @@ impl Screen<'_, '_> {
         }
         if parameters.iter().any(|p| !p.is_size) {
             candidate_at_best.arrived = false;
-            self.advance(&mut candidate_at_best, self.problem.criteria.screening.first_steps)?;
+            self.advance(
+                look,
+                &mut candidate_at_best,
+                self.problem.criteria.screening.first_steps,
+            )?;
         }
         Ok(Some(candidate_at_best))
     }
@@ -187,25 +252,27 @@ impl Screen<'_, '_> {
     /// the excitation's.
     fn begin_oscillation(&self, candidate: usize, swings: &Swings) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
         let specimen = self.specimen();
-        let amplitude = self.fit.point.z.len();
+        let (amplitude, look) = (self.fit.point.z.len(), self.first_look(candidate));
+        let regression = self.regression_look(candidate);
         let numbers = &specimen.candidates()[candidate].parameters;
         // Of amplitude zero. A law that swings shortens the steps of the simulation, so that also the truth is simulated with it, once for a
         // frequency.
-        let answers = |frequency_hz: f64, phases: &[f64]| -> Result<Vec<Vec<Sensitivity>>, DiagnoseError> {
-            let evaluation = &self.problem.evaluation;
-            let at = |phase| (self.fit.point).with_effect(specimen, candidate, &[0.0, phase, frequency_hz]);
-            let simulated = if numbers[0].instrument_only {
-                None
-            } else {
-                Some(evaluation.truths(&at(FRAC_PI_2))?)
+        let answers =
+            |look: &Look<'_>, frequency_hz: f64, phases: &[f64]| -> Result<Vec<Vec<Sensitivity>>, DiagnoseError> {
+                let evaluation = &look.evaluation;
+                let at = |phase| (self.fit.point).with_effect(specimen, candidate, &[0.0, phase, frequency_hz]);
+                let simulated = if numbers[0].instrument_only {
+                    None
+                } else {
+                    Some(evaluation.truths(&at(FRAC_PI_2))?)
+                };
+                let truths = simulated.as_deref().unwrap_or(&look.truths);
+                (phases.iter())
+                    .map(|&phase| evaluation.sensitivities(&at(phase), &[amplitude], Some(truths)))
+                    .collect()
             };
-            let truths = simulated.as_deref().unwrap_or(&self.truths);
-            (phases.iter())
-                .map(|&phase| evaluation.sensitivities(&at(phase), &[amplitude], Some(truths)))
-                .collect()
-        };
         let lowest = numbers[2].lower;
-        let envelopes: Vec<Series> = (answers(lowest, &[FRAC_PI_2])?.into_iter().flatten())
+        let envelopes: Vec<Series> = (answers(&self.all, lowest, &[FRAC_PI_2])?.into_iter().flatten())
             .map(|mut s| s.columns.swap_remove(0))
             .collect();
         let mut lines = swings.oscillations.lines(&self.residuals(), &envelopes);
@@ -213,12 +280,12 @@ impl Screen<'_, '_> {
         let mut best: Option<(f64, Vec<f64>)> = None;
         for line in lines {
             let f = line.frequency_hz;
-            let mut answers = answers(f, &[0.0, FRAC_PI_2])?.into_iter();
+            let mut answers = answers(regression, f, &[0.0, FRAC_PI_2])?.into_iter();
             let mut both = answers.next().unwrap_or_default();
             for (both, cosine) in both.iter_mut().zip(answers.flatten()) {
                 both.columns.extend(cosine.columns);
             }
-            let normals = self.extended(&both);
+            let normals = self.extended(regression, &both);
             let [prior, z] = [&self.fit.prior, &DVector::from_column_slice(&self.fit.point.z)]
                 .map(|own| own.clone().resize_vertically(amplitude + 2, 0.0));
             let (h, g) = sum(&normals, &prior, z.as_slice());
@@ -236,7 +303,7 @@ impl Screen<'_, '_> {
         }
         let mut begun = None;
         if let Some((_, start)) = best {
-            self.begin_at(candidate, &start, None, &mut begun)?;
+            self.begin_at(look, candidate, &start, None, &mut begun)?;
         }
         Ok(begun)
     }
@@ -245,16 +312,18 @@ impl Screen<'_, '_> {
     /// passed over.
     fn begin_at(
         &self,
+        look: &Look<'_>,
         candidate: usize,
         start: &[f64],
         known: Option<&[Series]>,
         best: &mut Option<ScreenedCandidate>,
     ) -> Result<(), DiagnoseError> {
         let point = self.fit.point.with_effect(self.specimen(), candidate, start);
-        let begun = self.at(point, known).and_then(|mut begun| {
-            self.step(&mut begun)?;
+        let begun = self.at(look, point, known).and_then(|mut begun| {
+            self.step(look, &mut begun)?;
             let mut begun = begun.candidate;
             self.advance(
+                look,
                 &mut begun,
                 self.problem.criteria.screening.first_steps.saturating_sub(1),
             )?;
@@ -268,27 +337,38 @@ impl Screen<'_, '_> {
         Ok(())
     }
 
-    /// True if the model so far is so far off that a derivative at size zero may not show where an effect is.
-    fn is_gross(&self) -> bool {
-        let ratio = self.problem.criteria.screening.gross_noise_ratio;
-        total_cost(&self.fit.normals) > ratio * ratio * self.problem.residuals() as f64
-    }
-
     /// Sizes of a candidate, the smallest first, with the cost of each, up to the first that is too large.
     fn costs_of(&self, candidate: usize, sizes: Vec<Vec<f64>>) -> Result<Vec<(f64, Vec<f64>)>, DiagnoseError> {
+        let look = self.half.as_ref().unwrap_or(&self.all);
         let mut costs = Vec::new();
         // One a decade is enough to step on from.
-        for values in sizes.into_iter().step_by(2) {
-            let point = self.fit.point.with_effect(self.specimen(), candidate, &values);
-            match self.cost_at(&point) {
-                Ok(tried) if tried.cost < self.problem.criteria.screening.size_overshoot * self.fit.cost => {
-                    costs.push((tried.cost, values));
+        let points: Vec<(Point, Vec<f64>)> = (sizes.into_iter().step_by(2))
+            .map(|values| (self.fit.point.with_effect(self.specimen(), candidate, &values), values))
+            .collect();
+        for points in points.chunks(self.specimen().simulations_at_once()) {
+            let at: Vec<Point> = points.iter().map(|(point, _)| point.clone()).collect();
+            for (truths, (point, values)) in look.evaluation.truths_at_each(&at).into_iter().zip(points) {
+                let cost = match truths {
+                    Ok(truths) => self.tried(look, point, Some(truths)).cost,
+                    Err(DiagnoseError::Simulation { .. }) => return Ok(costs),
+                    Err(other) => return Err(other),
+                };
+                if cost >= self.problem.criteria.screening.size_overshoot * self.fit.cost {
+                    return Ok(costs);
                 }
-                Ok(_) | Err(DiagnoseError::Simulation { .. }) => break,
-                Err(other) => return Err(other),
+                costs.push((cost, values.clone()));
             }
         }
         Ok(costs)
+    }
+}
+
+impl Begun {
+    fn of(candidate: Option<ScreenedCandidate>) -> Self {
+        Self {
+            candidate,
+            sizes: Vec::new(),
+        }
     }
 }
 
@@ -377,7 +457,35 @@ mod tests {
             .and_then(|s| s.all(&[GAIN]))
             .expect("screened");
         let gained = calibrated.cost - fits[0].as_ref().expect("a fit").cost;
-        assert!((0.0..5.0).contains(&gained), "{gained}");
+        // So little, that its step is not even simulated.
+        assert!((-1e-6..5.0).contains(&gained), "{gained}");
+    }
+
+    /// What the first steps see of some recordings only, the promising one sees of all.
+    #[test]
+    fn a_gross_effect_is_sized_on_all_recordings_though_most_of_it_shows_in_some() {
+        let specimen = Recipe {
+            truth: vec![(CUBIC, vec![4.0])],
+            ..Recipe::default()
+        }
+        .make();
+        let (problem, calibrated) = calibrated(&specimen);
+        let screen = Screen::new(&problem, &calibrated).expect("a screen");
+        let looked_at = |look: &Option<Look<'_>>| look.as_ref().map_or(3, |l| l.truths.len());
+        assert!(looked_at(&screen.half) <= looked_at(&screen.most) && looked_at(&screen.half) < 3);
+        let candidates = [FRICTION, CUBIC, VIBRATION, GAIN];
+        let begun = screen.begun(&candidates).expect("begun");
+        let fits = screen.all(&candidates).expect("screened");
+        let costs: Vec<f64> = fits.iter().flatten().map(|f| f.cost).collect();
+        assert!((0..4).all(|k| k == 1 || costs[1] < 0.5 * costs[k]), "{costs:?}");
+        let found = fits[1].as_ref().expect("a fit").point.hypothesis(&specimen);
+        assert!((found.effects[0].1[0] - 4.0).abs() < 0.04, "{found:?}");
+        let partly = |k: usize| begun[k].as_ref().is_some_and(|c| c.partly);
+        assert_eq!(
+            (partly(1), partly(3)),
+            (screen.most.is_some(), false),
+            "an instrument is seen everywhere"
+        );
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::beside::{Screen, ScreenedCandidate};
+use super::look::Look;
 use crate::error::DiagnoseError;
 use crate::estimation::bounded_step::bounded_step;
 use crate::estimation::normal_equations::{extended, extended_with_residuals, sum, total_cost};
@@ -26,7 +27,7 @@ const TOLERANCE: f64 = 1e-3;
 /// A candidate with the derivatives from which it can step on.
 pub(super) struct Linearised {
     pub candidate: ScreenedCandidate,
-    /// Residuals and derivatives with respect to the candidate's coordinates.
+    /// Residuals and derivatives with respect to the candidate's coordinates, of the recordings that are looked at.
     added: Vec<Sensitivity>,
 }
 
@@ -42,37 +43,45 @@ pub(super) struct Tried {
 impl Screen<'_, '_> {
     /// True quantities at a point that differs from the model so far by a candidate only; `None` where they are those of the
     /// model. The fault of an instrument leaves the physics alone, but for the displacement, which is an input.
-    pub(super) fn truths_at(&self, point: &Point) -> Result<Option<Vec<Series>>, DiagnoseError> {
-        let leaves_physics_alone = point.effects.last().is_some_and(|&c| {
-            let candidate = &self.specimen().candidates()[c];
-            (candidate.is_instrument_fault() || candidate.is_unlisted())
-                && candidate.place.sensor() != Some(&Column::DISPLACEMENT)
-                && candidate.parameters.iter().all(|p| p.instrument_only)
-        });
-        if leaves_physics_alone {
+    pub(super) fn truths_at(&self, look: &Look<'_>, point: &Point) -> Result<Option<Vec<Series>>, DiagnoseError> {
+        if point.effects.last().is_some_and(|&c| self.leaves_physics_alone(c)) {
             Ok(None)
         } else {
-            self.problem.evaluation.truths(point).map(Some)
+            look.evaluation.truths(point).map(Some)
         }
     }
 
-    /// A candidate at a point; its true quantities may be given where they are known.
-    pub(super) fn at(&self, point: Point, known: Option<&[Series]>) -> Result<Linearised, DiagnoseError> {
-        let simulated = if known.is_some() { None } else { self.truths_at(&point)? };
-        let truths = known.or(simulated.as_deref()).unwrap_or(&self.truths);
+    /// True for a candidate that only changes what instruments show of given quantities.
+    pub(super) fn leaves_physics_alone(&self, candidate: usize) -> bool {
+        let candidate = &self.specimen().candidates()[candidate];
+        (candidate.is_instrument_fault() || candidate.is_unlisted())
+            && candidate.place.sensor() != Some(&Column::DISPLACEMENT)
+            && candidate.parameters.iter().all(|p| p.instrument_only)
+    }
+
+    /// A candidate at a point; its true quantities in the recordings that are looked at may be given where they are known.
+    pub(super) fn at(
+        &self,
+        look: &Look<'_>,
+        point: Point,
+        known: Option<&[Series]>,
+    ) -> Result<Linearised, DiagnoseError> {
+        let simulated = if known.is_some() {
+            None
+        } else {
+            self.truths_at(look, &point)?
+        };
+        let truths = known.or(simulated.as_deref()).unwrap_or(&look.truths);
         let new = self.fit.point.z.len()..point.z.len();
         let answering: Vec<usize> = new.clone().filter(|&k| self.answers(&point, k)).collect();
-        let mut added = self
-            .problem
-            .evaluation
-            .sensitivities(&point, &answering, Some(truths))?;
+        let mut added = look.evaluation.sensitivities(&point, &answering, Some(truths))?;
         for s in &mut added {
             for k in new.clone().filter(|k| !answering.contains(k)) {
                 let nothing: Series = s.residual.iter().map(|channel| vec![0.0; channel.len()]).collect();
                 s.columns.insert(k - new.start, nothing);
             }
         }
-        let normals = self.extended(&added);
+        let normals = self.extended(look, &added);
         let (response, cost) = self.response(&point, &normals);
         let candidate = ScreenedCandidate {
             point,
@@ -81,6 +90,7 @@ impl Screen<'_, '_> {
             cost,
             damping: DAMPING.0,
             arrived: new.is_empty(),
+            partly: look.truths.len() < self.all.truths.len(),
             advanced: false,
         };
         Ok(Linearised { candidate, added })
@@ -98,33 +108,43 @@ impl Screen<'_, '_> {
     }
 
     /// The cost at a point, and what follows from its simulation.
-    pub(super) fn cost_at(&self, point: &Point) -> Result<Tried, DiagnoseError> {
-        let truths = self.truths_at(point)?;
-        let evaluation = &self.problem.evaluation;
-        let shown = evaluation.observed(point, truths.as_deref().unwrap_or(&self.truths));
+    pub(super) fn cost_at(&self, look: &Look<'_>, point: &Point) -> Result<Tried, DiagnoseError> {
+        let truths = self.truths_at(look, point)?;
+        Ok(self.tried(look, point, truths))
+    }
+
+    /// What follows from the simulation of a point: its true quantities are given, or are those of the model so far.
+    pub(super) fn tried(&self, look: &Look<'_>, point: &Point, truths: Option<Vec<Series>>) -> Tried {
+        let evaluation = &look.evaluation;
+        let shown = evaluation.observed(point, truths.as_deref().unwrap_or(&look.truths));
         let residuals: Vec<Sensitivity> = (evaluation.residuals(&shown).into_iter())
             .map(|residual| Sensitivity {
                 residual,
                 columns: Vec::new(),
             })
             .collect();
-        let cost = self.response(point, &self.extended(&residuals)).1;
+        let cost = self.response(point, &self.extended(look, &residuals)).1;
         let residuals = residuals.into_iter().map(|s| s.residual).collect();
-        Ok(Tried {
+        Tried {
             cost,
             truths,
             residuals,
-        })
+        }
     }
 
     /// Takes a candidate some steps further, each with derivatives of its own; only its own coordinates move.
-    pub(super) fn advance(&self, candidate: &mut ScreenedCandidate, steps: usize) -> Result<(), DiagnoseError> {
+    pub(super) fn advance(
+        &self,
+        look: &Look<'_>,
+        candidate: &mut ScreenedCandidate,
+        steps: usize,
+    ) -> Result<(), DiagnoseError> {
         let mut truths: Option<Vec<Series>> = None;
         for _ in 0..steps {
             if candidate.arrived {
                 break;
             }
-            let there = self.at(candidate.point.clone(), truths.as_deref())?;
+            let there = self.at(look, candidate.point.clone(), truths.as_deref())?;
             let mut next = Linearised {
                 candidate: ScreenedCandidate {
                     damping: candidate.damping,
@@ -133,7 +153,7 @@ impl Screen<'_, '_> {
                 },
                 added: there.added,
             };
-            truths = self.step(&mut next)?;
+            truths = self.step(look, &mut next)?;
             *candidate = next.candidate;
         }
         Ok(())
@@ -141,7 +161,7 @@ impl Screen<'_, '_> {
 
     /// One step of a candidate; the true quantities at its end, where there was one and they were simulated. The derivatives stay those of its
     /// beginning: most candidates get no further one.
-    pub(super) fn step(&self, begun: &mut Linearised) -> Result<Option<Vec<Series>>, DiagnoseError> {
+    pub(super) fn step(&self, look: &Look<'_>, begun: &mut Linearised) -> Result<Option<Vec<Series>>, DiagnoseError> {
         let candidate = &mut begun.candidate;
         if candidate.arrived {
             return Ok(None);
@@ -150,12 +170,17 @@ impl Screen<'_, '_> {
         let ranges = candidate.point.ranges(self.specimen());
         let prior = candidate.point.prior(self.specimen());
         let (h, g) = sum(&candidate.normals, &prior, &candidate.point.z);
+        let least = TOLERANCE * candidate.cost;
         for _ in 0..DAMPINGS_TRIED {
             let z = &candidate.point.z;
             let Some(step) = bounded_step(&h, &g, candidate.damping, z, &ranges) else {
                 candidate.damping *= DAMPING_UP;
                 continue;
             };
+            // What gains nothing even where everything is linear is not simulated.
+            if 2.0 * g.dot(&step) - step.dot(&(&h * &step)) < least {
+                break;
+            }
             let mut trial = candidate.point.clone();
             for k in old..trial.z.len() {
                 trial.z[k] = (trial.z[k] + step[k]).clamp(ranges[k].0, ranges[k].1);
@@ -163,14 +188,15 @@ impl Screen<'_, '_> {
             if trial == candidate.point {
                 break;
             }
-            match self.cost_at(&trial) {
+            match self.cost_at(look, &trial) {
                 Ok(tried) if tried.cost < candidate.cost => {
                     for (s, residual) in begun.added.iter_mut().zip(tried.residuals) {
                         s.residual = residual;
                     }
-                    let (blocks, base) = (&self.problem.blocks, &self.base);
+                    let (blocks, base, added) =
+                        (&self.problem.blocks, &self.base, self.by_recording(look, &begun.added));
                     candidate.normals =
-                        extended_with_residuals(blocks, &candidate.normals, base, &self.answering, &begun.added);
+                        extended_with_residuals(blocks, &candidate.normals, base, &self.answering, &added);
                     (candidate.response, _) = self.response(&trial, &candidate.normals);
                     candidate.arrived = candidate.cost - tried.cost < TOLERANCE * tried.cost;
                     candidate.damping = (candidate.damping * DAMPING_DOWN).max(DAMPING.1);
@@ -217,14 +243,23 @@ impl Screen<'_, '_> {
         (response, cost)
     }
 
+    /// What is known of each recording; `None` where it was not looked at.
+    fn by_recording<'s>(&self, look: &Look<'_>, added: &'s [Sensitivity]) -> Vec<Option<&'s Sensitivity>> {
+        let mut all = vec![None; self.base.len()];
+        for (&r, s) in look.evaluation.recordings().iter().zip(added) {
+            all[r] = Some(s);
+        }
+        all
+    }
+
     /// Normal equations of the model's coordinates, frozen, and the candidate's together.
-    pub(super) fn extended(&self, added: &[Sensitivity]) -> Vec<NormalEquations> {
+    pub(super) fn extended(&self, look: &Look<'_>, added: &[Sensitivity]) -> Vec<NormalEquations> {
         extended(
             &self.problem.blocks,
             &self.fit.normals,
             &self.base,
             &self.answering,
-            added,
+            &self.by_recording(look, added),
         )
     }
 }

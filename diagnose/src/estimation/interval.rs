@@ -25,7 +25,7 @@ const WIDER: f64 = 1.46;
 /// the jackknife's over three recordings or more, over blocks of two, over the halves of a single one.
 ///
 /// # Errors
-/// As [`crate::estimation::fit`] without one of the parts.
+/// As [`crate::estimation::fit()`] without one of the parts.
 pub fn deviations(problem: &LeastSquares<'_>, best: &Fit) -> Result<DVector<f64>, DiagnoseError> {
     let within = covariance::deviations(best);
     if !problem.specimen().simulates_in_milliseconds() {

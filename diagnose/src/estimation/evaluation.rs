@@ -61,7 +61,7 @@ impl<'a> Evaluation<'a> {
 
     /// Some of the recordings, by their indices, for many who ask at the same time. What is said of every recording is then said of these, in this order.
     #[must_use]
-    pub fn of(&self, recordings: &[usize]) -> Self {
+    pub fn of_recordings(&self, recordings: &[usize]) -> Self {
         Self {
             recordings: recordings.into(),
             one_of_many: true,

@@ -48,10 +48,11 @@ const TOLERANCES_PER_JACOBIAN: f64 = 3.0;
 /// A start that cannot be simulated; [`DiagnoseError::Interrupted`] once the caller asked to stop. A step to where the model
 /// cannot be simulated is only shortened.
 pub fn fit(problem: &LeastSquares<'_>, start: Point, effort: Effort) -> Result<Fit, DiagnoseError> {
-    fit_from(problem, &Start::at(problem, start)?, effort)
+    fit_from(problem, Start::at(problem, start)?, effort)
 }
 
-/// A point with residuals and derivatives, from which a model may be fitted to more than one choice of blocks.
+/// A point with residuals and derivatives, from which a model may be fitted to more than one choice of blocks. It is large.
+#[derive(Clone)]
 pub struct Start {
     point: Point,
     sensitivities: Vec<Sensitivity>,
@@ -78,9 +79,12 @@ impl Start {
 ///
 /// # Errors
 /// As [`fit`].
-pub fn fit_from(problem: &LeastSquares<'_>, start: &Start, effort: Effort) -> Result<Fit, DiagnoseError> {
+pub fn fit_from(problem: &LeastSquares<'_>, start: Start, effort: Effort) -> Result<Fit, DiagnoseError> {
     let (specimen, blocks, evaluation) = (problem.specimen(), &problem.blocks, &problem.evaluation);
-    let (mut point, mut sensitivities) = (start.point.clone(), start.sensitivities.clone());
+    let Start {
+        mut point,
+        mut sensitivities,
+    } = start;
     let (prior, ranges) = (point.prior(specimen), point.ranges(specimen));
     let all: Vec<usize> = (0..point.z.len()).collect();
     let mut normals = assemble(blocks, &sensitivities);

@@ -62,7 +62,7 @@ fn refitted(
     let start = Start::at(problem, fitted.point.clone()).ok();
     for part in 0..parts {
         let rest = problem.keeping(|b| part_of(b) != part);
-        let refit = start.as_ref().and_then(|start| fit_from(&rest, start, effort).ok());
+        let refit = start.clone().and_then(|start| fit_from(&rest, start, effort).ok());
         let point = refit.map_or_else(|| fitted.point.clone(), |f| f.point);
         if let Ok(residuals) = problem.evaluation.residuals_at(&point) {
             for (k, cost) in problem.block_costs(&residuals).into_iter().enumerate() {

@@ -42,7 +42,7 @@ pub fn deviations(problem: &LeastSquares<'_>, best: &Fit) -> Result<DVector<f64>
         .into_par_iter()
         .map(|g| {
             let rest = problem.keeping(|b| part(b) != g);
-            let point = fit_from(&rest, &start, problem.criteria.fitting.converged)?.point;
+            let point = fit_from(&rest, start.clone(), problem.criteria.fitting.converged)?.point;
             Ok(DVector::from_vec(point.z))
         })
         .collect::<Result<_, DiagnoseError>>()?;

@@ -32,7 +32,7 @@ impl<'a> Look<'a> {
     pub fn at_part(&self, part: f64, problem: &LeastSquares<'a>, fit: &Fit) -> Option<Self> {
         let enough = holding(part, &cost_of_recordings(problem, fit));
         (enough.len() < self.truths.len()).then(|| Self {
-            evaluation: self.evaluation.of(&enough),
+            evaluation: self.evaluation.of_recordings(&enough),
             truths: enough.iter().map(|&r| self.truths[r].clone()).collect(),
         })
     }

@@ -398,9 +398,9 @@ mod tests {
         (problem, fit)
     }
 
-    fn with_cubic() -> Analytic {
+    fn with_cubic(size: f64) -> Analytic {
         Recipe {
-            truth: vec![(CUBIC, vec![0.3])],
+            truth: vec![(CUBIC, vec![size])],
             ..Recipe::default()
         }
         .make()
@@ -408,7 +408,7 @@ mod tests {
 
     #[test]
     fn the_right_candidate_has_the_lowest_cost_and_about_its_true_size() {
-        let specimen = with_cubic();
+        let specimen = with_cubic(0.3);
         let (problem, calibrated) = calibrated(&specimen);
         let candidates = [FRICTION, CUBIC, VIBRATION, GAIN];
         let fits = Screen::new(&problem, &calibrated)
@@ -424,7 +424,7 @@ mod tests {
     /// fit ends.
     #[test]
     fn screening_a_linear_candidate_ends_where_the_full_fit_does() {
-        let specimen = with_cubic();
+        let specimen = with_cubic(0.3);
         let (problem, calibrated) = calibrated(&specimen);
         let screened = Screen::new(&problem, &calibrated)
             .and_then(|s| s.all(&[CUBIC]))
@@ -464,11 +464,7 @@ mod tests {
     /// What the first steps see of some recordings only, the promising one sees of all.
     #[test]
     fn a_gross_effect_is_sized_on_all_recordings_though_most_of_it_shows_in_some() {
-        let specimen = Recipe {
-            truth: vec![(CUBIC, vec![4.0])],
-            ..Recipe::default()
-        }
-        .make();
+        let specimen = with_cubic(4.0);
         let (problem, calibrated) = calibrated(&specimen);
         let screen = Screen::new(&problem, &calibrated).expect("a screen");
         let looked_at = |look: &Option<Look<'_>>| look.as_ref().map_or(3, |l| l.truths.len());
@@ -490,7 +486,7 @@ mod tests {
 
     #[test]
     fn the_fault_of_an_instrument_costs_no_simulation() {
-        let specimen = with_cubic();
+        let specimen = with_cubic(0.3);
         let (problem, calibrated) = calibrated(&specimen);
         let screen = Screen::new(&problem, &calibrated).expect("a screen");
         let before = problem.evaluation.simulated();
@@ -524,7 +520,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_simulated_is_no_candidate_and_no_failure() {
-        let mut specimen = with_cubic();
+        let mut specimen = with_cubic(0.3);
         specimen.move_start(FRAGILE, 2.0);
         let (problem, calibrated) = calibrated(&specimen);
         let fits = Screen::new(&problem, &calibrated)
@@ -535,7 +531,7 @@ mod tests {
 
     #[test]
     fn it_ends_when_asked_to_stop() {
-        let specimen = with_cubic();
+        let specimen = with_cubic(0.3);
         let (_, calibrated) = calibrated(&specimen);
         let stop = AtomicBool::new(true);
         let problem = LeastSquares::new(&specimen, &stop);
@@ -547,7 +543,7 @@ mod tests {
 
     #[test]
     fn order_and_company_change_nothing() {
-        let specimen = with_cubic();
+        let specimen = with_cubic(0.3);
         let (problem, calibrated) = calibrated(&specimen);
         let screen = Screen::new(&problem, &calibrated).expect("a screen");
         let bits = |candidates: &[usize], of: usize| {

@@ -29,7 +29,7 @@ pub trait Number:
     + Sub<f64, Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// Whether it is a single number. Laws without a name are for these only.
+    /// Whether it is a single number.
     const IS_SINGLE: bool;
     /// Which lanes a comparison holds for.
     type Mask: Mask;
@@ -69,14 +69,6 @@ pub trait Number:
     #[inline(always)]
     fn map(self, mut function: impl FnMut(f64) -> f64) -> Self {
         self.gather(|lane| function(self.lane(lane)))
-    }
-
-    /// Two numbers from each lane on its own, where all lanes have them.
-    #[inline(always)]
-    fn map_pair(self, mut function: impl FnMut(f64) -> Option<(f64, f64)>) -> Option<(Self, Self)> {
-        let pairs = Self::each_of(|lane| function(self.lane(lane)))?;
-        let pairs = pairs.as_ref();
-        Some((self.gather(|lane| pairs[lane].0), self.gather(|lane| pairs[lane].1)))
     }
 
     /// The greater of the number and a bound. Where it is not a number, the bound.

@@ -169,8 +169,7 @@ impl Hydraulics {
         }
     }
 
-    /// Those of several struts side by side, `like` any number of their kind; none where they differ in kind, or where one has a law
-    /// without a name.
+    /// Those of several struts side by side, `like` any number of their kind; none where they differ in kind.
     pub fn abreast<N: Number>(struts: &N::Each<&Self>, like: N) -> Option<Hydraulics<N>> {
         let all = struts.as_ref();
         let of = |value: fn(&Self) -> f64| like.gather(|lane| value(all[lane]));
@@ -193,14 +192,24 @@ impl<N: Number> Hydraulics<N> {
     /// One step.
     #[inline(always)]
     pub fn step(&self, flowing: &mut Flowing<N>, step: &Step<N>) {
+        if self.network.has_laws {
+            self.step_with::<true>(flowing, step);
+        } else {
+            self.step_with::<false>(flowing, step);
+        }
+    }
+
+    /// One step. `LAWS` says whether laws without a name are looked for, which takes time where there are none.
+    #[inline(always)]
+    fn step_with<const LAWS: bool>(&self, flowing: &mut Flowing<N>, step: &Step<N>) {
         let h = step.duration_s;
         let hg = h * GAMMA;
-        let [first, second] = self.stage_ends(flowing, step);
+        let [first, second] = self.stage_ends::<LAWS>(flowing, step);
         flowing.supplied_m = flowing.supplied_m + h * (1.0 - GAMMA) * first.speed_m_s;
-        let one = self.network.stage(&flowing.state, &first, &mut flowing.last);
-        let base = flowing.state.blend(&one.state, (1.0 - GAMMA) / GAMMA);
+        let one = self.network.stage::<LAWS>(&flowing.state, &first, &mut flowing.last);
+        let base = flowing.state.blend::<LAWS>(&one.state, (1.0 - GAMMA) / GAMMA);
         flowing.supplied_m = flowing.supplied_m + hg * second.speed_m_s;
-        let two = self.network.stage(&base, &second, &mut flowing.last);
+        let two = self.network.stage::<LAWS>(&base, &second, &mut flowing.last);
         flowing.state = two.state;
         flowing.pressure_pa = two.pressure_pa;
         if let Some(cooling) = &self.cooling {
@@ -210,7 +219,7 @@ impl<N: Number> Hydraulics<N> {
     }
 
     #[inline(always)]
-    fn stage_ends(&self, flowing: &Flowing<N>, step: &Step<N>) -> [StageEnd<N>; 2] {
+    fn stage_ends<const LAWS: bool>(&self, flowing: &Flowing<N>, step: &Step<N>) -> [StageEnd<N>; 2] {
         let h = step.duration_s;
         let hg = h * GAMMA;
         // What the speeds have not supplied so far is supplied evenly over this step, but not within an instant: a micrometre within a step of
@@ -220,7 +229,7 @@ impl<N: Number> Hydraulics<N> {
         let over_pa = flowing.state.p1_pa - self.network.chamber.static_pa;
         let over_n = step.friction_n + self.network.chamber.area_m2 * over_pa;
         let mut bent_m = self.mount.deflection_m(over_n);
-        if let Some((yields_m, _)) = self.network.chamber.mount_by_law(over_n) {
+        if let Some((yields_m, _)) = self.network.chamber.mount_by_law::<LAWS>(over_n) {
             bent_m = bent_m + yields_m;
         }
         let [middle_m, middle_m_s] = step.middle;

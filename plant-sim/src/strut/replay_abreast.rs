@@ -26,7 +26,7 @@ pub struct Replay<'a> {
 }
 
 /// Simulates many recordings, or one with many models, on this thread: what [`replay`](super::replay()) gives for each, to the bit, but in less time
-/// where models are of the same kind, because four are solved at once. Models with laws without a name are simulated one after the other.
+/// where models are of the same kind, because four are solved at once.
 ///
 /// ```
 /// use oleo_interface::StrutValves;
@@ -157,7 +157,7 @@ mod tests {
     use super::*;
     use crate::strut::motion::{Motion, Segment};
     use crate::strut::replay::{replay, replay_with_course};
-    use crate::strut::terms::Effects;
+    use crate::strut::terms::{Effects, UnlistedLaw};
     use oleo_interface::StrutValves;
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
@@ -165,17 +165,9 @@ mod tests {
     const SEAL: &str = "seal_friction = { coulomb_force_N = 300.0, breakaway_force_N = 400.0, stribeck_speed_m_s = 0.02, \
                         presliding_stiffness_N_m = 2e6 }";
 
-    /// Every term that can be in a lane.
-    fn every_term() -> Effects {
+    fn with(unlisted: Vec<UnlistedLaw>) -> Effects {
         Effects {
-            unlisted: vec![],
-            ..Effects::every_term()
-        }
-    }
-
-    fn laws_without_a_name() -> Effects {
-        Effects {
-            unlisted: Effects::every_term().unlisted,
+            unlisted,
             ..Effects::default()
         }
     }
@@ -234,21 +226,23 @@ mod tests {
     fn have_the_same_bits<S: Simd>(simd: S) {
         let mut random = ChaCha8Rng::seed_from_u64(11);
         let inputs = [1, 500, 180, 700, 330, 2, 420, 600].map(|samples| inputs(samples, &mut random));
-        // More of some kinds than there are lanes, one that is alone, and one that cannot be in a lane.
+        // More of some kinds than there are lanes, and some that are alone.
         let seal = || toml::from_str::<Effects>(SEAL).unwrap();
         let mut models: Vec<StrutModel> = [
             seal(),
             seal(),
-            every_term(),
-            every_term(),
-            every_term(),
+            Effects::every_term(),
+            Effects::every_term(),
+            Effects::every_term(),
             Effects::default(),
         ]
         .into_iter()
         .map(|effects| model(effects, &mut random))
         .collect();
         models[5].effects.gas_heat_transfer = models[2].effects.gas_heat_transfer.clone();
-        models.push(model(laws_without_a_name(), &mut random));
+        let laws = Effects::laws_of_the_network();
+        models.extend([laws.clone(), laws.clone()].map(|laws| model(with(laws), &mut random)));
+        models.extend(laws.into_iter().map(|law| model(with(vec![law]), &mut random)));
         let mut impossible = models[0].clone();
         impossible.cylinder.bore_m = -1.0;
         models.push(impossible);

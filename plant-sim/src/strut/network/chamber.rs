@@ -15,7 +15,7 @@ use crate::strut::terms::{
 
 /// The main chamber as the network sees it.
 #[derive(Debug, Clone)]
-pub(in crate::strut) struct Chamber<N = f64> {
+pub(in crate::strut) struct Chamber<N: Number = f64> {
     /// Area of the piston, m2.
     pub area_m2: N,
     /// Oil volume at displacement zero, m3.
@@ -29,7 +29,7 @@ pub(in crate::strut) struct Chamber<N = f64> {
     /// Volume that the mount's deflection adds, m3/Pa.
     mount_m3_pa: N,
     /// Unmodelled laws; `None` where the model has none.
-    laws: Option<Box<ChamberLaws>>,
+    laws: Option<Box<ChamberLaws<N>>>,
 }
 
 /// What the chamber does between the beginning of a stage and a trial pressure at its end.
@@ -73,8 +73,16 @@ impl Chamber {
         let same = |kind: fn(&Self) -> bool| all.iter().all(|chamber| kind(chamber) == kind(all[0]));
         let alike = same(|chamber| chamber.counts_at_static_density)
             && same(|chamber| chamber.air.is_some())
-            && all.iter().all(|chamber| chamber.laws.is_none());
-        alike.then(|| Chamber {
+            && same(|chamber| chamber.laws.is_some());
+        if !alike {
+            return None;
+        }
+        let laws = N::each_of(|lane| all[lane].laws.as_deref());
+        let laws = match &laws {
+            Some(laws) => Some(Box::new(ChamberLaws::abreast(laws, like)?)),
+            None => None,
+        };
+        Some(Chamber {
             area_m2: of(|chamber| chamber.area_m2),
             oil_volume_m3: of(|chamber| chamber.oil_volume_m3),
             compressibility_1_pa: of(|chamber| chamber.compressibility_1_pa),
@@ -85,34 +93,34 @@ impl Chamber {
                 polytropic_exponent: of(|chamber| chamber.air.map_or(1.0, |air| air.polytropic_exponent)),
             }),
             mount_m3_pa: of(|chamber| chamber.mount_m3_pa),
-            laws: None,
+            laws,
         })
     }
 }
 
 impl<N: Number> Chamber<N> {
     #[inline(always)]
-    fn laws(&self) -> Option<&ChamberLaws> {
-        if N::IS_SINGLE { self.laws.as_deref() } else { None }
+    fn laws<const LAWS: bool>(&self) -> Option<&ChamberLaws<N>> {
+        if LAWS { self.laws.as_deref() } else { None }
     }
 
     /// Flow that the piston supplies to the chamber at a speed (m/s), less what the chamber loses at the time (s) and at the
     /// gauge pressure from which the stage starts, m3/s.
     #[inline(always)]
-    pub fn supply_m3_s(&self, speed_m_s: N, p1_pa: N, time_s: N) -> N {
+    pub fn supply_m3_s<const LAWS: bool>(&self, speed_m_s: N, p1_pa: N, time_s: N) -> N {
         let supply = self.area_m2 * speed_m_s;
-        match self.laws() {
-            Some(laws) => supply - supply.gather(|lane| laws.loss(p1_pa.lane(lane), time_s.lane(lane))),
+        match self.laws::<LAWS>() {
+            Some(laws) => supply - laws.loss(p1_pa, time_s),
             None => supply,
         }
     }
 
     /// Volume that the chamber holds at a gauge pressure beyond what it holds at static pressure, m3, and its derivative.
     #[inline(always)]
-    pub fn held_m3(&self, p1_pa: N, displacement_m: N) -> (N, N) {
+    pub fn held_m3<const LAWS: bool>(&self, p1_pa: N, displacement_m: N) -> (N, N) {
         let over = p1_pa - self.static_pa;
         let (mut volume, mut slope) = (self.mount_m3_pa * over, self.mount_m3_pa);
-        if let Some((yields, by_force)) = self.mount_by_law(self.area_m2 * over) {
+        if let Some((yields, by_force)) = self.mount_by_law::<LAWS>(self.area_m2 * over) {
             volume = volume + self.area_m2 * yields;
             slope = slope + self.area_m2 * self.area_m2 * by_force;
         }
@@ -126,7 +134,7 @@ impl<N: Number> Chamber<N> {
                 volume = volume - self.oil_volume_m3 * left;
                 slope = slope + self.oil_volume_m3 * shrinking;
             }
-            if let Some((taken_up, by_pressure)) = self.volume_by_laws(p1_pa) {
+            if let Some((taken_up, by_pressure)) = self.volume_by_laws::<LAWS>(p1_pa) {
                 volume = volume + taken_up;
                 slope = slope + by_pressure;
             }
@@ -138,7 +146,7 @@ impl<N: Number> Chamber<N> {
     /// modulus makes of it, and its derivative, 1/Pa: undissolved air and an unmodelled compliance, where they are counted
     /// as the recordings' equation counts oil.
     #[inline(always)]
-    pub fn compressed(&self, p1_pa: N) -> (N, N) {
+    pub fn compressed<const LAWS: bool>(&self, p1_pa: N) -> (N, N) {
         let (mut fraction, mut slope) = (p1_pa.of(0.0), p1_pa.of(0.0));
         if !self.counts_at_static_density {
             if let Some(air) = &self.air {
@@ -146,7 +154,7 @@ impl<N: Number> Chamber<N> {
                 fraction = fraction - left;
                 slope = slope + shrinking;
             }
-            if let Some((taken_up, by_pressure)) = self.volume_by_laws(p1_pa) {
+            if let Some((taken_up, by_pressure)) = self.volume_by_laws::<LAWS>(p1_pa) {
                 fraction = fraction + taken_up / self.oil_volume_m3;
                 slope = slope + by_pressure / self.oil_volume_m3;
             }
@@ -156,21 +164,19 @@ impl<N: Number> Chamber<N> {
 
     /// By how much an unmodelled law lets the mount yield under a force above the static one (N), m, and its derivative, m/N.
     #[inline(always)]
-    pub fn mount_by_law(&self, force_n: N) -> Option<(N, N)> {
-        let laws = self.laws()?;
-        force_n.map_pair(|force_n| laws.mount_m(force_n))
+    pub fn mount_by_law<const LAWS: bool>(&self, force_n: N) -> Option<(N, N)> {
+        self.laws::<LAWS>()?.mount_m(force_n)
     }
 
     #[inline(always)]
-    fn volume_by_laws(&self, p1_pa: N) -> Option<(N, N)> {
-        let laws = self.laws()?;
-        p1_pa.map_pair(|p1_pa| laws.volume(p1_pa))
+    fn volume_by_laws<const LAWS: bool>(&self, p1_pa: N) -> Option<(N, N)> {
+        self.laws::<LAWS>()?.volume(p1_pa)
     }
 
     /// What the chamber takes up from `base` to a gauge pressure. Differences of volumes: exact however far it moves.
     #[inline(always)]
-    pub(super) fn taken_up(&self, base: &State<N>, p1_pa: N, displacement_m: N) -> TakenUp<N> {
-        let (held_m3, held_slope) = self.held_m3(p1_pa, displacement_m);
+    pub(super) fn taken_up<const LAWS: bool>(&self, base: &State<N>, p1_pa: N, displacement_m: N) -> TakenUp<N> {
+        let (held_m3, held_slope) = self.held_m3::<LAWS>(p1_pa, displacement_m);
         let (mut volume_m3, mut slope) = (held_m3 - base.held_m3, held_slope);
         if !self.counts_at_static_density {
             let oil = self.oil_volume_m3 - self.area_m2 * displacement_m;
@@ -179,7 +185,7 @@ impl<N: Number> Chamber<N> {
             volume_m3 = volume_m3 + taken_up;
             slope = slope + by_pressure;
         }
-        let (compressed, compressed_slope) = self.compressed(p1_pa);
+        let (compressed, compressed_slope) = self.compressed::<LAWS>(p1_pa);
         // Compressing takes up volume; where nothing but oil of constant bulk modulus is counted here, the slope is zero.
         let compresses = compressed_slope.abs().above(slope.of(0.0));
         if compresses.any() {
@@ -223,8 +229,8 @@ mod tests {
         State {
             p1_pa,
             gas: [gas; 2],
-            held_m3: chamber.held_m3(p1_pa, 0.0).0,
-            compressed: chamber.compressed(p1_pa).0,
+            held_m3: chamber.held_m3::<true>(p1_pa, 0.0).0,
+            compressed: chamber.compressed::<true>(p1_pa).0,
             q2_m3_s: 0.0,
             shear: [0.0; 2],
             heat_j: [0.0; 2],
@@ -237,14 +243,14 @@ mod tests {
         for counted_at in [OilCount::Chamber, OilCount::Static] {
             let chamber = chamber(counted_at);
             let base = at(&chamber, chamber.static_pa);
-            let volume = |p: f64| chamber.taken_up(&base, p, 0.0).volume_m3;
+            let volume = |p: f64| chamber.taken_up::<true>(&base, p, 0.0).volume_m3;
             assert_eq!(volume(base.p1_pa), 0.0);
             // Oil alone would be V dp / beta; half a per cent of air at 4 MPa adds less than a thousandth.
             let stiff = chamber.oil_volume_m3 * 1e4 / 1.5e9;
             assert!((volume(base.p1_pa + 1e4) / stiff - 1.0).abs() < 0.05);
             let h = 1e2;
             let quotient = (volume(base.p1_pa + h) - volume(base.p1_pa - h)) / (2.0 * h);
-            assert!((chamber.taken_up(&base, base.p1_pa, 0.0).slope / quotient - 1.0).abs() < 1e-4);
+            assert!((chamber.taken_up::<true>(&base, base.p1_pa, 0.0).slope / quotient - 1.0).abs() < 1e-4);
         }
     }
 
@@ -252,14 +258,14 @@ mod tests {
     fn what_is_counted_at_static_density_comes_back() {
         let chamber = chamber(OilCount::Static);
         let base = at(&chamber, chamber.static_pa);
-        let up = chamber.taken_up(&base, 9e6, 0.04);
+        let up = chamber.taken_up::<true>(&base, 9e6, 0.04);
         let there = State {
             p1_pa: 9e6,
             held_m3: up.held_m3,
             compressed: up.compressed,
             ..base
         };
-        let down = chamber.taken_up(&there, base.p1_pa, 0.0);
+        let down = chamber.taken_up::<true>(&there, base.p1_pa, 0.0);
         assert!((up.volume_m3 + down.volume_m3).abs() < 1e-18);
     }
 }

@@ -50,12 +50,9 @@ impl<N: Number> LawMemory<N> {
         }
     }
 
-    /// `self + weight (other - self)`. Struts side by side have no laws, so that nothing of this changes there.
+    /// `self + weight (other - self)`.
     #[inline(always)]
     pub fn blend(&self, other: &Self, weight: f64) -> Self {
-        if !N::IS_SINGLE {
-            return *self;
-        }
         let mixed = |[a1, a2]: [N; 2], [b1, b2]: [N; 2]| [a1 + (b1 - a1) * weight, a2 + (b2 - a2) * weight];
         Self {
             mean_volume: mixed(self.mean_volume, other.mean_volume),

@@ -3,10 +3,9 @@
 use super::chamber::Chamber;
 use super::path::Path;
 use crate::lanes::Number;
-use crate::strut::characteristic::Characteristic;
 use crate::strut::flow_path::FlowPath;
 use crate::strut::model::StrutModel;
-use crate::strut::terms::{Course, LawArgument, LawPlace, law_at, throttle, valve_in_time};
+use crate::strut::terms::{Course, LawArgument, LawPlace, LawTable, law_at, throttle, valve_in_time};
 
 /// Main chamber, two paths, and valve 3 between the second path and its accumulator.
 #[derive(Debug, Clone)]
@@ -20,17 +19,17 @@ pub(in crate::strut) struct Network<N: Number = f64> {
     /// Flow coefficient of its leak, m3/s/sqrt(Pa).
     pub(super) valve3_leak: N,
     /// Unmodelled factor on its flow.
-    pub(super) valve3_throttle: Option<Characteristic>,
+    pub(super) valve3_throttle: LawTable<N>,
     /// Unmodelled factor on its flow over time.
-    pub(super) valve3_in_time: Course,
+    pub(super) valve3_in_time: Course<N>,
     /// Unmodelled openings beside it, over displacement and over time.
-    pub(super) beside_valve3: [Option<Characteristic>; 2],
+    pub(super) beside_valve3: [LawTable<N>; 2],
     /// Inertance of line 2, kg/m4.
     pub(super) inertance_kg_m4: N,
     /// Transition pressure of all orifices, Pa.
     pub(super) transition_pa: N,
     /// Whether some table is read whose kinks the solver does not look for.
-    pub(super) has_unlisted_laws: bool,
+    pub has_laws: bool,
 }
 
 impl Network {
@@ -49,22 +48,23 @@ impl Network {
             valve3_throttle: throttle(&effects.unlisted, LawPlace::Valve3),
             valve3_in_time: valve_in_time(&effects.unlisted, LawPlace::Valve3),
             beside_valve3: [LawArgument::Displacement, LawArgument::Time]
-                .map(|over| law_at(&effects.unlisted, LawPlace::BesideValve3, over)),
+                .map(|over| LawTable::at_place(&effects.unlisted, LawPlace::BesideValve3, over)),
             inertance_kg_m4: (effects.line_inertance.as_ref()).map_or(0.0, |line| line.inertance_2_kg_m4)
                 + law_at(&effects.unlisted, LawPlace::Path2, LawArgument::FlowRate)
                     .map_or(0.0, |line| line.at(0.0, &mut 0).1),
             transition_pa: model.orifice.transition_pressure_pa,
-            has_unlisted_laws: !effects.unlisted.is_empty(),
+            has_laws: !effects.unlisted.is_empty(),
         }
     }
 
-    /// The networks of several struts side by side, `like` any number of their kind; none where they differ in kind, or where one has a
-    /// law without a name.
+    /// The networks of several struts side by side, `like` any number of their kind; none where they differ in kind.
     pub fn abreast<N: Number>(networks: &N::Each<&Self>, like: N) -> Option<Network<N>> {
         let all = networks.as_ref();
-        if all.iter().any(|network| network.has_unlisted_laws) {
+        let has_laws = all[0].has_laws;
+        if (all.iter()).any(|network| network.has_laws != has_laws) {
             return None;
         }
+        let table = |of: fn(&Self) -> &LawTable| LawTable::abreast(&N::each(|lane| of(all[lane])));
         let of = |value: fn(&Self) -> f64| like.gather(|lane| value(all[lane]));
         let path = |which: FlowPath| Path::abreast(&N::each(|lane| which.of(all[lane].paths.each_ref())), like);
         Some(Network {
@@ -72,12 +72,15 @@ impl Network {
             paths: [path(FlowPath::One)?, path(FlowPath::Two)?],
             valve3_coefficient: of(|network| network.valve3_coefficient),
             valve3_leak: of(|network| network.valve3_leak),
-            valve3_throttle: None,
-            valve3_in_time: Course::default(),
-            beside_valve3: [None, None],
+            valve3_throttle: table(|network| &network.valve3_throttle)?,
+            valve3_in_time: Course::abreast(&N::each(|lane| &all[lane].valve3_in_time), like)?,
+            beside_valve3: [
+                table(|network| &network.beside_valve3[0])?,
+                table(|network| &network.beside_valve3[1])?,
+            ],
             inertance_kg_m4: of(|network| network.inertance_kg_m4),
             transition_pa: of(|network| network.transition_pa),
-            has_unlisted_laws: false,
+            has_laws,
         })
     }
 }

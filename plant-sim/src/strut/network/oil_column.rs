@@ -24,7 +24,7 @@ impl Network {
         // By Boyle's law, which is soft enough: gas takes up so much more than oil that its exponent hardly matters.
         let [gas_1, gas_2] = [0, 1].map(|i| rest.gas[i].volume_m3 / self.paths[i].gas.pressure(rest.gas[i]).pa());
         // Rigid oil takes up nothing; behind it is the other accumulator.
-        let held = self.chamber.taken_up(rest, rest.p1_pa, 0.0).slope;
+        let held = self.chamber.taken_up::<true>(rest, rest.p1_pa, 0.0).slope;
         let chamber = if held > 0.0 { held } else { gas_1 };
         let volume_per_pressure = 1.0 / (1.0 / chamber + 1.0 / gas_2);
         Some(ColumnOscillator {

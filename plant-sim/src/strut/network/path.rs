@@ -12,7 +12,7 @@ use crate::strut::gas::{Departure, Gas, GasState};
 use crate::strut::model::StrutModel;
 use crate::strut::orifice::unit_flow;
 use crate::strut::pressure::gauge;
-use crate::strut::terms::{Compressibility, GasLawAnswer, GasLawInputs, LaminarLine, PackFade, PathLaws, PistonSeal};
+use crate::strut::terms::{Compressibility, GasLawInputs, LaminarLine, PackFade, PathLaws, PistonSeal, presliding_m3};
 
 /// What a Newton step that is taken without another look may neglect in a pressure drop, Pa. All quantities follow the
 /// step linearly, volumes included, so nothing is lost; the error is that of the curved laws, about
@@ -32,8 +32,8 @@ pub(super) struct Path<N: Number = f64> {
     pub static_gas_m3: N,
     piston_seal: PistonSeal<N>,
     pub fade: PackFade<N>,
-    /// Unmodelled laws; `None` where the model has none, which then costs one comparison.
-    laws: Option<Box<PathLaws>>,
+    /// Unmodelled laws; `None` where the model has none.
+    laws: Option<Box<PathLaws<N>>>,
 }
 
 /// Where a path starts from in a stage, and what does not change while the stage is solved.
@@ -110,7 +110,7 @@ impl Path {
         });
         // A seal that only a law without a name makes rub shears as the law says.
         let without_term = PistonSeal {
-            presliding_m3: (laws.as_deref()).map_or(PistonSeal::FREE.presliding_m3, PathLaws::presliding_m3),
+            presliding_m3: presliding_m3(&effects.unlisted, which),
             ..PistonSeal::FREE
         };
         Self {
@@ -141,9 +141,14 @@ impl Path {
     /// The same path of several struts side by side, `like` any number of their kind; none where they differ in kind.
     pub fn abreast<N: Number>(paths: &N::Each<&Self>, like: N) -> Option<Path<N>> {
         let all = paths.as_ref();
-        if all.iter().any(|path| path.laws.is_some()) {
+        if (all.iter()).any(|path| path.laws.is_some() != all[0].laws.is_some()) {
             return None;
         }
+        let laws = N::each_of(|lane| all[lane].laws.as_deref());
+        let laws = match &laws {
+            Some(laws) => Some(Box::new(PathLaws::abreast(laws, like)?)),
+            None => None,
+        };
         let of = |value: fn(&Self) -> f64| like.gather(|lane| value(all[lane]));
         Some(Path {
             pack: N::each(|lane| all[lane].pack[0].clone()),
@@ -161,21 +166,21 @@ impl Path {
             fade: PackFade {
                 per_j: of(|path| path.fade.per_j),
             },
-            laws: None,
+            laws,
         })
     }
 }
 
 impl<N: Number> Path<N> {
     #[inline(always)]
-    fn laws(&self) -> Option<&PathLaws> {
-        if N::IS_SINGLE { self.laws.as_deref() } else { None }
+    fn laws<const LAWS: bool>(&self) -> Option<&PathLaws<N>> {
+        if LAWS { self.laws.as_deref() } else { None }
     }
 
     /// Where the path starts from in a stage. `which` is this path: a constant at every call, so that the state's arrays
     /// are read at fixed places.
     #[inline(always)]
-    pub fn start<'a>(
+    pub fn start<'a, const LAWS: bool>(
         &self,
         which: FlowPath,
         base: &State<N>,
@@ -184,8 +189,10 @@ impl<N: Number> Path<N> {
         real: &'a Departure<N>,
     ) -> PathStart<'a, N> {
         let mut bypass = at.opening[which.bypass_valve()] * self.valve_coefficient;
-        if let Some(laws) = self.laws() {
-            bypass = bypass * at.time_s.map(|time_s| laws.valve_in_time(time_s));
+        if let Some(laws) = self.laws::<LAWS>()
+            && let Some(factor) = laws.valve_in_time(at.time_s)
+        {
+            bypass = bypass * factor;
         }
         let mut start = PathStart {
             duration_s: at.duration_s,
@@ -203,29 +210,29 @@ impl<N: Number> Path<N> {
             pack_j: which.of(base.laws.pack_j),
             remembered: at.time_s.of(0.0),
         };
-        if let Some(laws) = self.laws() {
-            let placed = |law: &dyn Fn(f64, f64) -> f64| {
-                (at.time_s).gather(|lane| law(at.displacement_m.lane(lane), at.time_s.lane(lane)))
-            };
-            start.weakening = start.weakening * placed(&|x, t| laws.weakening(x, t));
-            start.weakening = start.weakening * start.pack_j.map(|energy_j| laws.weakening_by_energy(energy_j));
-            start.beside_pack = start.beside_pack + placed(&|x, t| laws.groove(x, t));
-            let relative_volume = start.gas.volume_m3 / self.static_gas_m3;
-            let held_back_pa = relative_volume.map(|volume| laws.held_back_pa(volume).unwrap_or(0.0));
-            start.breakaway_pa = start.breakaway_pa + held_back_pa;
-            start.remembered = at.duration_s.map(|duration_s| laws.remembered(duration_s));
+        if let Some(laws) = self.laws::<LAWS>() {
+            if let Some(weakening) = laws.weakening(at.displacement_m, at.time_s) {
+                start.weakening = start.weakening * weakening;
+            }
+            if let Some(weakening) = laws.weakening_by_energy(start.pack_j) {
+                start.weakening = start.weakening * weakening;
+            }
+            if let Some(groove) = laws.groove(at.displacement_m, at.time_s) {
+                start.beside_pack = start.beside_pack + groove;
+            }
+            if let Some(held_back_pa) = laws.held_back_pa(start.gas.volume_m3 / self.static_gas_m3) {
+                start.breakaway_pa = start.breakaway_pa + held_back_pa;
+            }
+            start.remembered = laws.remembered(at.duration_s);
         }
         start
     }
 
     /// Energy that the pack's oil holds by a law without a name at the end of a stage, J, after oil has flowed (m3/s) across a drop (Pa).
     #[inline(always)]
-    pub fn pack_j(&self, before_j: N, duration_s: N, drop_pa: N, flow_m3_s: N) -> N {
-        match self.laws() {
-            Some(laws) => before_j.gather(|lane| {
-                let power_w = drop_pa.lane(lane) * flow_m3_s.lane(lane);
-                laws.pack_j(before_j.lane(lane), duration_s.lane(lane), power_w)
-            }),
+    pub fn pack_j<const LAWS: bool>(&self, before_j: N, duration_s: N, drop_pa: N, flow_m3_s: N) -> N {
+        match self.laws::<LAWS>() {
+            Some(laws) => laws.pack_j(before_j, duration_s, drop_pa * flow_m3_s),
             None => before_j,
         }
     }
@@ -238,20 +245,20 @@ impl<N: Number> Path<N> {
 
     /// The path's answer to a trial drop across its pack. `line` is the part of the pack's table that the last one was on.
     #[inline(always)]
-    pub fn answer(
+    pub fn answer<const LAWS: bool>(
         &self,
         start: &PathStart<'_, N>,
         drop_pa: N,
         segment: &mut N::Each<usize>,
         line: &mut Line<N>,
     ) -> PathAnswer<N> {
-        let (flow, flow_slope) = self.flow(start, drop_pa, segment, line);
-        self.answer_to_flow(start, flow, flow_slope)
+        let (flow, flow_slope) = self.flow::<LAWS>(start, drop_pa, segment, line);
+        self.answer_to_flow::<LAWS>(start, flow, flow_slope)
     }
 
     /// Flow at a trial drop, m3/s, and its derivative by the drop.
     #[inline(always)]
-    pub fn flow(
+    pub fn flow<const LAWS: bool>(
         &self,
         start: &PathStart<'_, N>,
         drop_pa: N,
@@ -268,14 +275,16 @@ impl<N: Number> Path<N> {
         if bypassed.any() {
             let (unit, slope) = unit_flow(drop_pa, start.transition_pa);
             let mut coefficient = start.beside_pack;
-            if let Some(laws) = self.laws() {
-                coefficient = coefficient - start.bypass * drop_pa.map(|drop_pa| laws.throttled_fraction(drop_pa));
+            if let Some(laws) = self.laws::<LAWS>()
+                && let Some(fraction) = laws.throttled_fraction(drop_pa)
+            {
+                coefficient = coefficient - start.bypass * fraction;
             }
             flow = N::choose(bypassed, flow + coefficient * unit, flow);
             flow_slope = N::choose(bypassed, flow_slope + coefficient * slope, flow_slope);
         }
-        if let Some(laws) = self.laws()
-            && let Some((parallel, slope)) = drop_pa.map_pair(|drop_pa| laws.parallel_flow(drop_pa))
+        if let Some(laws) = self.laws::<LAWS>()
+            && let Some((parallel, slope)) = laws.parallel_flow(drop_pa)
         {
             flow = flow + parallel;
             flow_slope = flow_slope + slope;
@@ -285,31 +294,27 @@ impl<N: Number> Path<N> {
 
     /// The part of the answer that follows from the flow.
     #[inline(always)]
-    pub fn answer_to_flow(&self, start: &PathStart<'_, N>, flow: N, flow_slope: N) -> PathAnswer<N> {
+    pub fn answer_to_flow<const LAWS: bool>(&self, start: &PathStart<'_, N>, flow: N, flow_slope: N) -> PathAnswer<N> {
         let step = self.gas.implicit(start.gas, start.duration_s, flow, start.real);
         let (mut oil_pa, mut oil_slope) = (gauge(step.pressure).pa(), step.pressure_by_flow);
         let (mut mean_volume, mut gas_energy) = (start.mean_volume, start.gas_energy);
-        if let Some(laws) = self.laws() {
+        if let Some(laws) = self.laws::<LAWS>() {
             let relative_volume = step.state.volume_m3 / self.static_gas_m3;
             let changed = start.remembered * (relative_volume - start.mean_volume);
             mean_volume = relative_volume - changed;
-            let gas = N::each_of(|lane| {
-                laws.gas(&GasLawInputs {
-                    relative_volume: relative_volume.lane(lane),
-                    changed: changed.lane(lane),
-                    time_s: start.time_s.lane(lane),
-                    duration_s: start.duration_s.lane(lane),
-                    pressure_pa: step.pressure.pa().lane(lane),
-                    flow_m3_s: flow.lane(lane),
-                    energy: start.gas_energy.lane(lane),
-                })
+            let gas = laws.gas(&GasLawInputs {
+                relative_volume,
+                changed,
+                time_s: start.time_s,
+                duration_s: start.duration_s,
+                pressure_pa: step.pressure.pa(),
+                flow_m3_s: flow,
+                energy: start.gas_energy,
             });
             if let Some(gas) = gas {
-                let of = |value: fn(&GasLawAnswer) -> f64| flow.gather(|lane| value(&gas.as_ref()[lane]));
-                let factor = of(|gas| gas.factor);
-                oil_pa = gauge(Absolute(factor * step.pressure.pa())).pa();
-                oil_slope = oil_slope * factor + step.pressure.pa() * of(|gas| gas.factor_by_flow);
-                gas_energy = of(|gas| gas.energy);
+                oil_pa = gauge(Absolute(gas.factor * step.pressure.pa())).pa();
+                oil_slope = oil_slope * gas.factor + step.pressure.pa() * gas.factor_by_flow;
+                gas_energy = gas.energy;
             }
         }
         let (mut shear, mut shear_slope) = (start.shear, flow.of(0.0));
@@ -322,8 +327,8 @@ impl<N: Number> Path<N> {
             oil_slope = N::choose(rubs, oil_slope + start.breakaway_pa * shear_slope, oil_slope);
         }
         let (mut line_pa, mut line_slope) = self.line.drop(flow);
-        if let Some(laws) = self.laws()
-            && let Some((drop, slope)) = flow.map_pair(|flow| laws.series_drop(flow))
+        if let Some(laws) = self.laws::<LAWS>()
+            && let Some((drop, slope)) = laws.series_drop(flow)
         {
             line_pa = line_pa + drop;
             line_slope = line_slope + slope;

@@ -19,8 +19,8 @@ impl Network {
         State {
             p1_pa: p1.pa(),
             gas: [gas(0), gas(1)],
-            held_m3: self.chamber.held_m3(p1.pa(), displacement_m).0,
-            compressed: self.chamber.compressed(p1.pa()).0,
+            held_m3: self.chamber.held_m3::<true>(p1.pa(), displacement_m).0,
+            compressed: self.chamber.compressed::<true>(p1.pa()).0,
             q2_m3_s: 0.0,
             shear: [0.0; 2],
             heat_j: [0.0; 2],

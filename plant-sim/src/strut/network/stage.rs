@@ -63,54 +63,45 @@ struct SecondLoop<N> {
 }
 
 impl<N: Number> Network<N> {
-    #[inline(always)]
-    fn has_laws(&self) -> bool {
-        N::IS_SINGLE && self.has_unlisted_laws
-    }
-
     /// Flow coefficient of all that lets oil through between path 2 and its accumulator, m3/s/sqrt(Pa).
     #[inline(always)]
-    fn valve3_passes(&self, at: &StageEnd<N>) -> N {
+    fn valve3_passes<const LAWS: bool>(&self, at: &StageEnd<N>) -> N {
         let mut open = at.opening[Valve::Spring] * self.valve3_coefficient;
-        if self.has_laws() {
-            open = open * at.time_s.map(|time_s| passed(&self.valve3_in_time, time_s));
+        if !LAWS {
+            return open + self.valve3_leak;
+        }
+        if let Some(factor) = passed(&self.valve3_in_time, at.time_s) {
+            open = open * factor;
         }
         let mut passes = open + self.valve3_leak;
-        if self.has_laws() {
-            passes = passes + self.beside_valve3(at);
+        let [over_displacement, over_time] = &self.beside_valve3;
+        if let Some(beside) = over_displacement.value_at_least(0.0, at.displacement_m) {
+            passes = passes + beside;
+        }
+        if let Some(beside) = over_time.value_at_least(0.0, at.time_s) {
+            passes = passes + beside;
         }
         passes
     }
 
-    /// Flow coefficient of an unmodelled opening beside valve 3, m3/s/sqrt(Pa).
-    #[cold]
-    fn beside_valve3(&self, at: &StageEnd<N>) -> N {
-        at.time_s.gather(|lane| {
-            [at.displacement_m.lane(lane), at.time_s.lane(lane)]
-                .into_iter()
-                .zip(&self.beside_valve3)
-                .filter_map(|(argument, law)| Some(law.as_ref()?.value(argument).max(0.0)))
-                .sum()
-        })
-    }
-
-    /// Solve one stage from `base`. The result does not depend on `last` beyond the solver's tolerance.
+    /// Solve one stage from `base`. The result does not depend on `last` beyond the solver's tolerance. `LAWS` says whether laws without a name are
+    /// looked for.
     #[inline(always)]
-    pub fn stage(&self, base: &State<N>, at: &StageEnd<N>, last: &mut LastSolution<N>) -> Stage<N> {
-        let passes = self.valve3_passes(at);
+    pub fn stage<const LAWS: bool>(&self, base: &State<N>, at: &StageEnd<N>, last: &mut LastSolution<N>) -> Stage<N> {
+        let passes = self.valve3_passes::<LAWS>(at);
         let connected = passes.above(passes.of(0.0));
         if connected.all() {
-            self.solve::<CONNECTED>(base, at, passes, last)
+            self.solve::<CONNECTED, LAWS>(base, at, passes, last)
         } else if N::IS_SINGLE || !connected.any() {
-            self.solve::<CLOSED>(base, at, passes, last)
+            self.solve::<CLOSED, LAWS>(base, at, passes, last)
         } else {
-            self.solve::<MIXED>(base, at, passes, last)
+            self.solve::<MIXED, LAWS>(base, at, passes, last)
         }
     }
 
     /// `VALVE_3` says in which lanes it lets oil through, `passes` its flow coefficient (m3/s/sqrt(Pa)).
     #[inline(always)]
-    fn solve<const VALVE_3: u8>(
+    fn solve<const VALVE_3: u8, const LAWS: bool>(
         &self,
         base: &State<N>,
         at: &StageEnd<N>,
@@ -128,7 +119,7 @@ impl<N: Number> Network<N> {
             CLOSED => zero,
             _ => N::choose(connected, passes.recip(), zero),
         };
-        let supply = self.chamber.supply_m3_s(at.speed_m_s, base.p1_pa, at.time_s);
+        let supply = self.chamber.supply_m3_s::<LAWS>(at.speed_m_s, base.p1_pa, at.time_s);
         let mut explained = last.explained(supply);
         let [mut d1, mut d2] = last.predicted(explained, at.since_last_s);
         if VALVE_3 != CONNECTED {
@@ -143,8 +134,8 @@ impl<N: Number> Network<N> {
         path2
             .gas
             .refresh(&mut real[1], base.gas[1], at.duration_s, last.flow[1]);
-        let first = path1.start(FlowPath::One, base, at, self.transition_pa, &real[0]);
-        let second = path2.start(FlowPath::Two, base, at, self.transition_pa, &real[1]);
+        let first = path1.start::<LAWS>(FlowPath::One, base, at, self.transition_pa, &real[0]);
+        let second = path2.start::<LAWS>(FlowPath::Two, base, at, self.transition_pa, &real[1]);
         let mut line1 = path1.line(&segment[0], zero);
         let mut line2 = path2.line(&segment[1], zero);
         let inverse_duration = at.duration_s.recip();
@@ -155,20 +146,20 @@ impl<N: Number> Network<N> {
         let mut done = zero.above(zero);
         let mut is_prediction = true;
         loop {
-            let one = path1.answer(&first, d1, &mut segment[0], &mut line1);
+            let one = path1.answer::<LAWS>(&first, d1, &mut segment[0], &mut line1);
             let p1 = one.oil_pa + one.line_pa + d1;
             let p1_slope = (one.oil_slope + one.line_slope) * one.flow_slope + 1.0;
-            let chamber = self.chamber.taken_up(base, p1, at.displacement_m);
+            let chamber = self.chamber.taken_up::<LAWS>(base, p1, at.displacement_m);
             let (stored, c) = (chamber.volume_m3 * inverse_duration, chamber.slope * inverse_duration);
             let (mut flow2, mut flow2_slope) = (zero, zero);
             if VALVE_3 != CLOSED {
-                (flow2, flow2_slope) = path2.flow(&second, d2, &mut segment[1], &mut line2);
+                (flow2, flow2_slope) = path2.flow::<LAWS>(&second, d2, &mut segment[1], &mut line2);
             }
             if VALVE_3 == MIXED {
                 flow2 = N::choose(connected, flow2, zero);
                 flow2_slope = N::choose(connected, flow2_slope, zero);
             }
-            let two = path2.answer_to_flow(&second, flow2, flow2_slope);
+            let two = path2.answer_to_flow::<LAWS>(&second, flow2, flow2_slope);
             if is_prediction {
                 is_prediction = false;
                 // A rate that was seen for an instant may predict more oil than an accumulator holds. From there Newton's method would take
@@ -185,7 +176,7 @@ impl<N: Number> Network<N> {
             if VALVE_3 != CLOSED {
                 let continuity = supply - stored - one.flow - two.flow;
                 let c_d1 = -c * p1_slope - one.flow_slope;
-                let second_loop = self.second_loop(p1, p1_slope, d2, &two, column, base.q2_m3_s, inverse_c3);
+                let second_loop = self.second_loop::<LAWS>(p1, p1_slope, d2, &two, column, base.q2_m3_s, inverse_c3);
                 let SecondLoop {
                     residual, by_d1, by_d2, ..
                 } = second_loop;
@@ -220,7 +211,7 @@ impl<N: Number> Network<N> {
                     & (d3_step * d3_step).up_to((self.transition_pa + d3.abs()) * (2.0 * NEGLECTED_PA));
                 nearly_linear = nearly_linear & (behind | passes.up_to(zero));
             }
-            if self.has_laws() {
+            if LAWS {
                 let longest = zero.of(UNLISTED_STEP_PA);
                 nearly_linear = nearly_linear & step1.abs().up_to(longest) & step2.abs().up_to(longest);
             }
@@ -255,8 +246,8 @@ impl<N: Number> Network<N> {
                             mean_volume: [one.mean_volume, two.mean_volume],
                             gas_energy: [one.gas_energy, two.gas_energy],
                             pack_j: [
-                                path1.pack_j(pack1, at.duration_s, drop1, one.flow),
-                                path2.pack_j(pack2, at.duration_s, drop2, two.flow),
+                                path1.pack_j::<LAWS>(pack1, at.duration_s, drop1, one.flow),
+                                path2.pack_j::<LAWS>(pack2, at.duration_s, drop2, two.flow),
                             ],
                         },
                     },
@@ -275,7 +266,7 @@ impl<N: Number> Network<N> {
         clippy::too_many_arguments,
         reason = "the trial's numbers, of which no two belong together"
     )]
-    fn second_loop(
+    fn second_loop<const LAWS: bool>(
         &self,
         p1: N,
         p1_slope: N,
@@ -287,12 +278,10 @@ impl<N: Number> Network<N> {
     ) -> SecondLoop<N> {
         let behind = p1 - d2 - two.line_pa - column.drop(q2_before, two.flow) - two.oil_pa;
         let behind_d2 = -((two.line_slope + column.slope + two.oil_slope) * two.flow_slope) - 1.0;
-        if N::IS_SINGLE
-            && let Some(law) = &self.valve3_throttle
-        {
+        if LAWS && let Some(factor) = throttled(&self.valve3_throttle, behind) {
             // A flow that falls with its drop cannot be solved for the drop: the loop is closed in flows. The slope leaves
             // the law's own fall out; it is then too steep, never of the wrong sign.
-            let through = behind.map(|behind| throttled(law, behind)) / inverse_c3;
+            let through = factor / inverse_c3;
             let (unit, unit_slope) = unit_flow(behind, self.transition_pa);
             SecondLoop {
                 residual: two.flow - through * unit,

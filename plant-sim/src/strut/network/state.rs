@@ -76,9 +76,10 @@ impl<N: Number> State<N> {
         }
     }
 
-    /// `self + weight (other - self)`, state by state: the recombination that the stages of a Runge-Kutta step need.
+    /// `self + weight (other - self)`, state by state: the recombination that the stages of a Runge-Kutta step need. What laws without a name
+    /// remember is left as it is without `LAWS`.
     #[inline(always)]
-    pub fn blend(&self, other: &Self, weight: f64) -> Self {
+    pub fn blend<const LAWS: bool>(&self, other: &Self, weight: f64) -> Self {
         Self {
             p1_pa: mixed(self.p1_pa, other.p1_pa, weight),
             gas: [
@@ -90,7 +91,11 @@ impl<N: Number> State<N> {
             q2_m3_s: mixed(self.q2_m3_s, other.q2_m3_s, weight),
             shear: both_mixed(self.shear, other.shear, weight),
             heat_j: both_mixed(self.heat_j, other.heat_j, weight),
-            laws: self.laws.blend(&other.laws, weight),
+            laws: if LAWS {
+                self.laws.blend(&other.laws, weight)
+            } else {
+                self.laws
+            },
         }
     }
 }

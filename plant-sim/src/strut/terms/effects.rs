@@ -344,6 +344,50 @@ impl Effects {
         )
         .unwrap()
     }
+
+    /// A law without a name over every quantity at every place of the network, with numbers of ordinary size.
+    pub(crate) fn laws_of_the_network() -> Vec<UnlistedLaw> {
+        use super::unlisted::LawArgument::{self, *};
+        use super::unlisted::LawPlace::*;
+        let law = |place, depends_on: LawArgument, argument: [f64; 3], value: [f64; 3]| UnlistedLaw {
+            place,
+            depends_on,
+            argument: argument.to_vec(),
+            value: value.to_vec(),
+            time_constant_s: depends_on.is_remembered().then_some(3.0),
+            frequency_hz: (depends_on == Phase).then_some(1.7),
+            presliding_volume_m3: None,
+            attraction: None,
+        };
+        let (factor, turn) = ([1.0, 0.95, 0.8], [0.9, 1.1, 0.9]);
+        let (small, large) = ([-0.04, 0.0, 0.04], [-1e6, 0.0, 3e6]);
+        let (start, phase) = ([0.0, 1.0, 4.0], [0.0, 0.4, 1.0]);
+        vec![
+            law(MainChamber, P1, [0.0, 4e6, 9e6], [0.0, 1e-6, 3e-6]),
+            law(MainChamberLoss, P1, [0.0, 4e6, 9e6], [0.0, 1e-7, 4e-7]),
+            law(MainChamberLoss, Time, start, [0.0, 2e-7, 1e-7]),
+            law(MainChamberLoss, Phase, phase, [0.0, 1e-7, 0.0]),
+            law(Mount, Force, [-4e3, 0.0, 4e3], [-2e-3, 0.0, 1e-3]),
+            law(Path1, Flow, [-1e-3, 0.0, 1e-3], [-2e5, 0.0, 1e5]),
+            law(BesidePack1, PressureDrop, large, [-1e-5, 0.0, 2e-5]),
+            law(BesidePack2, Displacement, small, [0.0, 1e-7, 2e-7]),
+            law(BesidePack2, Time, start, [0.0, 1e-7, 2e-7]),
+            law(Pack1, Displacement, small, factor),
+            law(Pack1, Time, start, factor),
+            law(Pack2, Phase, phase, turn),
+            law(Pack2, Energy, [0.0, 100.0, 3e3], factor),
+            law(Valves, PressureDrop, large, [0.7, 1.0, 0.6]),
+            law(Valves, Phase, phase, turn),
+            law(BesideValve3, Displacement, small, [0.0, 0.0, 2e-7]),
+            law(BesideValve3, Time, start, [0.0, 1e-7, 0.0]),
+            law(Accumulator1, RelativeVolume, [0.5, 1.0, 1.5], [1.1, 1.0, 1.05]),
+            law(Accumulator1, Time, start, factor),
+            law(Accumulator2, VolumeChange, [-0.5, 0.0, 0.5], [1.1, 1.0, 0.9]),
+            law(Accumulator2, RelativeEnergy, [-0.2, 0.0, 0.2], [0.9, 1.0, 1.1]),
+            law(Accumulators, RelativeDensity, [0.0, 1.0, 4.0], [1.0, 0.99, 0.95]),
+            law(Accumulator2Friction, RelativeVolume, [0.5, 1.0, 1.5], [4e4, 3e4, 2e4]),
+        ]
+    }
 }
 
 #[cfg(test)]

@@ -68,7 +68,7 @@ pub(super) use gas_heat_transfer::EnergyStep;
 pub(super) use line_inertance::OilColumn;
 pub(super) use oil_compressibility::{held_at_static_density, taken_up_at_chamber_density};
 pub(super) use unlisted::{
-    ChamberLaws, Compressibility, Course, GasLawAnswer, GasLawInputs, InstrumentLaws, PathLaws, SealLaw, law_at,
-    longest_step_s, passed, throttle, throttled, valve_in_time,
+    ChamberLaws, Compressibility, Course, GasLawInputs, InstrumentLaws, LawTable, PathLaws, SealLaw, law_at,
+    longest_step_s, passed, presliding_m3, throttle, throttled, valve_in_time,
 };
 pub(super) use valve_delay::{COEFFICIENT as RESPONSE_COEFFICIENT, check_constant, total_response_s};

@@ -2,46 +2,62 @@
 
 use super::argument::LawArgument;
 use super::course::Course;
-use super::law::{UnlistedLaw, law_at};
+use super::law::UnlistedLaw;
+use super::law_table::LawTable;
 use super::place::LawPlace;
-use crate::strut::characteristic::Characteristic;
+use crate::lanes::Number;
 
-/// The laws of the main chamber over p1 (gauge, Pa) and time (s), and that of the mount over its force (N).
-#[derive(Debug, Clone, Default)]
-pub(in crate::strut) struct ChamberLaws {
-    volume: Option<Characteristic>,
-    loss: Option<Characteristic>,
-    loss_in_time: Course,
-    mount: Option<Characteristic>,
+/// The laws of the main chamber over p1 (gauge, Pa) and time (s), and that of the mount over its force (N); of one strut, or of several side by
+/// side.
+#[derive(Debug, Clone)]
+pub(in crate::strut) struct ChamberLaws<N: Number = f64> {
+    volume: LawTable<N>,
+    loss: LawTable<N>,
+    loss_in_time: Course<N>,
+    mount: LawTable<N>,
 }
 
 impl ChamberLaws {
     /// The laws of the chamber.
     pub fn of(laws: &[UnlistedLaw]) -> Self {
         Self {
-            volume: law_at(laws, LawPlace::MainChamber, LawArgument::P1),
-            loss: law_at(laws, LawPlace::MainChamberLoss, LawArgument::P1),
+            volume: LawTable::at_place(laws, LawPlace::MainChamber, LawArgument::P1),
+            loss: LawTable::at_place(laws, LawPlace::MainChamberLoss, LawArgument::P1),
             loss_in_time: Course::at(laws, LawPlace::MainChamberLoss),
-            mount: law_at(laws, LawPlace::Mount, LawArgument::Force),
+            mount: LawTable::at_place(laws, LawPlace::Mount, LawArgument::Force),
         }
     }
 
+    /// Those of several struts side by side, `like` any number of their kind; none where they differ in kind.
+    pub fn abreast<N: Number>(each: &N::Each<&Self>, like: N) -> Option<ChamberLaws<N>> {
+        let all = each.as_ref();
+        Some(ChamberLaws {
+            volume: LawTable::abreast(&N::each(|lane| &all[lane].volume))?,
+            loss: LawTable::abreast(&N::each(|lane| &all[lane].loss))?,
+            loss_in_time: Course::abreast(&N::each(|lane| &all[lane].loss_in_time), like)?,
+            mount: LawTable::abreast(&N::each(|lane| &all[lane].mount))?,
+        })
+    }
+}
+
+impl<N: Number> ChamberLaws<N> {
     /// Volume taken up at a gauge pressure, m3, and its derivative, m3/Pa, if there is such a law.
-    #[inline]
-    pub fn volume(&self, p1_pa: f64) -> Option<(f64, f64)> {
-        self.volume.as_ref().map(|law| law.at(p1_pa, &mut 0))
+    #[inline(always)]
+    pub fn volume(&self, p1_pa: N) -> Option<(N, N)> {
+        self.volume.at(p1_pa)
     }
 
     /// By how much the mount yields under a force above the static one (N), m, and its derivative, m/N, if there is such a law.
-    #[inline]
-    pub fn mount_m(&self, force_n: f64) -> Option<(f64, f64)> {
-        self.mount.as_ref().map(|law| law.at(force_n, &mut 0))
+    #[inline(always)]
+    pub fn mount_m(&self, force_n: N) -> Option<(N, N)> {
+        self.mount.at(force_n)
     }
 
     /// Flow lost at a gauge pressure and a time, m3/s.
-    #[inline]
-    pub fn loss(&self, p1_pa: f64, time_s: f64) -> f64 {
-        self.loss.as_ref().map_or(0.0, |law| law.value(p1_pa)) + self.loss_in_time.sum(time_s)
+    #[inline(always)]
+    pub fn loss(&self, p1_pa: N, time_s: N) -> N {
+        let by_pressure = self.loss.value(p1_pa).unwrap_or(p1_pa.of(0.0));
+        by_pressure + self.loss_in_time.sum(time_s)
     }
 }
 

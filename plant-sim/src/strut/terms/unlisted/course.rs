@@ -1,9 +1,10 @@
 //! Unmodelled laws over time as the solver reads them: one over the time since the start, and one that repeats.
 
 use super::argument::LawArgument;
-use super::law::{UnlistedLaw, law_at};
+use super::law::{UnlistedLaw, find};
+use super::law_table::{LawTable, together};
 use super::place::LawPlace;
-use crate::strut::characteristic::Characteristic;
+use crate::lanes::Number;
 
 /// Time steps in one turn of a law that repeats.
 const STEPS_PER_TURN: f64 = 20.0;
@@ -20,42 +21,64 @@ pub(in crate::strut) fn longest_step_s(laws: &[UnlistedLaw]) -> f64 {
     (laws.iter().filter_map(|law| law.frequency_hz)).fold(f64::INFINITY, |step, f| step.min(1.0 / (STEPS_PER_TURN * f)))
 }
 
-/// A law that repeats.
+/// A law that repeats, or none.
 #[derive(Debug, Clone)]
-pub(in crate::strut) struct Repeating {
-    frequency_hz: f64,
-    turn: Characteristic,
+struct Repeating<N: Number = f64> {
+    frequency_hz: N,
+    turn: LawTable<N>,
 }
 
 impl Repeating {
-    /// The law over the phase at a place, if there is one.
-    pub fn at(laws: &[UnlistedLaw], place: LawPlace) -> Option<Self> {
-        let law = laws
-            .iter()
-            .find(|law| law.place == place && law.depends_on == LawArgument::Phase)?;
-        Some(Self {
-            frequency_hz: law.frequency_hz?,
-            turn: law.characteristic(),
-        })
-    }
+    const NONE: Self = Self {
+        frequency_hz: 1.0,
+        turn: LawTable::NONE,
+    };
 
-    /// Value at a time.
-    #[inline]
-    pub fn value(&self, time_s: f64) -> f64 {
-        self.turn.value(phase(self.frequency_hz, time_s))
+    /// The law over the phase at the first of these places that has one.
+    fn at_first_of(laws: &[UnlistedLaw], places: &[LawPlace]) -> Self {
+        let repeats = |&place: &LawPlace| {
+            let law = find(laws, place, LawArgument::Phase)?;
+            Some((law, law.frequency_hz?))
+        };
+        places
+            .iter()
+            .find_map(repeats)
+            .map_or(Self::NONE, |(law, frequency_hz)| Self {
+                frequency_hz,
+                turn: LawTable::of(Some(law)),
+            })
     }
 
     /// Rate at which the value changes at a time, 1/s.
-    pub fn rate(&self, time_s: f64) -> f64 {
-        self.frequency_hz * self.turn.at(phase(self.frequency_hz, time_s), &mut 0).1
+    fn rate(&self, time_s: f64) -> f64 {
+        let turn = self.turn.at(phase(self.frequency_hz, time_s));
+        turn.map_or(0.0, |(_, slope)| self.frequency_hz * slope)
     }
 }
 
-/// What a place has of laws over time.
-#[derive(Debug, Clone, Default)]
-pub(in crate::strut) struct Course {
-    since_start: Option<Characteristic>,
-    repeating: Option<Repeating>,
+impl<N: Number> Repeating<N> {
+    /// Value at a time, if there is a law.
+    #[inline(always)]
+    fn value(&self, time_s: N) -> Option<N> {
+        if self.turn.is_none() {
+            return None;
+        }
+        let turns = self.frequency_hz * time_s;
+        self.turn.value(turns.map(|turns| turns - turns.floor()))
+    }
+
+    /// The same, where less than a bound counts as the bound.
+    #[inline(always)]
+    fn value_at_least(&self, least: f64, time_s: N) -> Option<N> {
+        Some(self.value(time_s)?.at_least(time_s.of(least)))
+    }
+}
+
+/// What a place has of laws over time; of one strut, or of several side by side.
+#[derive(Debug, Clone)]
+pub(in crate::strut) struct Course<N: Number = f64> {
+    since_start: LawTable<N>,
+    repeating: Repeating<N>,
 }
 
 impl Course {
@@ -66,45 +89,50 @@ impl Course {
 
     /// The laws over time at the first of these places that has one, for each kind of argument.
     pub fn at_first_of(laws: &[UnlistedLaw], places: &[LawPlace]) -> Self {
+        let since_start = places.iter().find_map(|&place| find(laws, place, LawArgument::Time));
         Self {
-            since_start: (places.iter()).find_map(|&place| law_at(laws, place, LawArgument::Time)),
-            repeating: places.iter().find_map(|&place| Repeating::at(laws, place)),
+            since_start: LawTable::of(since_start),
+            repeating: Repeating::at_first_of(laws, places),
         }
     }
 
-    /// Whether there is none.
-    #[inline]
-    pub const fn is_none(&self) -> bool {
-        self.since_start.is_none() && self.repeating.is_none()
-    }
-
-    /// What laws that are added give together at a time.
-    #[inline]
-    pub fn sum(&self, time_s: f64) -> f64 {
-        let since_start = self.since_start.as_ref().map_or(0.0, |law| law.value(time_s));
-        match &self.repeating {
-            None => since_start,
-            Some(law) => since_start + law.value(time_s),
-        }
-    }
-
-    /// What laws that multiply give together at a time, neither of them less than `least`.
-    #[inline]
-    pub fn product(&self, time_s: f64, least: f64) -> f64 {
-        let since_start = self
-            .since_start
-            .as_ref()
-            .map_or(1.0, |law| law.value(time_s).max(least));
-        match &self.repeating {
-            None => since_start,
-            Some(law) => since_start * law.value(time_s).max(least),
-        }
+    /// Those of several struts side by side, `like` any number of their kind; none where they differ in kind.
+    pub fn abreast<N: Number>(each: &N::Each<&Self>, like: N) -> Option<Course<N>> {
+        let all = each.as_ref();
+        Some(Course {
+            since_start: LawTable::abreast(&N::each(|lane| &all[lane].since_start))?,
+            repeating: Repeating {
+                frequency_hz: like.gather_from(all, |course| course.repeating.frequency_hz),
+                turn: LawTable::abreast(&N::each(|lane| &all[lane].repeating.turn))?,
+            },
+        })
     }
 
     /// Rate at which the sum changes at a time, 1/s.
     pub fn rate(&self, time_s: f64) -> f64 {
-        let since_start = self.since_start.as_ref().map_or(0.0, |law| law.at(time_s, &mut 0).1);
-        since_start + self.repeating.as_ref().map_or(0.0, |law| law.rate(time_s))
+        self.since_start.at(time_s).map_or(0.0, |(_, slope)| slope) + self.repeating.rate(time_s)
+    }
+}
+
+impl<N: Number> Course<N> {
+    /// Whether there is none.
+    #[inline(always)]
+    pub const fn is_none(&self) -> bool {
+        self.since_start.is_none() && self.repeating.turn.is_none()
+    }
+
+    /// What laws that are added give together at a time.
+    #[inline(always)]
+    pub fn sum(&self, time_s: N) -> N {
+        let sum = together(self.since_start.value(time_s), self.repeating.value(time_s), N::add);
+        sum.unwrap_or(time_s.of(0.0))
+    }
+
+    /// What laws that multiply give together at a time, neither of them less than `least`; none where there is no law.
+    #[inline(always)]
+    pub fn product(&self, time_s: N, least: f64) -> Option<N> {
+        let since_start = self.since_start.value_at_least(least, time_s);
+        together(since_start, self.repeating.value_at_least(least, time_s), N::mul)
     }
 }
 
@@ -135,9 +163,9 @@ mod tests {
             assert!((course.rate(turn + 0.5) - 1.0).abs() < 1e-9 && (course.rate(turn + 3.5) + 1.0).abs() < 1e-9);
         }
         let both = [law(LawArgument::Time, [0.5, 0.5, 0.5]), repeating];
-        assert!((Course::at(&both, LawPlace::Pack1).product(1.0, 0.0) - 1.0).abs() < 1e-12);
+        assert!((Course::at(&both, LawPlace::Pack1).product(1.0, 0.0).unwrap() - 1.0).abs() < 1e-12);
         assert!((longest_step_s(&both) - 0.2).abs() < 1e-12);
         let elsewhere = Course::at(&both, LawPlace::Pack2);
-        assert!(elsewhere.is_none() && (elsewhere.sum(1.0), elsewhere.product(1.0, 0.0)) == (0.0, 1.0));
+        assert!(elsewhere.is_none() && (elsewhere.sum(1.0), elsewhere.product(1.0, 0.0)) == (0.0, None));
     }
 }

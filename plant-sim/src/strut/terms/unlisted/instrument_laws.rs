@@ -2,8 +2,9 @@
 
 use super::argument::LawArgument;
 use super::course::Course;
-use super::law::{Remembered, UnlistedLaw, law_at};
+use super::law::{UnlistedLaw, find, law_at};
 use super::place::LawPlace;
+use super::remembered::Remembered;
 use crate::strut::characteristic::Characteristic;
 use crate::strut::motion::Motion;
 use crate::strut::terms::sensor::lag;
@@ -14,7 +15,7 @@ pub(in crate::strut) struct InstrumentLaws {
     reading: Option<Characteristic>,
     time: Course,
     rate: Option<Characteristic>,
-    change: Option<Remembered>,
+    change: Remembered,
 }
 
 fn value(law: Option<&Characteristic>, argument: f64) -> f64 {
@@ -36,7 +37,7 @@ impl InstrumentLaws {
             reading: at(LawArgument::Reading),
             time: Course::at(laws, LawPlace::instrument(column)?),
             rate: at(LawArgument::ReadingRate),
-            change: Remembered::at(laws, LawPlace::instrument(column)?, LawArgument::ReadingChange),
+            change: Remembered::of(find(laws, LawPlace::instrument(column)?, LawArgument::ReadingChange)),
         };
         let is_none = own.reading.is_none() && own.time.is_none() && own.rate.is_none() && own.change.is_none();
         (!is_none).then_some(own)
@@ -46,11 +47,11 @@ impl InstrumentLaws {
     pub fn record(&self, times_s: &[f64], signal: &mut [f64]) {
         let begin_s = times_s.first().copied().unwrap_or(0.0);
         let last = signal.len().saturating_sub(1);
-        let keeps_truth = self.rate.is_some() || self.change.is_some();
+        let keeps_truth = self.rate.is_some() || !self.change.is_none();
         let truth = if keeps_truth { signal.to_vec() } else { vec![] };
         let mut mean = truth.clone();
-        if let Some(law) = &self.change {
-            lag::record(law.time_constant_s, times_s, &mut mean);
+        if !self.change.is_none() {
+            lag::record(self.change.time_constant_s, times_s, &mut mean);
         }
         for (k, (reading, t)) in signal.iter_mut().zip(times_s).enumerate() {
             let mut added = value(self.reading.as_ref(), *reading) + self.time.sum(t - begin_s);
@@ -60,8 +61,8 @@ impl InstrumentLaws {
                     added += law.value((truth[b] - truth[a]) / (times_s[b] - times_s[a]));
                 }
             }
-            if let Some(law) = &self.change {
-                added += law.table.value(truth[k] - mean[k]);
+            if keeps_truth {
+                added += self.change.table.value(truth[k] - mean[k]).unwrap_or(0.0);
             }
             *reading += added;
         }

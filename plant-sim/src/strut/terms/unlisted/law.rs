@@ -188,37 +188,12 @@ pub(in crate::strut::terms) fn check_all(laws: &[UnlistedLaw]) -> Result<(), Inv
 
 /// The table of the law at a place over a quantity, if there is one.
 pub(in crate::strut) fn law_at(laws: &[UnlistedLaw], place: LawPlace, over: LawArgument) -> Option<Characteristic> {
-    laws.iter()
-        .find(|law| law.place == place && law.depends_on == over)
-        .map(UnlistedLaw::characteristic)
+    find(laws, place, over).map(UnlistedLaw::characteristic)
 }
 
-/// A law with a memory as the solver reads it.
-#[derive(Debug, Clone)]
-pub(super) struct Remembered {
-    pub table: Characteristic,
-    pub time_constant_s: f64,
-}
-
-impl Remembered {
-    /// A law that has a time constant.
-    pub fn of(law: &UnlistedLaw) -> Option<Self> {
-        Some(Self {
-            table: law.characteristic(),
-            time_constant_s: law.time_constant_s?,
-        })
-    }
-
-    /// The law at a place over a quantity, if there is one.
-    pub fn at(laws: &[UnlistedLaw], place: LawPlace, over: LawArgument) -> Option<Self> {
-        (laws.iter().find(|law| law.place == place && law.depends_on == over)).and_then(Self::of)
-    }
-
-    /// What an implicit step of a duration (s) leaves of what is remembered, 0 to 1.
-    #[inline]
-    pub fn left(&self, duration_s: f64) -> f64 {
-        1.0 / (1.0 + duration_s / self.time_constant_s)
-    }
+/// The law at a place over a quantity, if there is one.
+pub(super) fn find(laws: &[UnlistedLaw], place: LawPlace, over: LawArgument) -> Option<&UnlistedLaw> {
+    laws.iter().find(|law| law.place == place && law.depends_on == over)
 }
 
 #[cfg(test)]

@@ -17,7 +17,8 @@
 //! | `place` | where a law may act, on what it may depend there, and what its value does |
 //! | `argument` | the quantities |
 //! | `law` | the table in a model file and its check |
-//! | `path_laws`, `chamber_laws`, `seal_law` | the tables as the solver reads them, at the places of the network |
+//! | `law_table`, `remembered` | the table as the solver reads it, of one strut or of several side by side; with a memory |
+//! | `path_laws`, `chamber_laws`, `seal_law` | the tables at the places of the network |
 //! | `compressibility` | the equation of state of a gas that a law says |
 //! | `course` | laws over time, which two kinds of argument state: time since the start, and the phase of an oscillation |
 //! | `instrument_laws` | what instruments add to their readings |
@@ -28,8 +29,10 @@ mod compressibility;
 mod course;
 mod instrument_laws;
 mod law;
+mod law_table;
 mod path_laws;
 mod place;
+mod remembered;
 mod seal_law;
 
 pub use argument::LawArgument;
@@ -41,8 +44,9 @@ pub(in crate::strut) use compressibility::Compressibility;
 pub(in crate::strut) use course::{Course, longest_step_s};
 pub(in crate::strut) use instrument_laws::InstrumentLaws;
 pub(in crate::strut) use law::law_at;
+pub(in crate::strut) use law_table::LawTable;
 pub(in crate::strut) use path_laws::{
-    GasLawAnswer, GasLawInputs, PathLaws, passed, throttle, throttled, valve_in_time,
+    GasLawInputs, PathLaws, passed, presliding_m3, throttle, throttled, valve_in_time,
 };
 pub(in crate::strut) use seal_law::SealLaw;
 

@@ -36,6 +36,8 @@ pub struct Fit {
     pub(super) held_out: Arc<OnceLock<HeldOut>>,
     /// Cost of all recordings, each predicted by a fit of the others, once somebody has asked.
     pub(super) whole_recordings: Arc<OnceLock<f64>>,
+    /// Noise ratio that the model would reach if it were complete, once somebody has asked.
+    pub(super) floor: Arc<OnceLock<f64>>,
 }
 
 /// A model judged on each fold by a fit that the fold had no say in.
@@ -68,6 +70,7 @@ impl Fit {
             converged: true,
             held_out: Arc::default(),
             whole_recordings: Arc::default(),
+            floor: Arc::default(),
         }
     }
 

@@ -32,7 +32,7 @@ pub fn held_out<'f>(fitted: &'f Fit, problem: &LeastSquares<'_>) -> &'f HeldOut 
 /// True if a model is complete by the blocks that it was fitted to, and not by their held-out cost in the linear approximation.
 fn decides_completeness(fitted: &Fit, problem: &LeastSquares<'_>, cost: f64, cost_held_out: f64) -> bool {
     let residuals = problem.residuals() as f64;
-    let most = problem.complete_up_to(&fitted.point);
+    let most = problem.complete_up_to(fitted);
     (cost / residuals).sqrt() <= most && (cost_held_out / residuals).sqrt() > most
 }
 

@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicBool;
 
 use super::blocks::{Block, Blocks};
 use super::evaluation::Evaluation;
+use super::fit::Fit;
 use super::point::Point;
 use crate::criteria::Criteria;
 use crate::error::DiagnoseError;
@@ -76,19 +77,20 @@ impl<'a> LeastSquares<'a> {
         self.specimen().simulates_in_milliseconds() && few_folds
     }
 
-    /// Noise ratio that a model at a point would reach if it were complete.
+    /// Noise ratio that a fitted model would reach if it were complete; computed once for each fit.
     #[must_use]
-    pub fn floor(&self, point: &Point) -> f64 {
-        self.specimen().noise_floor(&point.hypothesis(self.specimen()))
+    pub fn floor(&self, fitted: &Fit) -> f64 {
+        let specimen = self.specimen();
+        *(fitted.floor).get_or_init(|| specimen.noise_floor(&fitted.point.hypothesis(specimen)))
     }
 
-    /// Noise ratio up to which a model at a point counts as complete.
+    /// Noise ratio up to which a fitted model counts as complete.
     #[must_use]
-    pub fn complete_up_to(&self, point: &Point) -> f64 {
+    pub fn complete_up_to(&self, fitted: &Fit) -> f64 {
         let completeness = &self.criteria.completeness;
         completeness
             .noise_ratio
-            .max(completeness.over_floor * self.floor(point))
+            .max(completeness.over_floor * self.floor(fitted))
     }
 
     /// Number of residuals: all values of the channels that were measured.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::effect::{Candidate, ShowsIn, of};
 use crate::error::DiagnoseError;
-use crate::estimation::{LeastSquares, fit};
+use crate::estimation::LeastSquares;
 use crate::search::Selection;
 use crate::specimen::{Series, Specimen, StateSeries};
 use crate::vocabulary::{Column, Place, Site, State};
@@ -46,7 +46,7 @@ const SHARP: f64 = 0.8;
 /// Locations of every effect that was found and of the unexplained misfit, with the largest share first.
 ///
 /// # Errors
-/// As the fit without an effect.
+/// As the simulation of a model without an effect.
 pub fn locate(
     problem: &LeastSquares<'_>,
     selection: &Selection,
@@ -65,12 +65,7 @@ pub fn locate(
     let states = states(specimen, every(specimen));
     let mut out = Vec::new();
     for effect in &selection.effects {
-        let Some(position) = selection.best.point.effects.iter().position(|&e| e == effect.candidate) else {
-            continue;
-        };
-        let start = selection.best.point.without_effect(specimen, position);
-        let without = fit(problem, start, problem.criteria.fitting.quick)?;
-        let without = Arc::new(problem.evaluation.residuals_at(&without.point)?);
+        let without = Arc::new(problem.evaluation.residuals_at(&effect.without)?);
         let share = ((total(&without) - total(improved)) / excess).clamp(0.0, 1.0);
         for (place, channels, part) in places(specimen, &specimen.candidates()[effect.candidate], &without, improved) {
             let found = strongest(specimen, &states, &channels, &without, improved);

@@ -213,11 +213,9 @@ impl Oscillations {
         let stretch = (nearby / 4).max(1);
         let usual: Vec<f64> = (0..shown.div_ceil(stretch))
             .map(|s| {
-                let middle = s * stretch + stretch / 2;
-                let (from, to) = (middle.saturating_sub(nearby).max(1), (middle + nearby).min(shown));
-                let mut values = power.get(from..to).unwrap_or_default().to_vec();
-                values.sort_by(f64::total_cmp);
-                values.get(values.len() / 2).copied().unwrap_or(0.0) / LN_2
+                let at = s * stretch + stretch / 2;
+                let (from, to) = (at.saturating_sub(nearby).max(1), (at + nearby).min(shown));
+                middle(power.get(from..to).unwrap_or_default().to_vec()) / LN_2
             })
             .collect();
         for (k, p) in power.iter_mut().enumerate() {
@@ -296,9 +294,16 @@ impl Oscillations {
 
 /// Standard deviation of values about zero, from the median of their size.
 fn deviation_of_middle(values: &[f64]) -> f64 {
-    let mut sizes: Vec<f64> = values.iter().map(|v| v.abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    1.4826 * sizes.get(sizes.len() / 2).copied().unwrap_or(0.0)
+    1.4826 * middle(values.iter().map(|v| v.abs()).collect())
+}
+
+/// The middle one of values, the upper of two; 0 where there is none.
+fn middle(mut values: Vec<f64>) -> f64 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// The sum of as many exponentially distributed powers, of mean one, that noise seldom exceeds. A line is where a law may begin; whether there is

@@ -41,6 +41,7 @@ impl Selector<'_, '_> {
                 candidate,
                 gain,
                 ratio_without: self.noise_ratio(without),
+                without: less.point,
                 rival,
             });
         }

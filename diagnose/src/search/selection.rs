@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::evidence::HeldOutGain;
 use super::power::LeastSize;
-use crate::estimation::Fit;
+use crate::estimation::{Fit, Point};
 
 /// Told what is being done, and the fraction of the work that is done, 0 to 1.
 pub type Progress<'a> = &'a (dyn Fn(&str, f64) + Sync);
@@ -53,7 +53,9 @@ pub struct SelectedEffect {
     pub candidate: usize,
     /// Gain over the best model without it.
     pub gain: HeldOutGain,
-    /// Held-out noise ratio of the best model without it.
+    /// The best model without it.
+    pub without: Point,
+    /// Its held-out noise ratio.
     pub ratio_without: f64,
     /// The strongest rival, fitted in its place; `None` where none could be fitted.
     pub rival: Option<Rival>,

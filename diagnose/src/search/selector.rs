@@ -197,12 +197,12 @@ impl<'p, 'a> Selector<'p, 'a> {
 
     /// Noise ratio that a fitted model would reach if it were complete.
     pub fn floor(&self, fit: &Fit) -> f64 {
-        self.problem.floor(&fit.point)
+        self.problem.floor(fit)
     }
 
     /// Noise ratio up to which a fitted model counts as complete.
     pub fn complete_up_to(&self, fit: &Fit) -> f64 {
-        self.problem.complete_up_to(&fit.point)
+        self.problem.complete_up_to(fit)
     }
 }
 

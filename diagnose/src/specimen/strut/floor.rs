@@ -4,7 +4,7 @@
 //! p1. How much follows from the recordings themselves: their smoothed motion with noise of the stated size added once
 //! more and smoothed once more, both simulated. Only what exceeds this floor is unexplained.
 
-use oleo_plant_sim::strut::{Inputs, StrutModel, replay};
+use oleo_plant_sim::strut::{Inputs, Prediction, Replay, StrutModel, replay_all};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -40,21 +40,25 @@ pub fn drawn_again(inputs: &Inputs, noise_m: &dyn Fn(usize) -> f64, step_m: Opti
         .collect()
 }
 
-/// Mean square of the difference that displacement noise makes, in units of the channels' noise, and the number of values.
+/// Square of the difference that displacement noise makes between the two motions of each pair, in units of the channels' noise, and the number
+/// of values; `None` where the model cannot be simulated.
 #[must_use]
-pub fn excess(
+pub fn excesses(
     model: &StrutModel,
-    inputs: &Inputs,
-    jittered: &Inputs,
+    pairs: &[[&Inputs; 2]],
     layout: Layout,
     channels: &[Channel],
-) -> Option<(f64, usize)> {
-    let (mut sum, mut count) = (0.0, 0);
-    for (difference, channel) in differences(model, inputs, jittered, layout)?.iter().zip(channels) {
-        sum += difference.iter().map(|d| d * d).sum::<f64>() / (channel.noise * channel.noise);
-        count += difference.len();
-    }
-    Some((sum, count))
+) -> Vec<Option<(f64, usize)>> {
+    let square = |difference: &[f64], channel: &Channel| {
+        difference.iter().map(|d| d * d).sum::<f64>() / (channel.noise * channel.noise)
+    };
+    let excess = |differences: Series| {
+        let squares = differences.iter().zip(channels).map(|(d, channel)| square(d, channel));
+        (squares.sum(), differences.iter().map(Vec::len).sum())
+    };
+    (differences_of_all(model, pairs, layout).into_iter())
+        .map(|differences| differences.map(excess))
+        .collect()
 }
 
 /// Root mean square of a series around each sample.
@@ -75,14 +79,33 @@ pub fn local_deviation(series: &[f64]) -> Vec<f64> {
 
 /// What two motions make different, every recorded channel, in the unit of its column; `None` if the model cannot be simulated.
 #[must_use]
-pub fn differences(model: &StrutModel, one: &Inputs, other: &Inputs, layout: Layout) -> Option<Series> {
-    let (a, b) = (replay(model, one).ok()?, replay(model, other).ok()?);
-    let series = |p: &oleo_plant_sim::strut::Prediction| {
-        let [p1, p2, p3, p4] = p.pressure_pa.clone();
-        layout.recorded(vec![p.force_n.clone(), p1, p2, p3, p4])
-    };
+pub fn differences(model: &StrutModel, pair: [&Inputs; 2], layout: Layout) -> Option<Series> {
+    differences_of_all(model, &[pair], layout).pop().flatten()
+}
+
+/// The same of each pair of motions. All are simulated together, which takes less time.
+fn differences_of_all(model: &StrutModel, pairs: &[[&Inputs; 2]], layout: Layout) -> Vec<Option<Series>> {
+    let wanted: Vec<Replay<'_>> = (pairs.iter().flatten())
+        .map(|inputs| Replay {
+            model,
+            inputs,
+            with_course: false,
+        })
+        .collect();
+    let mut simulated = replay_all(&wanted).into_iter().map(|replayed| {
+        let Prediction {
+            force_n,
+            pressure_pa: [p1, p2, p3, p4],
+        } = replayed.ok()?.prediction;
+        Some(layout.recorded(vec![force_n, p1, p2, p3, p4]))
+    });
     let difference = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
-    Some(series(&a).iter().zip(&series(&b)).map(difference).collect())
+    (pairs.iter())
+        .map(|_| {
+            let (a, b) = (simulated.next().flatten(), simulated.next().flatten());
+            Some(a?.iter().zip(&b?).map(difference).collect())
+        })
+        .collect()
 }
 
 #[cfg(test)]
@@ -107,9 +130,10 @@ mod tests {
         let mean = |noise: f64| {
             let drawn = drawn_again(&inputs, &|_| noise, None);
             let jittered = Inputs::from_recording(&inputs.time_s, &drawn, &inputs.signals, noise);
-            excess(&model, &inputs, &jittered, Layout::RIG, &channels).map(|(s, n)| s / n as f64)
+            let (sum, count) = excesses(&model, &[[&inputs, &jittered]], Layout::RIG, &channels)[0].expect("simulated");
+            sum / count as f64
         };
-        let (none, some, more) = (mean(0.0).unwrap(), mean(5e-6).unwrap(), mean(2e-5).unwrap());
+        let (none, some, more) = (mean(0.0), mean(5e-6), mean(2e-5));
         // A motion that was smooth is changed a little by being smoothed once more, also without noise.
         assert!(none < 0.01 && some > none && more > 2.0 * some, "{none} {some} {more}");
     }

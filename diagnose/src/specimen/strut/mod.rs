@@ -115,7 +115,7 @@ impl TwoStageStrut {
         }
         let drawn: Vec<Option<Series>> = (0..self.inputs.len())
             .into_par_iter()
-            .map(|r| floor::differences(&self.model, &self.inputs[r], &self.jittered()[r], self.layout))
+            .map(|r| floor::differences(&self.model, [&self.inputs[r], &self.jittered()[r]], self.layout))
             .collect();
         for (r, differences) in drawn.iter().enumerate() {
             for (c, series) in differences.iter().flatten().enumerate() {
@@ -198,7 +198,7 @@ impl TwoStageStrut {
         let believed = self.as_given();
         let mut sums = vec![Unknown::default(); self.channels.len()];
         for (r, (best, possible)) in self.inputs.iter().zip(possible).enumerate() {
-            let Some(differences) = floor::differences(&self.model, best, possible, self.layout) else {
+            let Some(differences) = floor::differences(&self.model, [best, possible], self.layout) else {
                 continue;
             };
             let Ok(simulated) = self.simulate(&believed, r) else {
@@ -443,12 +443,14 @@ impl Specimen for TwoStageStrut {
             return FLOOR_OF_POOR_MOTION;
         }
         let model = self.applied(hypothesis);
-        let excesses: Vec<(f64, usize)> = (self.inputs.par_iter())
-            .zip(self.jittered())
-            .filter_map(|(as_is, jittered)| floor::excess(&model, as_is, jittered, self.layout, &self.channels))
+        let pairs: Vec<[&Inputs; 2]> = (self.inputs.iter().zip(self.jittered()))
+            .map(|(as_is, jittered)| [as_is, jittered])
+            .collect();
+        let excesses: Vec<Option<(f64, usize)>> = (pairs.par_chunks(SIMULATIONS_AT_ONCE / 4))
+            .flat_map_iter(|pairs| floor::excesses(&model, pairs, self.layout, &self.channels))
             .collect();
         // Summed in order, so that the figure has the same bits on any number of threads.
-        let (sum, count) = (excesses.iter()).fold((0.0, 0), |(sum, count), (s, c)| (sum + s, count + c));
+        let (sum, count) = (excesses.iter().flatten()).fold((0.0, 0), |(sum, count), (s, c)| (sum + s, count + c));
         (1.0 + sum / count.max(1) as f64).sqrt()
     }
 

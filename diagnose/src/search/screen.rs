@@ -10,11 +10,15 @@
 //! | `look` | the recordings on which a candidate is looked at |
 //! | `steps` | the steps of a candidate to its best values |
 //! | `starts` | where candidates begin, and which of them go on |
+//! | `law` | the same of a law without a name, by its shape |
+//! | `swing` | the same of a law that swings in time, by its frequency |
 
 mod beside;
+mod law;
 mod look;
 mod starts;
 mod steps;
+mod swing;
 
 pub use beside::{Screen, ScreenedCandidate, cost_of, finished};
 pub use starts::promising;

@@ -1,28 +1,14 @@
 //! Where candidates begin, how the promising ones go on, and what became of all of them.
 
-use std::f64::consts::FRAC_PI_2;
-
-use nalgebra::DVector;
 use rayon::prelude::*;
 
 use super::beside::{Screen, ScreenedCandidate, cost_of, finished, is_gross};
 use super::look::Look;
-use super::steps::{Linearised, RESPONSE_DAMPING};
 use crate::criteria::Screening;
 use crate::error::DiagnoseError;
-use crate::estimation::bounded_step::bounded_step;
-use crate::estimation::normal_equations::sum;
-use crate::estimation::{Fit, Point, Sensitivity};
-use crate::search::oscillation::{Line, Oscillations};
+use crate::estimation::{Fit, Point};
 use crate::search::sizes::starting_sizes;
 use crate::specimen::Series;
-use crate::vocabulary::Column;
-
-/// What the residual of the model so far holds at single frequencies.
-struct Swings {
-    oscillations: Oscillations,
-    lines: Vec<Line>,
-}
 
 /// A candidate after its first steps from its own starts, and larger sizes of it with the cost of each, the lowest first.
 struct Begun {
@@ -101,7 +87,7 @@ impl Screen<'_, '_> {
     }
 
     /// Where a candidate is looked at before it is known to be promising. What no simulation is needed for is looked at everywhere.
-    fn first_look(&self, candidate: usize) -> &Look<'_> {
+    pub(super) fn first_look(&self, candidate: usize) -> &Look<'_> {
         match &self.most {
             Some(most) if !self.leaves_physics_alone(candidate) => most,
             _ => &self.all,
@@ -109,7 +95,7 @@ impl Screen<'_, '_> {
     }
 
     /// Where the shape of a law or its frequency is chosen.
-    fn regression_look(&self, candidate: usize) -> &Look<'_> {
+    pub(super) fn regression_look(&self, candidate: usize) -> &Look<'_> {
         match &self.half {
             Some(half) if !self.leaves_physics_alone(candidate) => half,
             _ => self.first_look(candidate),
@@ -163,154 +149,9 @@ impl Screen<'_, '_> {
         Ok(best)
     }
 
-    /// A law after its first steps. At size zero a law changes nothing, so that there the answer of the recordings to its size is that of a
-    /// regression, whatever its other numbers, its *shape*, are. The shape that explains most is stepped from; the other starts of this shape are
-    /// larger sizes, which are simulated too.
-    fn begin_law(
-        &self,
-        look: &Look<'_>,
-        candidate: usize,
-        starts: &[&Vec<f64>],
-    ) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
-        let (specimen, fit) = (self.specimen(), self.fit);
-        let parameters = &specimen.candidates()[candidate].parameters;
-        let shape_of = |values: &[f64]| -> Vec<f64> {
-            (parameters.iter().zip(values))
-                .map(|(p, v)| if p.is_size { 0.0 } else { *v })
-                .collect()
-        };
-        let mut shapes: Vec<Vec<f64>> = Vec::new();
-        for start in starts {
-            let shape = shape_of(start);
-            if !shapes.contains(&shape) {
-                shapes.push(shape);
-            }
-        }
-        // A law of the instrument of the displacement works the motion out anew, which rounds otherwise: by as much as a slow law changes in a
-        // derivative, so that this starts from what is simulated with the law.
-        let changes_motion = specimen.candidates()[candidate].place.sensor() == Some(&Column::DISPLACEMENT);
-        let begun_at = |look: &Look<'_>, shape: &[f64]| {
-            let known = (!changes_motion).then_some(look.truths.as_slice());
-            self.at(look, fit.point.with_effect(specimen, candidate, shape), known)
-        };
-        let regression = if shapes.len() > 1 {
-            self.regression_look(candidate)
-        } else {
-            look
-        };
-        let mut best: Option<(f64, Vec<f64>, Linearised)> = None;
-        for shape in shapes {
-            let begun = begun_at(regression, &shape)?;
-            let left = self.left_by_linear_step(&begun.candidate);
-            if best.as_ref().is_none_or(|(least, ..)| left < *least) {
-                best = Some((left, shape, begun));
-            }
-        }
-        let Some((_, shape, mut begun)) = best else {
-            return Ok(None);
-        };
-        if regression.truths.len() < look.truths.len() {
-            begun = begun_at(look, &shape)?;
-        }
-        self.step(look, &mut begun)?;
-        let mut candidate_at_best = begun.candidate;
-        for start in starts
-            .iter()
-            .filter(|start| shape_of(start) == shape && ***start != shape)
-        {
-            let point = fit.point.with_effect(specimen, candidate, start);
-            match self.cost_at(look, &point) {
-                Ok(tried) if tried.cost < candidate_at_best.cost => {
-                    candidate_at_best = self.at(look, point, tried.truths.as_deref())?.candidate;
-                }
-                Ok(_) | Err(DiagnoseError::Simulation { .. }) => {}
-                Err(other) => return Err(other),
-            }
-        }
-        if parameters.iter().any(|p| !p.is_size) {
-            candidate_at_best.arrived = false;
-            self.advance(
-                look,
-                &mut candidate_at_best,
-                self.problem.criteria.screening.first_steps,
-            )?;
-        }
-        Ok(Some(candidate_at_best))
-    }
-
-    fn swings(&self) -> Swings {
-        let oscillations = Oscillations::of(self.specimen());
-        let lines = oscillations.lines_of_channels(&self.residuals());
-        Swings { oscillations, lines }
-    }
-
-    fn residuals(&self) -> Vec<&Series> {
-        self.base.iter().map(|recording| &recording.residual).collect()
-    }
-
-    /// A law that swings after its first steps from the frequency that explains most; `None` where the residual holds no frequency that is not
-    /// the excitation's.
-    fn begin_oscillation(&self, candidate: usize, swings: &Swings) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
-        let specimen = self.specimen();
-        let (amplitude, look) = (self.fit.point.z.len(), self.first_look(candidate));
-        let regression = self.regression_look(candidate);
-        let numbers = &specimen.candidates()[candidate].parameters;
-        // Of amplitude zero. A law that swings shortens the steps of the simulation, so that also the truth is simulated with it, once for a
-        // frequency.
-        let answers =
-            |look: &Look<'_>, frequency_hz: f64, phases: &[f64]| -> Result<Vec<Vec<Sensitivity>>, DiagnoseError> {
-                let evaluation = &look.evaluation;
-                let at = |phase| (self.fit.point).with_effect(specimen, candidate, &[0.0, phase, frequency_hz]);
-                let simulated = if numbers[0].instrument_only {
-                    None
-                } else {
-                    Some(evaluation.truths(&at(FRAC_PI_2))?)
-                };
-                let truths = simulated.as_deref().unwrap_or(&look.truths);
-                (phases.iter())
-                    .map(|&phase| evaluation.sensitivities(&at(phase), &[amplitude], Some(truths)))
-                    .collect()
-            };
-        let lowest = numbers[2].lower;
-        let envelopes: Vec<Series> = (answers(&self.all, lowest, &[FRAC_PI_2])?.into_iter().flatten())
-            .map(|mut s| s.columns.swap_remove(0))
-            .collect();
-        let mut lines = swings.oscillations.lines(&self.residuals(), &envelopes);
-        lines.extend(&swings.lines);
-        let mut best: Option<(f64, Vec<f64>)> = None;
-        for line in lines {
-            let f = line.frequency_hz;
-            let mut answers = answers(regression, f, &[0.0, FRAC_PI_2])?.into_iter();
-            let mut both = answers.next().unwrap_or_default();
-            for (both, cosine) in both.iter_mut().zip(answers.flatten()) {
-                both.columns.extend(cosine.columns);
-            }
-            let normals = self.extended(regression, &both);
-            let [prior, z] = [&self.fit.prior, &DVector::from_column_slice(&self.fit.point.z)]
-                .map(|own| own.clone().resize_vertically(amplitude + 2, 0.0));
-            let (h, g) = sum(&normals, &prior, z.as_slice());
-            let mut ranges = self.fit.point.ranges(specimen);
-            ranges.resize(amplitude + 2, (f64::NEG_INFINITY, f64::INFINITY));
-            let Some(step) = bounded_step(&h, &g, RESPONSE_DAMPING, z.as_slice(), &ranges) else {
-                continue;
-            };
-            let gain = 2.0 * g.dot(&step) - step.dot(&(&h * &step));
-            if best.as_ref().is_none_or(|(most, _)| gain > *most) {
-                let (a, b) = (step[amplitude], step[amplitude + 1]);
-                let size = numbers[0].value(libm::hypot(a, b));
-                best = Some((gain, vec![size, libm::atan2(b, a), f]));
-            }
-        }
-        let mut begun = None;
-        if let Some((_, start)) = best {
-            self.begin_at(look, candidate, &start, None, &mut begun)?;
-        }
-        Ok(begun)
-    }
-
     /// The first steps of a candidate from a start, kept if they lead lower than `best`. A start that cannot be simulated is
     /// passed over.
-    fn begin_at(
+    pub(super) fn begin_at(
         &self,
         look: &Look<'_>,
         candidate: usize,

@@ -98,7 +98,7 @@ impl TwoStageStrut {
             flaw: Flaw::NotRecorded,
         });
         instruments.findings.splice(0..0, absent);
-        let inputs = (recordings.iter().enumerate())
+        let inputs = (recordings.par_iter().enumerate())
             .map(|(k, r)| smoothed(&r.time_s, &r.columns[0], &layout.signals(r), &instruments, k))
             .collect();
         let mut strut = Self::with_layout(model, recordings, inputs, layout, instruments)?;

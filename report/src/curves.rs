@@ -252,10 +252,10 @@ impl Curves {
             layout[axis_key("yaxis", index)] = y_axis;
             shapes.extend(panel.shapes.into_iter().map(|shape| in_panel(shape, &y_name)));
             annotations.extend(panel.annotations.into_iter().map(|note| in_panel(note, &y_name)));
-            let middle = middle(&panel.series);
-            for series in panel.series {
+            let positions = name_positions(&panel.series);
+            for (series, position) in panel.series.into_iter().zip(positions) {
                 let first = !named.contains(&series.name);
-                traces.push(series.into_trace(&y_name, first, middle, &mut named));
+                traces.push(series.into_trace(&y_name, first, position, &mut named));
             }
         }
         layout["shapes"] = json!(shapes);
@@ -272,8 +272,8 @@ impl Curves {
 }
 
 impl Series {
-    /// `middle` is the middle of the panel's horizontal axis: a name stands on the side of its point where there is more room.
-    fn into_trace(self, y_axis: &str, in_legend: bool, middle: f64, named: &mut Vec<String>) -> Box<dyn Trace> {
+    /// `position` is where its name stands if it is one of points with names.
+    fn into_trace(self, y_axis: &str, in_legend: bool, position: Position, named: &mut Vec<String>) -> Box<dyn Trace> {
         let colour = colour(self.colour);
         let line = match self.style {
             Style::Dashed => Line::new().dash(DashType::Dash),
@@ -287,7 +287,6 @@ impl Series {
             _ => Mode::Lines,
         };
         let name = escape_plotly(&self.name);
-        let at_first = self.x.first().copied();
         let mut trace = Scatter::new(self.x, self.y)
             .name(&name)
             .legend_group(&name)
@@ -303,10 +302,6 @@ impl Series {
             trace = trace.hover_info(HoverInfo::Skip);
         }
         if self.style == Style::NamedPoints {
-            let position = match at_first {
-                Some(x) if x > middle => Position::TopLeft,
-                _ => Position::TopRight,
-            };
             trace = trace
                 .text_array(vec![in_lines(&self.name)])
                 .text_position(position)
@@ -372,10 +367,40 @@ fn in_panel(mut item: Value, y_name: &str) -> Value {
     item
 }
 
-/// Half-way between the least and the greatest place of all series.
-fn middle(series: &[Series]) -> f64 {
-    let places = || series.iter().flat_map(|series| series.x.iter().copied());
-    0.5 * (places().fold(f64::INFINITY, f64::min) + places().fold(f64::NEG_INFINITY, f64::max))
+/// How close above a point another one must be for its name to be in the way, as parts of the panel's width and height.
+const IN_THE_WAY: [f64; 2] = [0.2, 0.15];
+
+/// Where the names of points stand: on the side where there is more room, and below their point where another point with a name is close above.
+fn name_positions(series: &[Series]) -> Vec<Position> {
+    let range = |of: fn(&Series) -> &Vec<f64>| {
+        let all = || series.iter().flat_map(move |series| of(series).iter().copied());
+        let (least, most) = (
+            all().fold(f64::INFINITY, f64::min),
+            all().fold(f64::NEG_INFINITY, f64::max),
+        );
+        (0.5 * (least + most), most - least)
+    };
+    let ((middle, width), (_, height)) = (range(|series| &series.x), range(|series| &series.y));
+    let first = |series: &Series| Some((series.x.first().copied()?, series.y.first().copied()?));
+    let named: Vec<(f64, f64)> = (series.iter())
+        .filter(|series| series.style == Style::NamedPoints)
+        .filter_map(first)
+        .collect();
+    let is_in_the_way = |(x, y): (f64, f64), (other_x, other_y): (f64, f64)| {
+        let [beside, above] = [(other_x - x).abs() / width, (other_y - y) / height];
+        above > 0.0 && above < IN_THE_WAY[1] && beside < IN_THE_WAY[0]
+    };
+    (series.iter())
+        .map(|series| match first(series) {
+            Some(at) => match (named.iter().any(|&other| is_in_the_way(at, other)), at.0 > middle) {
+                (false, false) => Position::TopRight,
+                (false, true) => Position::TopLeft,
+                (true, false) => Position::BottomRight,
+                (true, true) => Position::BottomLeft,
+            },
+            None => Position::TopRight,
+        })
+        .collect()
 }
 
 fn turns_back(x: &[f64]) -> bool {
@@ -439,6 +464,23 @@ mod tests {
         assert_eq!(drawing["layout"]["shapes"][1]["xref"], "x domain");
         assert_eq!(drawing["data"][0]["y"][1], Value::Null);
         assert_eq!(drawing["data"][1]["line"]["dash"], "dash");
+    }
+
+    #[test]
+    fn the_name_of_a_point_stands_where_there_is_room() {
+        let mut curves = Curves::new("Settings", Axis::new("Ride", ""));
+        let panel = curves.panel(Axis::new("Roll", ""));
+        for (name, x, y) in [
+            ("high", 1.0, 3.0),
+            ("above", 1.0, 1.1),
+            ("below", 1.02, 1.0),
+            ("stiff", 3.0, 1.0),
+        ] {
+            panel.series(Style::NamedPoints, name, &[x], &[y]);
+        }
+        let drawing = serde_json::to_value(curves.into_figure().drawing).expect("plain data");
+        let positions: Vec<&Value> = (0..4).map(|k| &drawing["data"][k]["textposition"]).collect();
+        assert_eq!(positions, ["top right", "top right", "bottom right", "top left"]);
     }
 
     #[test]

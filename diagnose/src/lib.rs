@@ -68,6 +68,7 @@ pub mod free_run;
 pub mod instrument;
 pub mod json;
 pub mod locate;
+mod median;
 pub mod one_a_thread;
 pub mod page;
 pub mod parameter;

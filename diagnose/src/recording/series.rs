@@ -1,5 +1,7 @@
 //! The samples of one recording.
 
+use crate::median::median;
+
 /// Even or nearly even samples of one specimen.
 #[derive(Debug, Clone)]
 pub struct Recording {
@@ -48,10 +50,5 @@ impl Recording {
 /// Median of the steps of time, s; 0 for fewer than two samples.
 #[must_use]
 pub fn median_interval(time_s: &[f64]) -> f64 {
-    let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
-    if steps.is_empty() {
-        return 0.0;
-    }
-    let middle = steps.len() / 2;
-    *steps.select_nth_unstable_by(middle, f64::total_cmp).1
+    median(time_s.windows(2).map(|w| w[1] - w[0]).collect())
 }

@@ -15,6 +15,7 @@ use std::f64::consts::{LN_2, TAU};
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
+use crate::median::median;
 use crate::specimen::{Series, Specimen};
 
 /// Highest frequency that is searched, Hz. Above are the mains, which the instruments are asked for.
@@ -213,9 +214,9 @@ impl Oscillations {
         let stretch = (nearby / 4).max(1);
         let usual: Vec<f64> = (0..shown.div_ceil(stretch))
             .map(|s| {
-                let at = s * stretch + stretch / 2;
-                let (from, to) = (at.saturating_sub(nearby).max(1), (at + nearby).min(shown));
-                middle(power.get(from..to).unwrap_or_default().to_vec()) / LN_2
+                let middle = s * stretch + stretch / 2;
+                let (from, to) = (middle.saturating_sub(nearby).max(1), (middle + nearby).min(shown));
+                median(power.get(from..to).unwrap_or_default().to_vec()) / LN_2
             })
             .collect();
         for (k, p) in power.iter_mut().enumerate() {
@@ -294,16 +295,7 @@ impl Oscillations {
 
 /// Standard deviation of values about zero, from the median of their size.
 fn deviation_of_middle(values: &[f64]) -> f64 {
-    1.4826 * middle(values.iter().map(|v| v.abs()).collect())
-}
-
-/// The middle one of values, the upper of two; 0 where there is none.
-fn middle(mut values: Vec<f64>) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    1.4826 * median(values.iter().map(|v| v.abs()).collect())
 }
 
 /// The sum of as many exponentially distributed powers, of mean one, that noise seldom exceeds. A line is where a law may begin; whether there is

@@ -45,12 +45,6 @@ impl Rate {
     }
 }
 
-/// The middle one of figures, the upper of two; 0 where there is none.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,8 +3,9 @@
 use serde::Serialize;
 use strum::VariantArray;
 
+use crate::median::median;
 use crate::selftest::flaw::Flaw;
-use crate::selftest::statistics::{Rate, median};
+use crate::selftest::statistics::Rate;
 use crate::selftest::trial::{Reported, Trial};
 
 /// What was said of campaigns whose instruments have a flaw.

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::effect::in_struts;
-use crate::selftest::statistics::{Rate, median};
+use crate::median::median;
+use crate::selftest::statistics::Rate;
 use crate::selftest::trial::Trial;
 use crate::vocabulary::EffectId;
 

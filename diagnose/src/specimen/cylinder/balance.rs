@@ -4,6 +4,7 @@
 use oleo_plant_sim::specimen::CylinderModel;
 
 use crate::excitation::pressing;
+use crate::median::median;
 use crate::recording::Recording;
 
 /// Slower than this part of the fastest is rest, faster than three times that is motion.
@@ -31,8 +32,8 @@ pub fn remarks(model: &CylinderModel, recording: &Recording, speed: &[f64]) -> V
     let (low, high) = (pressing.iter()).fold((f64::MAX, f64::MIN), |(a, b), &v| (a.min(v), b.max(v)));
     let half_way = 0.5 * (low + high);
     let beyond = |wanted: &dyn Fn(usize) -> bool| {
-        let mut values: Vec<f64> = (0..n).filter(|&k| wanted(k)).map(|k| force[k] - net[k]).collect();
-        median(&mut values)
+        let values: Vec<f64> = (0..n).filter(|&k| wanted(k)).map(|k| force[k] - net[k]).collect();
+        (values.len() >= LEAST_SAMPLES).then(|| median(values))
     };
     let moving = |k: usize, sign: f64| speed[k] * sign > 3.0 * REST * fastest;
     let mut out = Vec::new();
@@ -65,11 +66,6 @@ pub fn remarks(model: &CylinderModel, recording: &Recording, speed: &[f64]) -> V
         ));
     }
     out
-}
-
-fn median(values: &mut [f64]) -> Option<f64> {
-    let middle = values.len() / 2;
-    (values.len() >= LEAST_SAMPLES).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// Delay in samples, between samples by a parabola, at which changes correlate best, and that correlation.

@@ -12,7 +12,11 @@ const STEPS_PER_TURN: f64 = 20.0;
 /// Phase of an oscillation at a time, turns, from 0 up to 1.
 #[inline]
 pub(in crate::strut) fn phase(frequency_hz: f64, time_s: f64) -> f64 {
-    let turns = frequency_hz * time_s;
+    part_of_turn(frequency_hz * time_s)
+}
+
+#[inline]
+fn part_of_turn(turns: f64) -> f64 {
     turns - turns.floor()
 }
 
@@ -63,8 +67,7 @@ impl<N: Number> Repeating<N> {
         if self.turn.is_none() {
             return None;
         }
-        let turns = self.frequency_hz * time_s;
-        self.turn.value(turns.map(|turns| turns - turns.floor()))
+        self.turn.value((self.frequency_hz * time_s).map(part_of_turn))
     }
 
     /// The same, where less than a bound counts as the bound.

@@ -5,6 +5,7 @@
 use oleo_interface::Absolute;
 
 use super::nitrogen::{Nitrogen, State};
+use super::settled::settled;
 use super::terms::Compressibility;
 
 /// Specific gas constant of nitrogen, J/kg/K (recordings README).
@@ -103,14 +104,13 @@ impl EquationOfState {
     /// The same where the pressure over the density has a further part (Pa m3/kg). By Newton's method; a step never takes more than half of
     /// the density, so that an equation that a fit tries cannot lead to a density that is none.
     fn density_with(&self, pressure: Absolute<f64>, temperature_k: f64, added: f64) -> f64 {
-        let mut density = pressure.pa() / (self.gas_constant() * temperature_k);
-        for _ in 0..ROUNDS {
+        let ideal = pressure.pa() / (self.gas_constant() * temperature_k);
+        settled(ideal, ROUNDS, |density| {
             let at = self.state(density, temperature_k);
             let missing = pressure.pa() - at.pressure.pa() - added * density;
             let step = missing / (at.dp_drho_pa_m3_kg + added);
-            density += step.clamp(-0.5 * density, density);
-        }
-        density
+            density + step.clamp(-0.5 * density, density)
+        })
     }
 }
 

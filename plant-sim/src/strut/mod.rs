@@ -62,6 +62,7 @@ mod rod_course;
 mod rod_forces;
 mod rod_state;
 mod run;
+mod settled;
 mod side_by_side;
 mod smoothing;
 mod terms;

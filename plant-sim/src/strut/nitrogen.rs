@@ -13,6 +13,8 @@ use std::sync::{Arc, LazyLock};
 
 use oleo_interface::Absolute;
 
+use super::settled::settled;
+
 /// Gas constant of the reference equation, J/kg/K.
 const R: f64 = 8.31451 / 0.028_013_48;
 const CRITICAL_K: f64 = 126.192;
@@ -200,12 +202,11 @@ impl Nitrogen {
     /// Density at a pressure (up to 60 MPa) and a temperature (K), kg/m3, by Newton's method.
     #[must_use]
     pub fn density(&self, pressure: Absolute<f64>, temperature: f64) -> f64 {
-        let mut density = pressure.pa() / (self.gas_constant * temperature);
-        for _ in 0..20 {
+        let ideal = pressure.pa() / (self.gas_constant * temperature);
+        settled(ideal, 20, |density| {
             let at = self.state(density, temperature);
-            density -= (at.pressure - pressure) / at.dp_drho_pa_m3_kg;
-        }
-        density
+            density - (at.pressure - pressure) / at.dp_drho_pa_m3_kg
+        })
     }
 }
 

@@ -7,6 +7,7 @@ use super::layout::Network;
 use super::state::State;
 use crate::strut::gas::GasState;
 use crate::strut::pressure::ATMOSPHERE_PA;
+use crate::strut::settled::settled;
 
 impl Network {
     /// The state at rest: ambient temperature (K), valves open for long, no flow. Both accumulators are connected.
@@ -37,21 +38,18 @@ impl Network {
         if displacement_m == 0.0 {
             return at_static;
         }
+        let static_m3 = [0, 1].map(|i| self.paths[i].gas.volume_at(at_static.absolute()));
         let taken_up = |p: f64| {
-            let gas = |i: usize| {
-                let gas = &self.paths[i].gas;
-                gas.volume_at(at_static.absolute()) - gas.volume_at(Gauge(p).absolute())
-            };
+            let gas = |i: usize| static_m3[i] - self.paths[i].gas.volume_at(Gauge(p).absolute());
             let oil_by_pressure = self.chamber.oil_volume_m3 * self.chamber.compressibility_1_pa;
             gas(0) + gas(1) + oil_by_pressure * (p - at_static.pa())
         };
         let pushed_in = self.chamber.area_m2 * displacement_m;
-        let mut p = at_static.pa();
-        for _ in 0..30 {
+        Gauge(settled(at_static.pa(), 30, |p| {
             let dp = 1e-4 * Gauge(p).absolute().pa();
-            let slope = (taken_up(p + dp) - taken_up(p)) / dp;
-            p = (p + (pushed_in - taken_up(p)) / slope).clamp(LOWEST_PA, HIGHEST_PA);
-        }
-        Gauge(p)
+            let here = taken_up(p);
+            let slope = (taken_up(p + dp) - here) / dp;
+            (p + (pushed_in - here) / slope).clamp(LOWEST_PA, HIGHEST_PA)
+        }))
     }
 }

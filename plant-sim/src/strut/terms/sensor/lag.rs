@@ -21,13 +21,40 @@ pub const EQUATION: Equation = Equation {
 pub fn record(tau_s: f64, times_s: &[f64], signal: &mut [f64]) {
     let mut state = signal.first().copied().unwrap_or(0.0);
     let mut before = state;
+    let mut decays = Decays::of(tau_s);
     for i in 1..signal.len() {
         let dt = times_s[i] - times_s[i - 1];
-        let (decay, slope) = (libm::exp(-dt / tau_s), (signal[i] - before) / dt);
+        let (decay, slope) = (decays.over(dt), (signal[i] - before) / dt);
         // Response to a ramp from `before`: it follows tau late.
         state = (state - before + slope * tau_s) * decay + signal[i] - slope * tau_s;
         before = signal[i];
         signal[i] = state;
+    }
+}
+
+/// What is left of a difference after an interval. Those of evenly sampled recordings differ in their last digit only, so that the last two are remembered.
+struct Decays {
+    tau_s: f64,
+    known: [(f64, f64); 2],
+}
+
+impl Decays {
+    const fn of(tau_s: f64) -> Self {
+        Self {
+            tau_s,
+            known: [(0.0, 1.0); 2],
+        }
+    }
+
+    fn over(&mut self, dt_s: f64) -> f64 {
+        if self.known[0].0 != dt_s {
+            self.known.swap(0, 1);
+        }
+        let [(over_s, decay), _] = &mut self.known;
+        if *over_s != dt_s {
+            (*over_s, *decay) = (dt_s, libm::exp(-dt_s / self.tau_s));
+        }
+        *decay
     }
 }
 
@@ -55,6 +82,14 @@ mod tests {
         // The signal is linear between samples, so the step is a ramp of one sample: about its middle.
         let exact = |t: f64| 1.0 - libm::exp(-(t - 0.001) / 0.02);
         assert!((step[30] - exact(t[30])).abs() < 1e-3, "{} {}", step[30], exact(t[30]));
+    }
+
+    #[test]
+    fn what_is_left_is_that_of_each_interval() {
+        let mut decays = Decays::of(0.02);
+        for dt in [0.005, 0.006, 0.005, 0.006, 0.004, 0.006, 0.005] {
+            assert_eq!(decays.over(dt), libm::exp(-dt / 0.02));
+        }
     }
 
     #[test]

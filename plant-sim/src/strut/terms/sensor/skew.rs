@@ -1,6 +1,6 @@
 //! `sensor_skew`: an instrument whose clock is late, `y(t) = x(t - s)`.
 
-use super::interpolate::interpolate;
+use super::interpolate::Places;
 use crate::model_file::{Quantity, Range};
 use crate::strut::motion::Motion;
 use crate::strut::terms::equation::Equation;
@@ -21,8 +21,9 @@ pub const EQUATION: Equation = Equation {
 /// What the instrument shows of a true signal.
 pub fn record(late_s: f64, times_s: &[f64], signal: &mut [f64]) {
     let truth = signal.to_vec();
+    let mut places = Places::over(times_s);
     for (shown, t) in signal.iter_mut().zip(times_s) {
-        *shown = interpolate(times_s, &truth, t - late_s);
+        *shown = places.find(t - late_s).of(&truth);
     }
 }
 
@@ -38,10 +39,17 @@ pub fn undo(late_s: f64, times_s: &[f64], motion: &mut Motion) {
         .collect();
     let before: Vec<f64> = at_rest.clone().chain(shown.iter().map(|s| s.to_m_s)).collect();
     let after: Vec<f64> = shown.iter().map(|s| s.from_m_s).chain(at_rest).collect();
-    for (segment, time) in motion.segments.iter_mut().zip(times_s.windows(2)) {
-        segment.to_m = interpolate(times_s, &displacement, time[1] + late_s);
-        segment.to_m_s = interpolate(times_s, &before, time[1] + late_s);
-        segment.from_m_s = interpolate(times_s, &after, time[0] + late_s);
+    let mut places = Places::over(times_s);
+    let mut times = times_s.iter().map(|time| time + late_s);
+    let Some(mut from) = times.next().map(|time| places.find(time)) else {
+        return;
+    };
+    for (segment, time) in motion.segments.iter_mut().zip(times) {
+        let to = places.find(time);
+        segment.to_m = to.of(&displacement);
+        segment.to_m_s = to.of(&before);
+        segment.from_m_s = from.of(&after);
+        from = to;
     }
 }
 

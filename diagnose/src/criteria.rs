@@ -78,6 +78,9 @@ impl Default for Fitting {
 pub struct Screening {
     /// Steps that every candidate gets, from each of its starts; a law only from the shape that explains most in a regression.
     pub first_steps: usize,
+    /// Where the noise ratio of the model so far is gross, the first steps look at the recordings that hold this part of its cost. An effect that only shows in
+    /// the others is found once they hold more.
+    pub part_for_first_steps: f64,
     /// Candidates are also started at sizes up to the largest possible where the noise ratio of the model so far is above
     /// this. The bound limits the time of the search; what it costs below has not been measured.
     pub gross_noise_ratio: f64,
@@ -113,6 +116,7 @@ impl Default for Screening {
     fn default() -> Self {
         Self {
             first_steps: 1,
+            part_for_first_steps: 0.7,
             gross_noise_ratio: 10.0,
             size_overshoot: 1.5,
             sizes_refined: 2,

@@ -32,6 +32,8 @@ pub struct Fit {
     pub screened: bool,
     /// False if the fit ended before its last step gained as little as was asked for.
     pub converged: bool,
+    /// By how much the steps with the last derivatives lowered the cost.
+    pub(super) gained: f64,
     /// The folds left out in turn, once somebody has asked ([`super::held_out`]).
     pub(super) held_out: Arc<OnceLock<HeldOut>>,
     /// Cost of all recordings, each predicted by a fit of the others, once somebody has asked.
@@ -68,6 +70,7 @@ impl Fit {
             sensitivities: None,
             screened: false,
             converged: true,
+            gained: 0.0,
             held_out: Arc::default(),
             whole_recordings: Arc::default(),
             floor: Arc::default(),

@@ -14,6 +14,7 @@ use super::normal_equations::{assemble, sum, total_cost, with_residuals};
 use super::point::Point;
 use crate::criteria::Effort;
 use crate::error::DiagnoseError;
+use crate::specimen::Series;
 
 /// Steps with one Jacobian: a step costs one simulation, a Jacobian one for each parameter.
 const STEPS_PER_JACOBIAN: usize = 4;
@@ -51,11 +52,27 @@ pub fn fit(problem: &LeastSquares<'_>, start: Point, effort: Effort) -> Result<F
     fit_from(problem, Start::at(problem, start)?, effort)
 }
 
+/// A fit that goes on where another one ended. Where that one had converged by its own measure, the derivatives of its last steps serve on, and what was gained
+/// with them counts, so that both together end where one fit would have ended.
+///
+/// # Errors
+/// As [`fit()`].
+pub fn carried_on(problem: &LeastSquares<'_>, from: Fit, effort: Effort) -> Result<Fit, DiagnoseError> {
+    if !from.converged {
+        return fit(problem, from.point, effort);
+    }
+    let gained = from.gained;
+    let start = Start::of(problem, from)?;
+    fit_from(problem, Start { gained, ..start }, effort)
+}
+
 /// A point with residuals and derivatives, from which a model may be fitted to more than one choice of blocks. It is large.
 #[derive(Clone)]
 pub struct Start {
     point: Point,
     sensitivities: Vec<Sensitivity>,
+    /// By how much steps with these derivatives have lowered the cost already.
+    gained: f64,
 }
 
 impl Start {
@@ -71,7 +88,26 @@ impl Start {
         }
         let all: Vec<usize> = (0..point.z.len()).collect();
         let sensitivities = problem.evaluation.sensitivities(&point, &all, None)?;
-        Ok(Self { point, sensitivities })
+        Ok(Self {
+            point,
+            sensitivities,
+            gained: 0.0,
+        })
+    }
+
+    /// Where a fit has ended. Its derivatives, where it still has them, are those from which its last steps were taken.
+    ///
+    /// # Errors
+    /// As [`fit()`].
+    pub fn of(problem: &LeastSquares<'_>, fitted: Fit) -> Result<Self, DiagnoseError> {
+        let Some(kept) = fitted.sensitivities else {
+            return Self::at(problem, fitted.point);
+        };
+        Ok(Self {
+            point: fitted.point,
+            sensitivities: Arc::unwrap_or_clone(kept),
+            gained: 0.0,
+        })
     }
 }
 
@@ -84,6 +120,7 @@ pub fn fit_from(problem: &LeastSquares<'_>, start: Start, effort: Effort) -> Res
     let Start {
         mut point,
         mut sensitivities,
+        mut gained,
     } = start;
     let (prior, ranges) = (point.prior(specimen), point.ranges(specimen));
     let all: Vec<usize> = (0..point.z.len()).collect();
@@ -91,12 +128,13 @@ pub fn fit_from(problem: &LeastSquares<'_>, start: Start, effort: Effort) -> Res
     let mut cost = total_cost(&normals) + point.prior_cost(specimen);
     let mut damping = DAMPING.0;
     let mut converged = false;
+    let mut truths: Option<Vec<Series>> = None;
     for round in 0..effort.linearisations {
         if round > 0 {
-            sensitivities = evaluation.sensitivities(&point, &all, None)?;
+            sensitivities = evaluation.sensitivities(&point, &all, truths.as_deref())?;
             normals = assemble(blocks, &sensitivities);
+            gained = 0.0;
         }
-        let before_round = cost;
         for step in 0..STEPS_PER_JACOBIAN {
             let (h, g) = sum(&normals, &prior, &point.z);
             let before_step = cost;
@@ -113,17 +151,18 @@ pub fn fit_from(problem: &LeastSquares<'_>, start: Start, effort: Effort) -> Res
                 if trial == point {
                     break;
                 }
-                let residuals = match evaluation.residuals_at(&trial) {
-                    Ok(residuals) => residuals,
+                let there = match evaluation.truths(&trial) {
+                    Ok(there) => there,
                     Err(DiagnoseError::Simulation { .. }) => {
                         damping *= DAMPING_UP;
                         continue;
                     }
                     Err(other) => return Err(other),
                 };
+                let residuals = evaluation.residuals(&evaluation.observed(&trial, &there));
                 let trial_cost = problem.cost(&trial, &residuals);
                 if trial_cost < cost {
-                    (point, cost) = (trial, trial_cost);
+                    (point, cost, truths) = (trial, trial_cost, Some(there));
                     for (s, residual) in sensitivities.iter_mut().zip(residuals) {
                         s.residual = residual;
                     }
@@ -133,11 +172,12 @@ pub fn fit_from(problem: &LeastSquares<'_>, start: Start, effort: Effort) -> Res
                 }
                 damping *= DAMPING_UP;
             }
+            gained += before_step - cost;
             if before_step - cost < effort.tolerance * cost {
                 break;
             }
         }
-        if before_round - cost < TOLERANCES_PER_JACOBIAN * effort.tolerance * cost {
+        if gained < TOLERANCES_PER_JACOBIAN * effort.tolerance * cost {
             converged = true;
             break;
         }
@@ -145,6 +185,7 @@ pub fn fit_from(problem: &LeastSquares<'_>, start: Start, effort: Effort) -> Res
     Ok(Fit {
         sensitivities: Some(Arc::new(sensitivities)),
         converged,
+        gained,
         ..Fit::new(point, normals, prior, cost, ranges)
     })
 }
@@ -191,6 +232,47 @@ mod tests {
         assert!((near[1] - 2.3).abs() < 0.003 && left < 1.06, "{near:?} {left}");
         let (far, left) = fitted(&recipe, &[(VIBRATION, &[0.02, 1.5])]);
         assert!((far[1] - 2.3).abs() > 0.3 && left > 1.5, "{far:?} {left}");
+    }
+
+    #[test]
+    fn a_fit_that_is_carried_on_ends_where_one_fit_would_have_ended_and_saves_derivatives() {
+        let truth = vec![(VIBRATION, vec![0.1, 2.3])];
+        let specimen = Recipe {
+            truth,
+            ..Recipe::default()
+        }
+        .make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let (quick, converged) = (problem.criteria.fitting.quick, problem.criteria.fitting.converged);
+        let start = Point::nominal(&specimen).with_effect(&specimen, VIBRATION, &[0.08, 2.298]);
+        let counted = |fit: &dyn Fn() -> Fit| {
+            let before = problem.evaluation.simulated();
+            (fit(), problem.evaluation.simulated() - before)
+        };
+        let one = fit(&problem, start.clone(), converged).expect("a fit");
+        let ends_there = |fit: &Fit| {
+            let from_one = (fit.point.z.iter().zip(&one.point.z)).map(|(a, b)| (a - b).abs());
+            assert!(
+                fit.converged && from_one.fold(0.0, f64::max) < 1e-3,
+                "{:?} {:?}",
+                fit.point.z,
+                one.point.z
+            );
+        };
+        // One that has not converged is fitted anew, one that has goes on with its derivatives.
+        for (linearisations, saves) in [(1, false), (quick.linearisations, true)] {
+            let effort = Effort {
+                linearisations,
+                ..quick
+            };
+            let from = fit(&problem, start.clone(), effort).expect("a fit");
+            assert_eq!(from.converged, saves);
+            let (on, simulated) = counted(&|| carried_on(&problem, from.clone(), converged).expect("a fit"));
+            let (anew, simulated_anew) = counted(&|| fit(&problem, from.point.clone(), converged).expect("a fit"));
+            ends_there(&on);
+            ends_there(&anew);
+            assert_eq!(simulated < simulated_anew, saves, "{simulated} {simulated_anew}");
+        }
     }
 
     #[test]

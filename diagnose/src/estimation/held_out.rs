@@ -59,7 +59,7 @@ fn refitted(
 ) -> HeldOut {
     let mut costs = vec![f64::INFINITY; fitted.normals.len()];
     let mut points = Vec::with_capacity(parts);
-    let start = Start::at(problem, fitted.point.clone()).ok();
+    let start = Start::of(problem, fitted.clone()).ok();
     for part in 0..parts {
         let rest = problem.keeping(|b| part_of(b) != part);
         let refit = start.clone().and_then(|start| fit_from(&rest, start, effort).ok());

@@ -30,7 +30,7 @@ pub mod point;
 pub use blocks::{Block, Blocks};
 pub use evaluation::{Evaluation, Sensitivity};
 pub use fit::{Fit, HeldOut};
-pub use gauss_newton::fit;
+pub use gauss_newton::{carried_on, fit};
 pub use held_out::{cost_of_whole_recordings, held_out};
 pub use least_squares::LeastSquares;
 pub use normal_equations::NormalEquations;

@@ -9,11 +9,10 @@
 
 use std::collections::BTreeSet;
 
-use super::screen::Screen;
-use super::selector::{Open, Screened, Selector, ranked, reached};
+use super::selector::{Open, Screened, Selector, cost_reached, ranked, reached};
 use crate::error::DiagnoseError;
+use crate::estimation::Fit;
 use crate::estimation::covariance::covariance;
-use crate::estimation::{Fit, fit};
 
 /// A model with the candidates that were screened beside it.
 #[derive(Clone, Copy)]
@@ -81,7 +80,7 @@ impl Selector<'_, '_> {
         let mut beam: Vec<Fit> = ranked(base.screened)
             .into_iter()
             .take(seeds)
-            .map(|(_, fit)| fit)
+            .map(|(_, fit)| fit.clone())
             .collect();
         for size in 2..=largest.min(room) {
             let grown = self.grown(beam, open)?;
@@ -94,21 +93,23 @@ impl Selector<'_, '_> {
     }
 
     /// Each model with each further candidate screened beside it, the lowest cost first and each set of effects once.
-    fn grown(&self, beam: Vec<Fit>, open: Open) -> Result<Vec<Fit>, DiagnoseError> {
+    fn grown(&mut self, beam: Vec<Fit>, open: Open) -> Result<Vec<Fit>, DiagnoseError> {
         let mut known = BTreeSet::new();
         let mut all = Vec::new();
         for start in beam {
-            let seed = match fit(self.problem, start.point, self.criteria().fitting.quick) {
-                Ok(seed) => seed,
-                Err(DiagnoseError::Simulation { .. }) => continue,
-                Err(other) => return Err(other),
+            let Some(seed) = self.fitted_quickly(&start.point)? else {
+                continue;
             };
             let new = |c: &usize| !known.contains(&sorted(&seed.point.effects, Some(*c)));
             let open: Vec<usize> = self.open(&seed.point, open).into_iter().filter(new).collect();
             known.extend(open.iter().map(|c| sorted(&seed.point.effects, Some(*c))));
-            let fits = Screen::new(self.problem, &seed)?.all(&open)?;
-            let screened: Vec<Screened> = open.into_iter().zip(fits).collect();
-            all.extend(ranked(&screened));
+            let screened = self.screen_in_passing(&seed, open)?;
+            all.extend(
+                screened
+                    .into_iter()
+                    .filter_map(|(_, fit)| fit)
+                    .map(|fit| (cost_reached(&fit), fit)),
+            );
         }
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         Ok(all.into_iter().map(|(_, fit)| fit).collect())

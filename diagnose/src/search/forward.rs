@@ -41,7 +41,7 @@ impl Selector<'_, '_> {
             let fraction = self.least_fraction(candidate, criteria.acceptance.least_fraction);
             // A screened fit is linear in the model's own parameters, so that single blocks may look worse than they are: its
             // gain must be large, not certain.
-            let gain = self.gain(before, &reached(&start));
+            let gain = self.gain(before, &reached(start));
             if !gain.is_large(fraction, criteria.screening.margin, &criteria.acceptance) {
                 continue;
             }
@@ -61,9 +61,10 @@ impl Selector<'_, '_> {
             );
             let quick_cost: f64 = reached_quickly.iter().sum();
             if !large || winner.as_ref().is_some_and(|(cost, _)| quick_cost > *cost) {
+                self.remember_quick(start.point.clone(), quick);
                 continue;
             }
-            let Some(full) = self.fitted_if_simulated(quick.point)? else {
+            let Some(full) = self.carried_on(quick)? else {
                 continue;
             };
             if self.is_too_small(&full, candidate) {

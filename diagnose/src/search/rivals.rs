@@ -22,7 +22,8 @@ impl Selector<'_, '_> {
         let costs = self.held_out(best);
         let mut effects = Vec::new();
         let mut better: Option<(f64, Fit)> = None;
-        for (position, &candidate) in best.point.effects.iter().enumerate() {
+        // The effect that joined last first: what was screened before it joined is still remembered.
+        for (position, &candidate) in best.point.effects.iter().enumerate().rev() {
             let less = self.fitted(best.point.without_effect(self.specimen(), position))?;
             let without = self.held_out(&less);
             let gain = self.gain(without, costs);
@@ -70,9 +71,9 @@ impl Selector<'_, '_> {
         let rival = start.point.effects.last().copied().unwrap_or(candidate);
         let total: f64 = self.held_out(best).iter().sum();
         let full = if cost - total < self.criteria().rivalry.contender * gain {
-            self.fitted(start.point)?
+            self.fitted(start.point.clone())?
         } else {
-            start
+            start.clone()
         };
         Ok(Some((rival, full)))
     }

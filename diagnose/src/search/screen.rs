@@ -21,4 +21,4 @@ mod steps;
 mod swing;
 
 pub use beside::{Screen, ScreenedCandidate, cost_of, finished};
-pub use starts::promising;
+pub use starts::{go_on, promising};

@@ -5,7 +5,7 @@
 
 use std::collections::{BTreeMap, VecDeque};
 
-use super::screen::{Screen, ScreenedCandidate, cost_of, finished, promising};
+use super::screen::{Screen, ScreenedCandidate, cost_of, finished, go_on, promising};
 use crate::error::DiagnoseError;
 use crate::estimation::{Fit, LeastSquares, Point};
 
@@ -24,6 +24,11 @@ struct Beside {
 }
 
 impl Screenings {
+    /// Whether candidates were screened beside a model lately.
+    pub fn know(&self, model: &Point) -> bool {
+        self.beside.iter().any(|beside| beside.model == *model)
+    }
+
     /// Every candidate added alone to a fitted model, in the order given; `None` where it cannot be simulated at all. The promising of them get
     /// further steps.
     ///
@@ -55,16 +60,20 @@ impl Screenings {
         let promising: Vec<usize> = (promising(&costs, fit, &problem.criteria.screening).into_iter())
             .map(|k| candidates[k])
             .collect();
-        let is_behind = |c: &usize| known[c].as_ref().is_some_and(|c| !c.advanced);
-        if promising.iter().any(is_behind) {
+        let go_on = go_on(
+            promising.iter().filter_map(|c| known[c].as_ref()),
+            fit,
+            &problem.criteria.screening,
+        );
+        if go_on.contains(&true) {
             let screen = match screen {
                 Some(screen) => screen,
                 None => Screen::new(problem, fit)?,
             };
-            let behind = (known.iter_mut())
+            let promising = (known.iter_mut())
                 .filter(|(c, _)| promising.contains(c))
                 .map(|(_, screened)| screened);
-            screen.advance_all(behind.filter(|c| c.as_ref().is_some_and(|c| !c.advanced)))?;
+            screen.advance_all(promising)?;
         }
         let fits = (candidates.iter())
             .map(|c| known[c].as_ref().map(|c| finished(problem, fit, c)))

@@ -1,14 +1,15 @@
 //! What all steps of the search share: fits that are made once, candidates that may be added, and judgement on held-out
 //! blocks.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 
 use super::evidence::HeldOutGain;
+use super::screen::Screen;
 use super::screenings::Screenings;
 use crate::criteria::Criteria;
 use crate::effect::Candidate;
 use crate::error::DiagnoseError;
-use crate::estimation::{Fit, LeastSquares, Point, cost_of_whole_recordings, fit, held_out};
+use crate::estimation::{Fit, LeastSquares, Point, carried_on, cost_of_whole_recordings, fit, held_out};
 use crate::specimen::{Folding, Specimen};
 
 /// What may join a model.
@@ -25,6 +26,9 @@ pub enum Open {
 /// A candidate and its screened fit; `None` where it cannot be simulated at all.
 pub type Screened = (usize, Option<Fit>);
 
+/// Most quick fits that are remembered: each holds its derivatives, some tens of megabytes.
+const MOST_QUICK: usize = 4;
+
 /// The search in progress.
 pub struct Selector<'p, 'a> {
     /// Specimen, blocks and thresholds.
@@ -33,6 +37,8 @@ pub struct Selector<'p, 'a> {
     testable: Vec<usize>,
     /// Fits already made, by their effects.
     known: BTreeMap<Vec<usize>, Fit>,
+    /// The last quick fits that nobody carried on, with their starts.
+    quick: VecDeque<(Point, Fit)>,
     /// Candidates already screened.
     screenings: Screenings,
 }
@@ -45,6 +51,7 @@ impl<'p, 'a> Selector<'p, 'a> {
             problem,
             testable: (0..all.len()).filter(|&c| all[c].untestable.is_none()).collect(),
             known: BTreeMap::new(),
+            quick: VecDeque::new(),
             screenings: Screenings::default(),
         }
     }
@@ -86,6 +93,9 @@ impl<'p, 'a> Selector<'p, 'a> {
     /// A fit that is carried only as far as is needed to judge whether it is worth carrying on; the converged one where it is known. `None`
     /// where the start cannot be simulated.
     pub fn fitted_quickly(&self, start: &Point) -> Result<Option<Fit>, DiagnoseError> {
+        if let Some((_, quick)) = self.quick.iter().find(|(from, _)| from == start) {
+            return Ok(Some(quick.clone()));
+        }
         if_simulated(match self.known_beside(start) {
             Ok(Some(known)) => Ok(known.clone()),
             Ok(None) => fit(self.problem, start.clone(), self.criteria().fitting.quick),
@@ -93,14 +103,39 @@ impl<'p, 'a> Selector<'p, 'a> {
         })
     }
 
+    /// Remembers a quick fit that is not worth carrying on, with its start, in case that combinations begin from it.
+    pub fn remember_quick(&mut self, start: Point, quick: Fit) {
+        self.quick.push_front((start, quick));
+        self.quick.truncate(MOST_QUICK);
+    }
+
+    /// The converged fit that a quick one leads to.
+    pub fn carried_on(&mut self, quick: Fit) -> Result<Option<Fit>, DiagnoseError> {
+        let effects = in_order(&quick.point);
+        if let Some(known) = self.known_unless(&effects, quick.cost) {
+            return Ok(Some(known.clone()));
+        }
+        let full = if_simulated(carried_on(self.problem, quick, self.criteria().fitting.converged))?;
+        if let Some(full) = &full {
+            self.known.insert(effects, full.without_sensitivities());
+        }
+        Ok(full)
+    }
+
     /// The known fit of the effects of a start, unless the start is better.
     fn known_beside(&self, start: &Point) -> Result<Option<&Fit>, DiagnoseError> {
-        let Some(known) = self.known.get(&in_order(start)) else {
+        let effects = in_order(start);
+        if !self.known.contains_key(&effects) {
             return Ok(None);
-        };
+        }
+        Ok(self.known_unless(&effects, self.problem.cost_at(start)?))
+    }
+
+    /// The known fit of some effects, unless this cost is lower by enough to matter.
+    fn known_unless(&self, effects: &[usize], cost: f64) -> Option<&Fit> {
         let acceptance = &self.criteria().acceptance;
-        let better = known.cost - acceptance.better_start * acceptance.least_gain;
-        Ok((self.problem.cost_at(start)? > better).then_some(known))
+        let matters = acceptance.better_start * acceptance.least_gain;
+        (self.known.get(effects)).filter(|known| cost > known.cost - matters)
     }
 
     /// Costs of the blocks, each held out.
@@ -182,6 +217,15 @@ impl<'p, 'a> Selector<'p, 'a> {
         Ok(candidates.into_iter().zip(fits).collect())
     }
 
+    /// The same beside a model that is only passed on the way to others: what is remembered of it is used, and nothing more is remembered.
+    pub fn screen_in_passing(&mut self, fit: &Fit, candidates: Vec<usize>) -> Result<Vec<Screened>, DiagnoseError> {
+        if self.screenings.know(&fit.point) {
+            return self.screen(fit, candidates);
+        }
+        let fits = Screen::new(self.problem, fit)?.all(&candidates)?;
+        Ok(candidates.into_iter().zip(fits).collect())
+    }
+
     /// Smallest fraction of the unexplained cost that a candidate must explain. A law without a name bends to much, and so
     /// does an instrument where the model stays incomplete: both must explain more.
     pub fn least_fraction(&self, candidate: usize, fraction: f64) -> f64 {
@@ -228,12 +272,90 @@ pub fn reached(fit: &Fit) -> Vec<f64> {
     fit.normals.iter().map(|n| n.cost).collect()
 }
 
+/// The sum of these.
+pub fn cost_reached(fit: &Fit) -> f64 {
+    fit.normals.iter().map(|n| n.cost).sum()
+}
+
 /// Screened fits with the costs that they reach, the lowest first.
-pub fn ranked(screened: &[Screened]) -> Vec<(f64, Fit)> {
-    let mut order: Vec<(f64, Fit)> = (screened.iter())
+pub fn ranked(screened: &[Screened]) -> Vec<(f64, &Fit)> {
+    let mut order: Vec<(f64, &Fit)> = (screened.iter())
         .filter_map(|(_, fit)| fit.as_ref())
-        .map(|fit| (reached(fit).iter().sum(), fit.clone()))
+        .map(|fit| (cost_reached(fit), fit))
         .collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
     order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analytic::{CUBIC, FRICTION, RUN, Recipe, VIBRATION};
+
+    /// Number of recordings that something simulates.
+    fn simulated(problem: &LeastSquares<'_>, work: impl FnOnce()) -> usize {
+        let before = problem.evaluation.simulated();
+        work();
+        problem.evaluation.simulated() - before
+    }
+
+    #[test]
+    fn what_was_fitted_quickly_or_screened_beside_a_model_is_not_simulated_again() {
+        let specimen = Recipe {
+            truth: vec![(CUBIC, vec![0.3])],
+            ..Recipe::default()
+        }
+        .make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut selector = Selector::new(&problem);
+        let start = Point::nominal(&specimen).with_effect(&specimen, FRICTION, &[0.05]);
+        let quick = selector.fitted_quickly(&start).expect("a fit").expect("a fit");
+        let beside_quick = |selector: &mut Selector<'_, '_>| {
+            let screened = selector
+                .screen_in_passing(&quick, vec![CUBIC, VIBRATION])
+                .expect("screened");
+            screened
+                .into_iter()
+                .map(|(c, fit)| (c, fit.map(|f| f.cost.to_bits())))
+                .collect::<Vec<_>>()
+        };
+        let in_passing = beside_quick(&mut selector);
+        assert!(simulated(&problem, || assert_eq!(beside_quick(&mut selector), in_passing)) > 0);
+        selector.screen(&quick, vec![CUBIC, VIBRATION]).expect("screened");
+        let again = simulated(&problem, || assert_eq!(beside_quick(&mut selector), in_passing));
+        assert_eq!(again, 0);
+
+        selector.remember_quick(start.clone(), quick.clone());
+        let again = simulated(&problem, || {
+            let known = selector.fitted_quickly(&start).expect("a fit").expect("a fit");
+            assert_eq!(known.point, quick.point);
+        });
+        assert_eq!(again, 0);
+        // Only a few are remembered.
+        for k in 0..MOST_QUICK {
+            let other = Point::nominal(&specimen).with_effect(&specimen, FRICTION, &[0.06 + 0.01 * k as f64]);
+            selector.remember_quick(other, quick.clone());
+        }
+        assert!(simulated(&problem, || drop(selector.fitted_quickly(&start))) > 0);
+    }
+
+    #[test]
+    fn a_quick_fit_that_is_no_better_than_the_known_one_is_not_carried_on() {
+        let specimen = Recipe {
+            truth: vec![(CUBIC, vec![0.3])],
+            ..Recipe::default()
+        }
+        .make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut selector = Selector::new(&problem);
+        let start = Point::nominal(&specimen).with_effect(&specimen, CUBIC, &[0.1]);
+        let quick = selector.fitted_quickly(&start).expect("a fit").expect("a fit");
+        let full = selector.carried_on(quick.clone()).expect("a fit").expect("a fit");
+        assert!(full.converged && full.cost <= quick.cost);
+        let again = simulated(&problem, || {
+            let known = selector.carried_on(quick).expect("a fit").expect("a fit");
+            assert_eq!(known.point, full.point);
+        });
+        assert_eq!(again, 0);
+    }
 }

@@ -41,8 +41,8 @@ pub struct ScreenedCandidate {
     pub(super) arrived: bool,
     /// True while it was looked at on those recordings only that hold most of what the model so far leaves.
     pub(super) partly: bool,
-    /// True once it got the steps of a promising candidate.
-    pub advanced: bool,
+    /// Steps that it was given as a promising candidate.
+    pub(super) further_steps: usize,
 }
 
 impl<'p, 'a> Screen<'p, 'a> {
@@ -58,7 +58,6 @@ impl<'p, 'a> Screen<'p, 'a> {
             let own: Vec<usize> = (0..fit.point.z.len()).collect();
             Arc::new(problem.evaluation.sensitivities(&fit.point, &own, Some(&all.truths))?)
         };
-        // What most recordings leave out is less than an effect must explain to be accepted.
         let gross = is_gross(problem, fit);
         let part = |part: f64| if gross { all.at_part(part, problem, fit) } else { None };
         Ok(Self {
@@ -66,7 +65,7 @@ impl<'p, 'a> Screen<'p, 'a> {
             fit,
             answering: Answering::of(&problem.blocks, &base),
             base,
-            most: part(1.0 - problem.criteria.acceptance.least_fraction),
+            most: part(problem.criteria.screening.part_for_first_steps),
             half: part(0.5),
             all,
         })

@@ -1,8 +1,8 @@
 //! The recordings on which a candidate is looked at.
 //!
-//! A gross effect shows in a few recordings far more than in the others: where the noise ratio is 100, two or three of ten often hold nine
+//! A gross effect shows in a few recordings far more than in the others: where the noise ratio is 100, two or three of ten often hold seven
 //! tenths of the cost. What only sorts out, such as the size of an effect to start from, is then asked of those that hold half of it; every candidate
-//! makes its first steps on those that hold nine tenths, with the others as the model so far leaves them; and the promising ones go on on all.
+//! makes its first steps on those that hold seven tenths, with the others as the model so far leaves them; and the promising ones go on on all.
 
 use crate::error::DiagnoseError;
 use crate::estimation::{Evaluation, Fit, LeastSquares};

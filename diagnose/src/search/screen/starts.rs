@@ -65,7 +65,7 @@ impl Screen<'_, '_> {
             .collect()
     }
 
-    /// Takes promising candidates on, on all recordings.
+    /// Takes promising candidates on, on all recordings, as long as they contend.
     ///
     /// # Errors
     /// [`DiagnoseError::Interrupted`] once the caller asked to stop.
@@ -73,17 +73,28 @@ impl Screen<'_, '_> {
         &self,
         promising: impl Iterator<Item = &'c mut Option<ScreenedCandidate>>,
     ) -> Result<(), DiagnoseError> {
-        let promising: Vec<&mut ScreenedCandidate> = promising.flatten().collect();
-        (promising.into_par_iter()).try_for_each(|candidate| {
-            candidate.advanced = true;
-            // What was seen of a few recordings has not arrived on all.
-            candidate.arrived &= !std::mem::take(&mut candidate.partly);
-            // A candidate whose derivatives cannot be simulated stays where its last step led.
-            match self.advance(&self.all, candidate, self.problem.criteria.screening.more_steps) {
-                Err(DiagnoseError::Simulation { .. }) => Ok(()),
-                other => other,
-            }
-        })
+        let screening = &self.problem.criteria.screening;
+        let mut promising: Vec<(&mut ScreenedCandidate, Option<Vec<Series>>)> =
+            promising.flatten().map(|candidate| (candidate, None)).collect();
+        for _ in 0..screening.more_steps {
+            let go_on = go_on(promising.iter().map(|(candidate, _)| &**candidate), self.fit, screening);
+            (promising.par_iter_mut().zip(go_on).filter(|(_, goes_on)| *goes_on)).try_for_each(
+                |((candidate, truths), _)| {
+                    candidate.further_steps += 1;
+                    // What was seen of a few recordings has not arrived on all.
+                    candidate.arrived &= !std::mem::take(&mut candidate.partly);
+                    match self.advance_once(&self.all, candidate, truths) {
+                        // A candidate whose derivatives cannot be simulated stays where its last step led.
+                        Err(DiagnoseError::Simulation { .. }) => {
+                            candidate.arrived = true;
+                            Ok(())
+                        }
+                        other => other,
+                    }
+                },
+            )?;
+        }
+        Ok(())
     }
 
     /// Where a candidate is looked at before it is known to be promising. What no simulation is needed for is looked at everywhere.
@@ -225,6 +236,30 @@ pub fn promising(costs: &[f64], fit: &Fit, screening: &Screening) -> Vec<usize> 
     order
 }
 
+/// Which of the promising candidates beside a fitted model get a further step: those that had none, and those that would be fitted as they are, because they
+/// are among the finalists or gain nearly as much as the best.
+pub fn go_on<'c>(
+    promising: impl Iterator<Item = &'c ScreenedCandidate> + Clone,
+    fit: &Fit,
+    screening: &Screening,
+) -> Vec<bool> {
+    let mut costs: Vec<f64> = promising.clone().map(|candidate| candidate.cost).collect();
+    costs.sort_by(f64::total_cmp);
+    let first = costs.first().copied().unwrap_or(f64::INFINITY);
+    let last_finalist = costs.get(screening.finalists.saturating_sub(1)).copied();
+    let least_gain = screening.gain_of_next_finalist * (fit.cost - first);
+    promising
+        .map(|candidate| {
+            let contends =
+                last_finalist.is_none_or(|last| candidate.cost <= last) || fit.cost - candidate.cost >= least_gain;
+            match candidate.further_steps {
+                0 => candidate.partly || !candidate.arrived,
+                steps => steps < screening.more_steps && !candidate.arrived && contends,
+            }
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -323,6 +358,50 @@ mod tests {
             (screen.most.is_some(), false),
             "an instrument is seen everywhere"
         );
+    }
+
+    #[test]
+    fn the_promising_go_on_as_long_as_they_contend() {
+        let specimen = with_cubic(0.3);
+        let (problem, calibrated) = calibrated(&specimen);
+        let screening = Screening {
+            finalists: 2,
+            gain_of_next_finalist: 0.5,
+            more_steps: 3,
+            ..problem.criteria.screening
+        };
+        let candidate = |gain: f64, further_steps: usize| ScreenedCandidate {
+            point: calibrated.point.clone(),
+            normals: vec![],
+            response: nalgebra::DVector::zeros(0),
+            cost: calibrated.cost - gain,
+            damping: 1.0,
+            arrived: false,
+            partly: false,
+            further_steps,
+        };
+        let goes_on = |candidates: &[ScreenedCandidate]| go_on(candidates.iter(), &calibrated, &screening);
+        // Everything promising gets one step.
+        let first: Vec<_> = [100.0, 90.0, 60.0, 10.0].map(|gain| candidate(gain, 0)).into();
+        assert_eq!(goes_on(&first), [true; 4]);
+        // Then the finalists and what gains half as much as the best.
+        let second: Vec<_> = [100.0, 90.0, 60.0, 10.0].map(|gain| candidate(gain, 1)).into();
+        assert_eq!(goes_on(&second), [true, true, true, false]);
+        let far_ahead: Vec<_> = [100.0, 9.0, 8.0].map(|gain| candidate(gain, 2)).into();
+        assert_eq!(goes_on(&far_ahead), [true, true, false]);
+        // Until it has arrived on all recordings, or had its steps.
+        let mut arrived = [
+            candidate(100.0, 1),
+            candidate(90.0, 3),
+            candidate(80.0, 0),
+            candidate(70.0, 0),
+        ];
+        for candidate in &mut arrived {
+            candidate.arrived = candidate.further_steps != 3;
+        }
+        arrived[3].partly = true;
+        assert_eq!(goes_on(&arrived), [false, false, false, true]);
+        assert_eq!(goes_on(&[]), [] as [bool; 0]);
     }
 
     #[test]

@@ -91,7 +91,7 @@ impl Screen<'_, '_> {
             damping: DAMPING.0,
             arrived: new.is_empty(),
             partly: look.truths.len() < self.all.truths.len(),
-            advanced: false,
+            further_steps: 0,
         };
         Ok(Linearised { candidate, added })
     }
@@ -139,23 +139,34 @@ impl Screen<'_, '_> {
         candidate: &mut ScreenedCandidate,
         steps: usize,
     ) -> Result<(), DiagnoseError> {
-        let mut truths: Option<Vec<Series>> = None;
+        let mut truths = None;
         for _ in 0..steps {
-            if candidate.arrived {
-                break;
-            }
-            let there = self.at(look, candidate.point.clone(), truths.as_deref())?;
-            let mut next = Linearised {
-                candidate: ScreenedCandidate {
-                    damping: candidate.damping,
-                    advanced: candidate.advanced,
-                    ..there.candidate
-                },
-                added: there.added,
-            };
-            truths = self.step(look, &mut next)?;
-            *candidate = next.candidate;
+            self.advance_once(look, candidate, &mut truths)?;
         }
+        Ok(())
+    }
+
+    /// Takes a candidate a step further, unless it has arrived. The true quantities where it is may be given; after it they are those at its end.
+    pub(super) fn advance_once(
+        &self,
+        look: &Look<'_>,
+        candidate: &mut ScreenedCandidate,
+        truths: &mut Option<Vec<Series>>,
+    ) -> Result<(), DiagnoseError> {
+        if candidate.arrived {
+            return Ok(());
+        }
+        let there = self.at(look, candidate.point.clone(), truths.as_deref())?;
+        let mut next = Linearised {
+            candidate: ScreenedCandidate {
+                damping: candidate.damping,
+                further_steps: candidate.further_steps,
+                ..there.candidate
+            },
+            added: there.added,
+        };
+        *truths = self.step(look, &mut next)?;
+        *candidate = next.candidate;
         Ok(())
     }
 

@@ -97,7 +97,7 @@ impl Selector<'_, '_> {
         let mut known = BTreeSet::new();
         let mut all = Vec::new();
         for start in beam {
-            let Some(seed) = self.fitted_quickly(&start.point)? else {
+            let Some(seed) = self.fits.quick(self.problem, &start.point)? else {
                 continue;
             };
             let new = |c: &usize| !known.contains(&sorted(&seed.point.effects, Some(*c)));

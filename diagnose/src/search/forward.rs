@@ -50,7 +50,7 @@ impl Selector<'_, '_> {
                 continue;
             }
             // Most of what a fit costs is its last few thousandths, which decide nothing about one that is far behind.
-            let Some(quick) = self.fitted_quickly(&start.point)? else {
+            let Some(quick) = self.fits.quick(self.problem, &start.point)? else {
                 continue;
             };
             let reached_quickly = reached(&quick);
@@ -61,10 +61,10 @@ impl Selector<'_, '_> {
             );
             let quick_cost: f64 = reached_quickly.iter().sum();
             if !large || winner.as_ref().is_some_and(|(cost, _)| quick_cost > *cost) {
-                self.remember_quick(start.point.clone(), quick);
+                self.fits.remember_quick(start.point.clone(), quick);
                 continue;
             }
-            let Some(full) = self.carried_on(quick)? else {
+            let Some(full) = self.fits.carried_on(self.problem, quick)? else {
                 continue;
             };
             if self.is_too_small(&full, candidate) {

@@ -20,6 +20,7 @@
 mod combinations;
 mod elimination;
 pub mod evidence;
+mod fits;
 mod forward;
 mod oscillation;
 mod power;

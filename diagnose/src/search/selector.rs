@@ -1,15 +1,14 @@
 //! What all steps of the search share: fits that are made once, candidates that may be added, and judgement on held-out
 //! blocks.
 
-use std::collections::{BTreeMap, VecDeque};
-
 use super::evidence::HeldOutGain;
+use super::fits::{Fits, if_simulated};
 use super::screen::Screen;
 use super::screenings::Screenings;
 use crate::criteria::Criteria;
 use crate::effect::Candidate;
 use crate::error::DiagnoseError;
-use crate::estimation::{Fit, LeastSquares, Point, carried_on, cost_of_whole_recordings, fit, held_out};
+use crate::estimation::{Fit, LeastSquares, Point, cost_of_whole_recordings, held_out};
 use crate::specimen::{Folding, Specimen};
 
 /// What may join a model.
@@ -26,19 +25,14 @@ pub enum Open {
 /// A candidate and its screened fit; `None` where it cannot be simulated at all.
 pub type Screened = (usize, Option<Fit>);
 
-/// Most quick fits that are remembered: each holds its derivatives, some tens of megabytes.
-const MOST_QUICK: usize = 4;
-
 /// The search in progress.
 pub struct Selector<'p, 'a> {
     /// Specimen, blocks and thresholds.
     pub problem: &'p LeastSquares<'a>,
     /// Candidates that the recordings can show.
     testable: Vec<usize>,
-    /// Fits already made, by their effects.
-    known: BTreeMap<Vec<usize>, Fit>,
-    /// The last quick fits that nobody carried on, with their starts.
-    quick: VecDeque<(Point, Fit)>,
+    /// Fits already made.
+    pub fits: Fits,
     /// Candidates already screened.
     screenings: Screenings,
 }
@@ -50,8 +44,7 @@ impl<'p, 'a> Selector<'p, 'a> {
         Self {
             problem,
             testable: (0..all.len()).filter(|&c| all[c].untestable.is_none()).collect(),
-            known: BTreeMap::new(),
-            quick: VecDeque::new(),
+            fits: Fits::default(),
             screenings: Screenings::default(),
         }
     }
@@ -73,69 +66,14 @@ impl<'p, 'a> Selector<'p, 'a> {
         &self.specimen().candidates()[index]
     }
 
-    /// The converged fit of a model. Each set of effects is fitted once, unless the start is better than the fit that is known:
-    /// that one had then ended in a local minimum.
+    /// The converged fit of a model, made once ([`Fits`]).
     pub fn fitted(&mut self, start: Point) -> Result<Fit, DiagnoseError> {
-        if let Some(known) = self.known_beside(&start)? {
-            return Ok(known.clone());
-        }
-        let effects = in_order(&start);
-        let full = fit(self.problem, start, self.criteria().fitting.converged)?;
-        self.known.insert(effects, full.without_sensitivities());
-        Ok(full)
+        self.fits.converged(self.problem, start)
     }
 
     /// The same where the start can be simulated; `None` where it cannot, which is no candidate and no failure.
     pub fn fitted_if_simulated(&mut self, start: Point) -> Result<Option<Fit>, DiagnoseError> {
         if_simulated(self.fitted(start))
-    }
-
-    /// A fit that is carried only as far as is needed to judge whether it is worth carrying on; the converged one where it is known. `None`
-    /// where the start cannot be simulated.
-    pub fn fitted_quickly(&self, start: &Point) -> Result<Option<Fit>, DiagnoseError> {
-        if let Some((_, quick)) = self.quick.iter().find(|(from, _)| from == start) {
-            return Ok(Some(quick.clone()));
-        }
-        if_simulated(match self.known_beside(start) {
-            Ok(Some(known)) => Ok(known.clone()),
-            Ok(None) => fit(self.problem, start.clone(), self.criteria().fitting.quick),
-            Err(other) => Err(other),
-        })
-    }
-
-    /// Remembers a quick fit that is not worth carrying on, with its start, in case that combinations begin from it.
-    pub fn remember_quick(&mut self, start: Point, quick: Fit) {
-        self.quick.push_front((start, quick));
-        self.quick.truncate(MOST_QUICK);
-    }
-
-    /// The converged fit that a quick one leads to.
-    pub fn carried_on(&mut self, quick: Fit) -> Result<Option<Fit>, DiagnoseError> {
-        let effects = in_order(&quick.point);
-        if let Some(known) = self.known_unless(&effects, quick.cost) {
-            return Ok(Some(known.clone()));
-        }
-        let full = if_simulated(carried_on(self.problem, quick, self.criteria().fitting.converged))?;
-        if let Some(full) = &full {
-            self.known.insert(effects, full.without_sensitivities());
-        }
-        Ok(full)
-    }
-
-    /// The known fit of the effects of a start, unless the start is better.
-    fn known_beside(&self, start: &Point) -> Result<Option<&Fit>, DiagnoseError> {
-        let effects = in_order(start);
-        if !self.known.contains_key(&effects) {
-            return Ok(None);
-        }
-        Ok(self.known_unless(&effects, self.problem.cost_at(start)?))
-    }
-
-    /// The known fit of some effects, unless this cost is lower by enough to matter.
-    fn known_unless(&self, effects: &[usize], cost: f64) -> Option<&Fit> {
-        let acceptance = &self.criteria().acceptance;
-        let matters = acceptance.better_start * acceptance.least_gain;
-        (self.known.get(effects)).filter(|known| cost > known.cost - matters)
     }
 
     /// Costs of the blocks, each held out.
@@ -250,22 +188,6 @@ impl<'p, 'a> Selector<'p, 'a> {
     }
 }
 
-/// The effects of a point in the order of the candidates.
-fn in_order(point: &Point) -> Vec<usize> {
-    let mut effects = point.effects.clone();
-    effects.sort_unstable();
-    effects
-}
-
-/// A fit; `None` where its start cannot be simulated.
-fn if_simulated(fit: Result<Fit, DiagnoseError>) -> Result<Option<Fit>, DiagnoseError> {
-    match fit {
-        Ok(fit) => Ok(Some(fit)),
-        Err(DiagnoseError::Simulation { .. }) => Ok(None),
-        Err(other) => Err(other),
-    }
-}
-
 /// Costs of the blocks as a screened fit reaches them. Held-out costs would ask too much of it: it has not converged, and
 /// where one edge of a valve holds most of the misfit, the rest says little about it in a linear approximation.
 pub fn reached(fit: &Fit) -> Vec<f64> {
@@ -292,70 +214,32 @@ mod tests {
     use super::*;
     use crate::analytic::{CUBIC, FRICTION, RUN, Recipe, VIBRATION};
 
-    /// Number of recordings that something simulates.
-    fn simulated(problem: &LeastSquares<'_>, work: impl FnOnce()) -> usize {
-        let before = problem.evaluation.simulated();
-        work();
-        problem.evaluation.simulated() - before
-    }
-
     #[test]
-    fn what_was_fitted_quickly_or_screened_beside_a_model_is_not_simulated_again() {
-        let specimen = Recipe {
-            truth: vec![(CUBIC, vec![0.3])],
-            ..Recipe::default()
-        }
-        .make();
+    fn what_was_screened_beside_a_model_is_not_simulated_again_in_passing() {
+        let specimen = Recipe::default().make();
         let problem = LeastSquares::new(&specimen, &RUN);
         let mut selector = Selector::new(&problem);
-        let start = Point::nominal(&specimen).with_effect(&specimen, FRICTION, &[0.05]);
-        let quick = selector.fitted_quickly(&start).expect("a fit").expect("a fit");
-        let beside_quick = |selector: &mut Selector<'_, '_>| {
+        let model = Point::nominal(&specimen).with_effect(&specimen, FRICTION, &[0.05]);
+        let model = selector.fitted(model).expect("a fit");
+        let mut in_passing = |is_remembered: bool| {
+            let before = problem.evaluation.simulated();
+            if is_remembered {
+                selector.screen(&model, vec![CUBIC, VIBRATION]).expect("screened");
+            }
+            let remembering = problem.evaluation.simulated() - before;
             let screened = selector
-                .screen_in_passing(&quick, vec![CUBIC, VIBRATION])
+                .screen_in_passing(&model, vec![CUBIC, VIBRATION])
                 .expect("screened");
-            screened
+            let costs: Vec<_> = screened
                 .into_iter()
                 .map(|(c, fit)| (c, fit.map(|f| f.cost.to_bits())))
-                .collect::<Vec<_>>()
+                .collect();
+            (costs, problem.evaluation.simulated() - before - remembering)
         };
-        let in_passing = beside_quick(&mut selector);
-        assert!(simulated(&problem, || assert_eq!(beside_quick(&mut selector), in_passing)) > 0);
-        selector.screen(&quick, vec![CUBIC, VIBRATION]).expect("screened");
-        let again = simulated(&problem, || assert_eq!(beside_quick(&mut selector), in_passing));
-        assert_eq!(again, 0);
-
-        selector.remember_quick(start.clone(), quick.clone());
-        let again = simulated(&problem, || {
-            let known = selector.fitted_quickly(&start).expect("a fit").expect("a fit");
-            assert_eq!(known.point, quick.point);
-        });
-        assert_eq!(again, 0);
-        // Only a few are remembered.
-        for k in 0..MOST_QUICK {
-            let other = Point::nominal(&specimen).with_effect(&specimen, FRICTION, &[0.06 + 0.01 * k as f64]);
-            selector.remember_quick(other, quick.clone());
-        }
-        assert!(simulated(&problem, || drop(selector.fitted_quickly(&start))) > 0);
-    }
-
-    #[test]
-    fn a_quick_fit_that_is_no_better_than_the_known_one_is_not_carried_on() {
-        let specimen = Recipe {
-            truth: vec![(CUBIC, vec![0.3])],
-            ..Recipe::default()
-        }
-        .make();
-        let problem = LeastSquares::new(&specimen, &RUN);
-        let mut selector = Selector::new(&problem);
-        let start = Point::nominal(&specimen).with_effect(&specimen, CUBIC, &[0.1]);
-        let quick = selector.fitted_quickly(&start).expect("a fit").expect("a fit");
-        let full = selector.carried_on(quick.clone()).expect("a fit").expect("a fit");
-        assert!(full.converged && full.cost <= quick.cost);
-        let again = simulated(&problem, || {
-            let known = selector.carried_on(quick).expect("a fit").expect("a fit");
-            assert_eq!(known.point, full.point);
-        });
-        assert_eq!(again, 0);
+        let (first, simulated) = in_passing(false);
+        assert!(simulated > 0);
+        // Passing a model leaves nothing behind.
+        assert_eq!(in_passing(false), (first.clone(), simulated));
+        assert_eq!(in_passing(true), (first, 0));
     }
 }

@@ -241,6 +241,20 @@ mod tests {
         assert!((b + 4.5).abs() < 0.5, "{b} cm3/mol");
     }
 
+    /// Rounds that are left out change no bit.
+    #[test]
+    fn a_density_is_that_of_twenty_rounds() {
+        let gas = Nitrogen::reference();
+        for k in 1..600 {
+            let (p, t) = (Absolute(0.1e6 * f64::from(k)), 200.0 + 0.67 * f64::from(k));
+            let twenty = (0..20).fold(p.pa() / (gas.gas_constant * t), |density, _| {
+                let at = gas.state(density, t);
+                density - (at.pressure - p) / at.dp_drho_pa_m3_kg
+            });
+            assert_eq!(gas.density(p, t).to_bits(), twenty.to_bits(), "{p:?} {t} K");
+        }
+    }
+
     #[test]
     fn the_grid_is_the_equation() {
         let gas = Nitrogen::reference();

@@ -56,7 +56,6 @@ mod tests {
     use super::*;
 
     proptest::proptest! {
-        /// Whatever was asked for before.
         #[test]
         fn a_straight_line_is_found_again_and_its_ends_go_on(ats in proptest::collection::vec(-1.0..5.0f64, 1..9), jitter in 0.0..0.9f64) {
             let x: Vec<f64> = (0..40).map(|i| 0.1 * f64::from(i) + if i % 3 == 1 { 0.1 * jitter } else { 0.0 }).collect();
@@ -64,7 +63,10 @@ mod tests {
             let mut places = Places::over(&x);
             for at in ats {
                 let exact = 2.0 - 3.0 * at.clamp(x[0], x[39]);
-                proptest::prop_assert!((places.find(at).of(&y) - exact).abs() < 1e-9);
+                let found = places.find(at);
+                proptest::prop_assert!((found.of(&y) - exact).abs() < 1e-9);
+                // To the bit, whatever was asked for before.
+                proptest::prop_assert_eq!(found, Places::over(&x).find(at));
             }
         }
     }

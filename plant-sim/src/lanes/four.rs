@@ -66,8 +66,9 @@ impl<S: Simd> Four<S> {
         FourMask { simd: self.simd, lanes }
     }
 
+    /// The numbers of the lanes.
     #[inline(always)]
-    fn into_array(self) -> [f64; LANES] {
+    pub fn into_array(self) -> [f64; LANES] {
         pulp::cast(self.lanes)
     }
 }

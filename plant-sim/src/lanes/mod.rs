@@ -7,14 +7,16 @@
 //! |---|---|
 //! | `number` | what the arithmetic of the strut asks of a number |
 //! | `one` | a single number |
-//! | `power` | powers, for which the C library takes one number at a time |
+//! | `exponential`, `power` | exponentials and powers, for which the C library takes one number at a time |
 //! | `four` | four numbers in the vectors that this processor has |
 
+mod exponential;
 mod four;
 mod number;
 mod one;
 mod power;
 
+pub use exponential::decay;
 pub use four::{Four, LANES, Vectors, each_lane, vectors};
 pub use number::{Mask, Number};
 pub use power::power;

@@ -5,6 +5,8 @@
 //! `side_load_friction` and an unmodelled law give. Over a step of constant speed the equation is solved exactly, so the
 //! step may be long against `g / (k v)`.
 
+use crate::lanes::{Number, decay};
+
 /// Presliding stiffness where the model has friction but no seal with a stiffness of its own, N/m (recordings README, of
 /// the seal).
 pub const PRESLIDING_STIFFNESS_N_M: f64 = 2e6;
@@ -23,14 +25,18 @@ pub const PRESLIDING_STIFFNESS_N_M: f64 = 2e6;
 #[inline]
 #[must_use]
 pub fn advance_friction(force_n: f64, stroke_m: f64, level_n: f64, stiffness_n_m: f64) -> f64 {
-    if stroke_m == 0.0 {
-        return force_n;
-    }
-    if level_n <= 0.0 {
-        return 0.0;
-    }
-    let target = level_n.copysign(stroke_m);
-    target + (force_n - target) * libm::exp(-stiffness_n_m * stroke_m.abs() / level_n)
+    after_stroke(force_n, stroke_m, level_n, stiffness_n_m)
+}
+
+/// The same of several rods side by side.
+#[inline(always)]
+pub(super) fn after_stroke<N: Number>(force_n: N, stroke_m: N, level_n: N, stiffness_n_m: N) -> N {
+    let zero = force_n.of(0.0);
+    let target_n = N::choose(stroke_m.above(zero), level_n, -level_n);
+    let sheared = decay(-(stiffness_n_m * stroke_m.abs()) / level_n);
+    let slid_n = target_n + (force_n - target_n) * sheared;
+    let rubbed_n = N::choose(level_n.up_to(zero), zero, slid_n);
+    N::choose(stroke_m.abs().above(zero), rubbed_n, force_n)
 }
 
 #[cfg(test)]

@@ -117,7 +117,7 @@ pub struct StrutOutput {
 #[derive(Debug, Clone)]
 pub struct Strut {
     pub(super) hydraulics: Hydraulics,
-    rod: RodForces,
+    pub(super) rod: RodForces,
     response_polynomial_s: [f64; 3],
     /// Unmodelled time that is added to the response, s, over the pressure difference.
     response_law: Option<Characteristic>,
@@ -246,13 +246,13 @@ impl Strut {
         self.finish(&interval)
     }
 
-    /// Takes the steps of an interval that are left.
-    #[inline(always)]
+    /// Takes the steps of an interval that are left. A step is long, and compiled once for all who take one.
+    #[inline(never)]
     pub(super) fn take_steps(&mut self, interval: &mut Interval) {
         while !interval.is_over() {
             let step = self.next_step(interval);
             self.hydraulics.step(&mut self.flowing, &step);
-            self.conclude(&step, interval);
+            self.conclude(&step, None, interval);
         }
     }
 
@@ -309,9 +309,10 @@ impl Strut {
         }
     }
 
-    /// Lets time, rod and course follow a step that the hydraulics have taken.
+    /// Lets time, rod and course follow a step that the hydraulics have taken. The friction (N) is worked out here, unless it was worked out beside
+    /// that of others.
     #[inline(always)]
-    pub(super) fn conclude(&mut self, step: &Step, interval: &mut Interval) {
+    pub(super) fn conclude(&mut self, step: &Step, friction_n: Option<f64>, interval: &mut Interval) {
         let [end_m, end_m_s] = step.end;
         let stroke_m = end_m - self.actuator_m;
         self.time_s = step.begins_s + step.duration_s;
@@ -321,7 +322,10 @@ impl Strut {
             swing.follow(step.duration_s, self.flowing.state.q2_m3_s);
         }
         let rod = self.rod_state();
-        self.rod.follow(stroke_m, step.duration_s, &rod);
+        match friction_n {
+            Some(friction_n) => self.rod.set_friction_n(friction_n),
+            None => self.rod.follow(stroke_m, step.duration_s, &rod),
+        }
         if let Some(course) = &mut self.course {
             course.push_step(stroke_m, step.duration_s, rod);
         }

@@ -30,7 +30,9 @@
 //! | `hydraulics` | a step of oil, gas and mount, of one strut or of several side by side |
 //! | `integrator` | the strut in time: steps, valves' edges, the rod |
 //! | `abreast`, `side_by_side` | four struts that are advanced together, and their hydraulics in the vectors of the processor |
-//! | `valve`, `rod_forces`, `rod_state`, `friction` | movement of a valve; forces between rod and cylinder, and what they depend on |
+//! | `valve` | movement of a valve |
+//! | `rod_forces`, `rod_state` | forces between rod and cylinder, and what they depend on |
+//! | `friction`, `rod_friction` | dry friction of a body that slides, and of a rod |
 //! | `gas`, `equation_of_state`, `nitrogen`, `orifice`, `damper`, `characteristic` | laws of the elements |
 //! | `instruments` | what faulty instruments make of the columns |
 //! | `motion`, `smoothing` | a motion from sample to sample, and how a recorded displacement becomes one |
@@ -60,6 +62,7 @@ mod replay;
 mod replay_abreast;
 mod rod_course;
 mod rod_forces;
+mod rod_friction;
 mod rod_state;
 mod run;
 mod settled;

@@ -142,7 +142,7 @@ impl<'r, 'a, S: Simd> Seats<'r, 'a, S> {
             side_by_side.step();
             for (lane, run) in seated.iter_mut().enumerate() {
                 side_by_side.tell(lane, &mut run.strut);
-                run.conclude(&side_by_side.steps.part(lane));
+                run.conclude(&side_by_side.steps.part(lane), side_by_side.friction_n(lane));
             }
         }
         for (lane, run) in seated.iter_mut().enumerate() {

@@ -1,14 +1,13 @@
 //! Forces between rod and cylinder other than the oil pressure: friction, stops and laws without a name.
 
-use super::friction::{PRESLIDING_STIFFNESS_N_M, advance_friction};
+use super::rod_friction::{RodFriction, Stroke};
 use super::rod_state::RodState;
-use super::terms::{BumpStop, Effects, LawPlace, SealFriction, SealLaw, SideLoadFriction};
+use super::terms::{BumpStop, Effects, LawPlace, SealLaw};
 
 /// Forces between rod and cylinder beside that of the oil.
 #[derive(Debug, Clone)]
 pub(super) struct RodForces {
-    seal: Option<SealFriction>,
-    side_load: Option<SideLoadFriction>,
+    friction: RodFriction,
     friction_laws: Vec<SealLaw>,
     stops: Option<BumpStop>,
     force_laws: Vec<SealLaw>,
@@ -19,8 +18,7 @@ impl RodForces {
     /// The forces of a model, on a rod whose friction has been released.
     pub fn of(effects: &Effects) -> Self {
         Self {
-            seal: effects.seal_friction.clone(),
-            side_load: effects.side_load_friction.clone(),
+            friction: RodFriction::of(effects),
             friction_laws: SealLaw::all_at(&effects.unlisted, LawPlace::MainSealFriction),
             stops: effects.bump_stop.clone(),
             force_laws: SealLaw::all_at(&effects.unlisted, LawPlace::MainSeal),
@@ -28,27 +26,29 @@ impl RodForces {
         }
     }
 
+    /// What rubs, where no law without a name rubs beside it.
+    pub fn lawless_friction(&self) -> Option<&RodFriction> {
+        self.friction_laws.is_empty().then_some(&self.friction)
+    }
+
     /// Let the friction follow a stroke (m) that has taken `duration_s` and has led to a state.
     #[inline(always)]
     pub fn follow(&mut self, stroke_m: f64, duration_s: f64, rod: &RodState) {
-        if self.seal.is_some() || self.side_load.is_some() || !self.friction_laws.is_empty() {
+        if !self.friction.is_none() || !self.friction_laws.is_empty() {
             self.rub(stroke_m, duration_s, rod);
         }
     }
 
     fn rub(&mut self, stroke_m: f64, duration_s: f64, rod: &RodState) {
-        let mut level_n = self
-            .seal
-            .as_ref()
-            .map_or(0.0, |seal| seal.level_n(stroke_m / duration_s));
-        if let Some(side) = &self.side_load {
-            level_n += side.level_n(rod.oil_force_n, rod.displacement_m);
-        }
-        for law in &self.friction_laws {
-            level_n += law.value_n(rod);
-        }
-        let stiffness = (self.seal.as_ref()).map_or(PRESLIDING_STIFFNESS_N_M, |seal| seal.presliding_stiffness_n_m);
-        self.friction_n = advance_friction(self.friction_n, stroke_m, level_n, stiffness);
+        let stroke = Stroke {
+            stroke_m,
+            duration_s,
+            displacement_m: rod.displacement_m,
+            oil_force_n: rod.oil_force_n,
+        };
+        let laws_n = self.friction_laws.iter().map(|law| law.value_n(rod));
+        let level_n = laws_n.fold(self.friction.level_n(&stroke), |level_n, law_n| level_n + law_n);
+        self.friction_n = self.friction.after_n(self.friction_n, &stroke, level_n);
     }
 
     /// Puts the friction at a value that it had, N.
@@ -78,6 +78,7 @@ impl RodForces {
 #[cfg(test)]
 mod tests {
     use super::super::rod_state::Acceleration;
+    use super::super::terms::{SealFriction, SideLoadFriction};
     use super::*;
 
     fn at(displacement_m: f64, oil_force_n: f64) -> RodState {

@@ -104,8 +104,8 @@ impl<'a> Run<'a> {
 
     /// Goes on after a step that the hydraulics have taken.
     #[inline(always)]
-    pub fn conclude(&mut self, step: &Step) {
-        self.strut.conclude(step, &mut self.interval);
+    pub fn conclude(&mut self, step: &Step, friction_n: Option<f64>) {
+        self.strut.conclude(step, friction_n, &mut self.interval);
     }
 
     /// Ends the move that is over and begins the next one; whether there is one.
@@ -159,7 +159,7 @@ impl<'a> Run<'a> {
     pub fn go_on_to_the_end(&mut self) {
         while let Some(step) = self.next_step() {
             self.strut.hydraulics.step(&mut self.strut.flowing, &step);
-            self.conclude(&step);
+            self.conclude(&step, None);
         }
     }
 

@@ -67,6 +67,8 @@ pub(super) use entrained_air::LEAST_BUBBLE_PRESSURE;
 pub(super) use gas_heat_transfer::EnergyStep;
 pub(super) use line_inertance::OilColumn;
 pub(super) use oil_compressibility::{held_at_static_density, taken_up_at_chamber_density};
+pub(super) use seal_friction::SealLevel;
+pub(super) use side_load_friction::GuideLevel;
 pub(super) use unlisted::{
     ChamberLaws, Compressibility, Course, GasLawInputs, InstrumentLaws, LawTable, PathLaws, SealLaw, law_at,
     longest_step_s, passed, presliding_m3, throttle, throttled, valve_in_time,

@@ -7,6 +7,7 @@
 use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::{Number, decay};
 use crate::model_file::{Checked, Limit, Range};
 
 /// The rod seal rubs.
@@ -53,8 +54,38 @@ impl SealFriction {
     #[inline]
     #[must_use]
     pub fn level_n(&self, speed_m_s: f64) -> f64 {
-        let ratio = speed_m_s / self.stribeck_speed_m_s;
-        self.coulomb_force_n + (self.breakaway_force_n - self.coulomb_force_n) * libm::exp(-ratio * ratio)
+        self.level().at_n(speed_m_s)
+    }
+
+    /// Level at which the seal slides, as the solver uses it.
+    #[must_use]
+    pub(in crate::strut) fn level(&self) -> SealLevel {
+        SealLevel {
+            coulomb_n: self.coulomb_force_n,
+            above_coulomb_n: self.breakaway_force_n - self.coulomb_force_n,
+            stribeck_m_s: self.stribeck_speed_m_s,
+        }
+    }
+}
+
+/// Level at which a seal slides, of one strut or of several side by side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::strut) struct SealLevel<N = f64> {
+    /// Level at high speed, N.
+    pub coulomb_n: N,
+    /// What the level of breakaway is higher, N.
+    pub above_coulomb_n: N,
+    /// Stribeck speed, m/s.
+    pub stribeck_m_s: N,
+}
+
+impl<N: Number> SealLevel<N> {
+    /// Level at a sliding speed (m/s), N.
+    #[inline(always)]
+    #[must_use]
+    pub fn at_n(&self, speed_m_s: N) -> N {
+        let ratio = speed_m_s / self.stribeck_m_s;
+        self.coulomb_n + self.above_coulomb_n * decay(-ratio * ratio)
     }
 }
 

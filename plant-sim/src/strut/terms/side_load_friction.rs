@@ -6,6 +6,7 @@
 use super::equation::Equation;
 use serde::{Deserialize, Serialize};
 
+use crate::lanes::Number;
 use crate::model_file::{Checked, Limit, Range};
 
 /// The guides rub in proportion to the strut force.
@@ -38,12 +39,39 @@ pub const EQUATION: Equation = Equation {
 const LEAST_OVERLAP: f64 = 0.1;
 
 impl SideLoadFriction {
+    /// Force at which the guides slide, as the solver uses it.
+    #[must_use]
+    pub(in crate::strut) fn level(&self) -> GuideLevel {
+        GuideLevel {
+            coefficient: self.coefficient,
+            overlap_growth_1_m: self.overlap_growth_1_m,
+        }
+    }
+
     /// Force at which the guides slide, N, under a strut force (N) at a displacement (m).
     #[inline]
     #[must_use]
     pub fn level_n(&self, strut_force_n: f64, displacement_m: f64) -> f64 {
-        let overlap = (1.0 + self.overlap_growth_1_m * displacement_m).max(LEAST_OVERLAP);
-        self.coefficient * strut_force_n.abs() / overlap
+        self.level().at_n(strut_force_n, displacement_m)
+    }
+}
+
+/// Force at which guides slide, of one strut or of several side by side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::strut) struct GuideLevel<N = f64> {
+    /// Friction force over strut force at static position.
+    pub coefficient: N,
+    /// Relative growth of the guides' overlap with displacement, 1/m.
+    pub overlap_growth_1_m: N,
+}
+
+impl<N: Number> GuideLevel<N> {
+    /// Force at which the guides slide, N, under a strut force (N) at a displacement (m).
+    #[inline(always)]
+    #[must_use]
+    pub fn at_n(&self, strut_force_n: N, displacement_m: N) -> N {
+        let overlap = self.overlap_growth_1_m * displacement_m + 1.0;
+        self.coefficient * strut_force_n.abs() / overlap.at_least(overlap.of(LEAST_OVERLAP))
     }
 }
 

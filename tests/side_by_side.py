@@ -2,7 +2,7 @@
 
     side_by_side.py STRUT VEHICLE [--rounds N]
 
-STRUT and VEHICLE are the examples side_by_side and vehicle_side_by_side of plant-sim. One strut is moved in one way, by our solver, by diffsol's BDF
+STRUT is the program of benches/solvers, VEHICLE the example vehicle_side_by_side of plant-sim. One strut is moved in one way, by our solver, by diffsol's BDF
 (in Rust) and by SciPy's Radau, BDF and LSODA. Each gets the coarsest setting with which p1 to p4 stay within a stated deviation of a solution that
 is far more accurate, so that what is compared is the time for the same result. The right-hand side is written here a second time, from
 docs/physics.md. Then a vehicle makes a step of steer on a flat road: ours, and the multi-body model of CommonRoad. Measured is processor time, without the start of

@@ -329,10 +329,10 @@ fn suspension_for_another_vehicle_and_bad_speeds_are_refused() {
     }
 }
 
-/// The same linear vehicle written as a first-order system and solved by diffsol's implicit solver.
+/// The same linear vehicle written as a first-order system and solved by a library (Dormand and Prince's method of eighth order).
 mod library {
     use super::*;
-    use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod};
+    use differential_equations::prelude::{ExplicitRungeKutta, IVP, ODE};
 
     /// State at `end_s` of the linear vehicle over [`Waves`].
     pub fn state_at(end_s: f64, speed_m_s: f64, damping_n_s_m: f64) -> [f64; 14] {
@@ -371,34 +371,21 @@ mod library {
             let a = equations.acceleration(&q, &v, tension, road).to_array();
             core::array::from_fn(|i| if i < 7 { x[7 + i] } else { a[i - 7] })
         };
-        let jacobian_rates = rates;
-        let problem = OdeBuilder::<NalgebraMat<f64>>::new()
-            .rtol(1e-9)
-            .atol([1e-11])
-            .rhs_implicit(
-                move |x, _p, t, y| {
-                    let values: Vec<f64> = (0..14).map(|i| x[i]).collect();
-                    for (i, rate) in rates(&values, t).into_iter().enumerate() {
-                        y[i] = rate;
-                    }
-                },
-                move |x, _p, t, direction, y| {
-                    let at = |sign: f64| {
-                        let moved: Vec<f64> = (0..14).map(|i| x[i] + sign * 1e-6 * direction[i]).collect();
-                        jacobian_rates(&moved, t)
-                    };
-                    let (plus, minus) = (at(1.0), at(-1.0));
-                    for i in 0..14 {
-                        y[i] = (plus[i] - minus[i]) / 2e-6;
-                    }
-                },
-            )
-            .init(|_p, _t, y| (0..14).for_each(|i| y[i] = 0.0), 14)
-            .build()
-            .unwrap();
-        let mut solver = problem.tr_bdf2::<NalgebraLU<f64>>().unwrap();
-        let (states, _) = solver.solve_dense(&[0.5 * end_s, end_s]).unwrap();
-        core::array::from_fn(|i| states[(i, 1)])
+        let solution = IVP::ode(&Rates(rates), 0.0, end_s, [0.0; 14])
+            .t_eval([end_s])
+            .method(ExplicitRungeKutta::dop853().rtol(1e-9).atol(1e-11))
+            .solve()
+            .expect("a solution");
+        *solution.last().expect("a state at the end").1
+    }
+
+    /// A right-hand side.
+    struct Rates<F>(F);
+
+    impl<F: Fn(&[f64], f64) -> [f64; 14]> ODE<f64, [f64; 14]> for Rates<F> {
+        fn diff(&self, t: f64, y: &[f64; 14], slope: &mut [f64; 14]) {
+            *slope = (self.0)(y, t);
+        }
     }
 }
 

@@ -1,12 +1,11 @@
 //! A strut written the plain way, from the equations in the recordings' README: five differential states, p3 where the flows of
-//! pack 2 and of valve 3 are equal, and no shared code with the strut but the damper table's lookup. A library's stiff solver (diffsol's BDF) takes it
-//! through time. The tests hold the strut against it, and `examples/side_by_side.rs` times both.
+//! pack 2 and of valve 3 are equal, and no shared code with the strut but the damper table's lookup. Solvers of libraries take it
+//! through time. The tests hold the strut against it, and `benches/solvers` times both.
 #![allow(dead_code, reason = "each program uses its part")]
 
 use std::cell::Cell;
 use std::f64::consts::PI;
 
-use diffsol::{MatrixCommon, NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod};
 use oleo_interface::{Absolute, StrutValves};
 use oleo_plant_sim::strut::*;
 
@@ -88,7 +87,7 @@ fn opening(t: f64, edge: f64) -> f64 {
 }
 
 /// Times of all samples, s.
-fn times() -> Vec<f64> {
+pub fn times() -> Vec<f64> {
     (1..=SAMPLES).map(|i| INTERVAL_S * i as f64).collect()
 }
 
@@ -252,37 +251,9 @@ impl<'a> PlainStrut<'a> {
         ]
     }
 
-    /// The pressures at all samples by diffsol's BDF with a relative and absolute tolerance.
-    pub fn by_bdf(&self, tolerance: f64) -> Pressures {
-        let problem = OdeBuilder::<NalgebraMat<f64>>::new()
-            .rtol(tolerance)
-            .atol([tolerance])
-            .h0(1e-6)
-            .rhs_implicit(
-                |y: &[f64], _p: &[f64], t: f64, out: &mut [f64]| self.derivative(t, y, out),
-                |y: &[f64], _p: &[f64], t: f64, direction: &[f64], out: &mut [f64]| {
-                    // Central difference along the direction.
-                    let e = 1e-6;
-                    let shifted =
-                        |s: f64| -> Vec<f64> { y.iter().zip(direction).map(|(y, d)| y + s * e * d).collect() };
-                    let (mut up, mut down) = (vec![0.0; 5], vec![0.0; 5]);
-                    self.derivative(t, &shifted(1.0), &mut up);
-                    self.derivative(t, &shifted(-1.0), &mut down);
-                    out.iter_mut()
-                        .zip(up.iter().zip(&down))
-                        .for_each(|(o, (u, d))| *o = (u - d) / (2.0 * e));
-                },
-            )
-            .init(|_p: &[f64], _t: f64, y: &mut [f64]| y.copy_from_slice(&self.start()), 5)
-            .build()
-            .unwrap();
-        let times = times();
-        let mut solver = problem.bdf::<NalgebraLU<f64>>().unwrap();
-        let (states, _) = solver.solve_dense(&times).unwrap();
-        assert_eq!(states.ncols(), SAMPLES);
-        (times.iter().enumerate())
-            .map(|(k, t)| self.flows(*t, states.inner().column(k).as_slice()).2)
-            .collect()
+    /// The pressures in a state, Pa.
+    pub fn pressures(&self, t: f64, y: &[f64]) -> [f64; 4] {
+        self.flows(t, y).2
     }
 }
 

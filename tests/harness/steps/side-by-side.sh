@@ -6,10 +6,11 @@ python_packages 'numpy, scipy, vehiclemodels' 'numpy>=1.26' 'scipy>=1.11,<2' 'co
     skip "side by side" "scipy or commonroad-vehicle-models cannot be installed: $(tail -n 1 "$OLEO_LOGS/pip-$OLEO_STEP.log")"
     exit 0
 }
-check "examples build" cargo build --locked --quiet --release -p oleo-plant-sim --example side_by_side --example vehicle_side_by_side || exit 0
+check "example builds" cargo build --locked --quiet --release -p oleo-plant-sim --example vehicle_side_by_side || exit 0
+check "solvers build" cargo build --locked --quiet --release --manifest-path benches/solvers/Cargo.toml || exit 0
 # Fewer rounds where the machine has no time.
 rounds=${OLEO_ROUNDS:-5}
-examples=$CARGO_TARGET_DIR/release/examples
-PYTHONPATH=$PYTHON_PACKAGES check "side by side" python3 tests/side_by_side.py "$examples/side_by_side" "$examples/vehicle_side_by_side" --rounds "$rounds"
+built=$CARGO_TARGET_DIR/release
+PYTHONPATH=$PYTHON_PACKAGES check "side by side" python3 tests/side_by_side.py "$built/strut_by_solvers" "$built/examples/vehicle_side_by_side" --rounds "$rounds"
 sed 's/^/   /' "$log"
 exit 0

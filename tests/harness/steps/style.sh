@@ -3,6 +3,7 @@
 . tests/harness/lib.sh
 check "host code is formatted" cargo fmt --all --check -- --color=never
 check "firmware is formatted" cargo fmt --manifest-path firmware/Cargo.toml -p oleo-firmware -p oleo-bench --check -- --color=never
+check "solvers to be timed are formatted" cargo fmt --manifest-path benches/solvers/Cargo.toml -p oleo-solvers --check -- --color=never
 check "fuzz targets are formatted" cargo fmt --manifest-path fuzz/Cargo.toml -p oleo-fuzz --check -- --color=never
 check "clippy finds nothing" cargo clippy "${FEATURES[@]}" --workspace --all-targets --locked --keep-going --quiet -- -D warnings
 check "clippy finds nothing in the controller as a board has it" \

@@ -2,6 +2,8 @@
 //!
 //! The packer here knows nothing of the codecs: it sets bits where the database says.
 
+use std::sync::LazyLock;
+
 use can_dbc::{AttributeValue, ByteOrder, Dbc, Message, MessageId, NumericValue, Signal, ValueType};
 use oleo_controller::can::{
     self, BOARD, BoardMessage, BusState, COMMAND, ClockSource, CommandMessage, DISPLACEMENT, DisplacementMessage,
@@ -12,8 +14,11 @@ use oleo_controller::{
 };
 use proptest::prelude::*;
 
-fn database() -> Dbc {
-    Dbc::try_from(include_str!("../oleo.dbc")).expect("can-dbc reads the database")
+/// The database, which takes long to read where nothing is optimised.
+fn database() -> &'static Dbc {
+    static READ: LazyLock<Dbc> =
+        LazyLock::new(|| Dbc::try_from(include_str!("../oleo.dbc")).expect("can-dbc reads the database"));
+    &READ
 }
 
 fn message(dbc: &Dbc, id: u16) -> &Message {
@@ -69,7 +74,7 @@ fn contracts_are_the_database() {
     let dbc = database();
     assert_eq!(dbc.messages.len(), MESSAGES.len());
     for contract in &MESSAGES {
-        let message = message(&dbc, contract.id);
+        let message = message(dbc, contract.id);
         assert_eq!(message.name, contract.name);
         assert_eq!(message.size as usize, contract.length);
         let attribute = |name| {
@@ -120,7 +125,7 @@ fn signals_do_not_overlap_and_are_explained() {
 fn scaling_is_the_code_s() {
     let dbc = database();
     for contract in PRESSURE.values() {
-        for p in &message(&dbc, contract.id).signals[2..] {
+        for p in &message(dbc, contract.id).signals[2..] {
             assert_eq!(
                 (p.factor, p.offset),
                 (f64::from(can::PRESSURE_STEP_PA), f64::from(can::PRESSURE_OFFSET_PA))
@@ -131,7 +136,7 @@ fn scaling_is_the_code_s() {
         }
     }
     for contract in DISPLACEMENT.into_array() {
-        let x = signal(message(&dbc, contract.id), "DisplacementLeft");
+        let x = signal(message(dbc, contract.id), "DisplacementLeft");
         assert_eq!((x.factor as f32, x.offset), (can::DISPLACEMENT_STEP_M, 0.0));
         assert_eq!(x.unit, "m");
     }
@@ -189,7 +194,7 @@ proptest! {
     #[test]
     fn pressures(raw in prop::array::uniform4(0u16..8192), corner in prop::sample::select(&Corner::ALL[..])) {
         let dbc = database();
-        let message = message(&dbc, PRESSURE[corner].id);
+        let message = message(dbc, PRESSURE[corner].id);
         let mut frame = [0; 8];
         let raw = StrutPressures::from_array(raw);
         let name = |point: PressurePoint| point.key().to_uppercase();
@@ -211,7 +216,7 @@ proptest! {
     #[test]
     fn displacements(tick: u8, answer: u8, left: i16, right: i16, status in 0u8..4, axle in prop::sample::select(&Axle::ALL[..])) {
         let dbc = database();
-        let message = message(&dbc, DISPLACEMENT[axle].id);
+        let message = message(dbc, DISPLACEMENT[axle].id);
         let mut frame = [0; 8];
         insert(&mut frame, signal(message, "PlantTick"), i64::from(tick));
         insert(&mut frame, signal(message, "Answer"), i64::from(answer));
@@ -231,7 +236,7 @@ proptest! {
     #[test]
     fn commands(word in 0u16..4096, echo_tick: u8, challenge: u8, mode in 0u8..5, fault in 0u8..12) {
         let dbc = database();
-        let message = message(&dbc, COMMAND.id);
+        let message = message(dbc, COMMAND.id);
         let sent = CommandMessage {
             command: ValveCommand::from_word(word),
             echo_tick,
@@ -258,7 +263,7 @@ proptest! {
     fn status(mode in 0u8..5, fault in 0u8..12, handling: bool, rollover_guard: bool,
               lateral in 0u32..1024, vertical in 0u32..1024, invalid_readings in 0u8..21, lost_messages in 0u8..64) {
         let dbc = database();
-        let message = message(&dbc, STATUS.id);
+        let message = message(dbc, STATUS.id);
         let sent = StatusMessage {
             mode: Mode::from_repr(mode).unwrap(),
             fault: FaultCode::from_repr(fault).unwrap(),
@@ -285,7 +290,7 @@ proptest! {
     fn board(reset_causes in 0u8..128, clock in 0u8..3, brown_out_level in 0u8..4, latch_kept: bool, image in 0u8..2, bus in 0u8..4,
              overruns: u8, bus_off: u8, port_errors: u8, port_dropped: u8) {
         let dbc = database();
-        let message = message(&dbc, BOARD.id);
+        let message = message(dbc, BOARD.id);
         let sent = BoardMessage {
             reset_causes,
             clock: ClockSource::from_repr(clock).unwrap(),

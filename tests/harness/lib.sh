@@ -83,8 +83,8 @@ cargo_tool() {
     (
         flock 9
         cargo "${name#cargo-}" --version > /dev/null 2>&1 && exit 0
-        # Without optimisation: building takes longer than running. In a folder of its own: cargo locks the one in which it builds.
-        CARGO_PROFILE_DEV_DEBUG=0 cargo install --quiet --debug --locked --target-dir "$CARGO_TARGET_DIR/tools" "$name" > "$OLEO_LOGS/$name.log" 2>&1
+        # Without optimisation and checks: building takes longer than running. In a folder of its own: cargo locks the one in which it builds.
+        CARGO_PROFILE_DEV_DEBUG=0 CARGO_PROFILE_DEV_DEBUG_ASSERTIONS=false CARGO_PROFILE_DEV_OVERFLOW_CHECKS=false cargo install --quiet --debug --locked --target-dir "$CARGO_TARGET_DIR/tools" "$name" > "$OLEO_LOGS/$name.log" 2>&1
     ) 9> "$CARGO_TARGET_DIR/tools.lock"
 }
 

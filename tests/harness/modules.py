@@ -26,7 +26,7 @@ ORDER = [
     {"oleo-interface"},
     {"oleo-controller", "oleo-plant-sim", "oleo-report"},
     {"oleo-xcp"},
-    {"oleo-hil", "oleo-diagnose", "oleo-firmware", "oleo-bench", "oleo-fmu-import"},
+    {"oleo-hil", "oleo-diagnose", "oleo-firmware", "oleo-bench", "oleo-fmu-import", "oleo-solvers"},
     {"oleo-fmu"},
     {"oleo", "oleo-fuzz", "oleo-python"},
 ]

@@ -3,7 +3,7 @@
 . tests/harness/lib.sh
 
 # The debug build is that of the tests, so that it is not made twice.
-check "debug build" cargo test "${FEATURES[@]}" --workspace --no-run --locked --quiet && check "release build" cargo build "${FEATURES[@]}" --locked --quiet --release || exit 0
+check "debug build" cargo test "${FEATURES[@]}" --workspace --lib --bins --tests --no-run --locked --quiet && check "release build" cargo build "${FEATURES[@]}" --locked --quiet --release || exit 0
 
 run() { tests/harness/hil-hash.sh "$CARGO_TARGET_DIR/$2/oleo" "$OLEO_LOGS/hil-$1"; }
 same() { if [ -z "$1" ] || [ "$1" != "$2" ]; then echo "'$1' against '$2'"; return 1; fi; }

@@ -17,12 +17,13 @@ const PASSES_BESIDES: usize = 10;
 /// worse than the one before. `None` where the damped matrix is not positive definite.
 ///
 /// ```
-/// use nalgebra::{dmatrix, dvector};
+/// use nalgebra::{DMatrix, DVector};
 /// use oleo_diagnose::estimation::bounded_step::bounded_step;
 ///
 /// // Without limits the step would be (1, 1); the first coordinate may go to 0.5 only.
-/// let step = bounded_step(&dmatrix![2.0, 0.0; 0.0, 2.0], &dvector![2.0, 2.0], 0.0, &[0.0, 0.0], &[(0.0, 0.5), (-9.0, 9.0)]);
-/// assert_eq!(step, Some(dvector![0.5, 1.0]));
+/// let (h, g) = (DMatrix::from_diagonal_element(2, 2, 2.0), DVector::from_element(2, 2.0));
+/// let step = bounded_step(&h, &g, 0.0, &[0.0, 0.0], &[(0.0, 0.5), (-9.0, 9.0)]);
+/// assert_eq!(step, Some(DVector::from_vec(vec![0.5, 1.0])));
 /// ```
 #[must_use]
 pub fn bounded_step(

@@ -321,13 +321,19 @@ impl Strut {
         if let Some(swing) = &mut self.swing {
             swing.follow(step.duration_s, self.flowing.state.q2_m3_s);
         }
-        let rod = self.rod_state();
         match friction_n {
             Some(friction_n) => self.rod.set_friction_n(friction_n),
-            None => self.rod.follow(stroke_m, step.duration_s, &rod),
+            None if self.rod.rubs() => {
+                let rod = self.rod_state();
+                self.rod.follow(stroke_m, step.duration_s, &rod);
+            }
+            None => {}
         }
-        if let Some(course) = &mut self.course {
-            course.push_step(stroke_m, step.duration_s, rod);
+        if self.course.is_some() {
+            let rod = self.rod_state();
+            if let Some(course) = &mut self.course {
+                course.push_step(stroke_m, step.duration_s, rod);
+            }
         }
         interval.done_s += step.duration_s;
         interval.done = interval.fraction(interval.done_s);

@@ -31,15 +31,17 @@ impl RodForces {
         self.friction_laws.is_empty().then_some(&self.friction)
     }
 
-    /// Let the friction follow a stroke (m) that has taken `duration_s` and has led to a state.
+    /// Whether anything rubs.
     #[inline(always)]
-    pub fn follow(&mut self, stroke_m: f64, duration_s: f64, rod: &RodState) {
-        if !self.friction.is_none() || !self.friction_laws.is_empty() {
-            self.rub(stroke_m, duration_s, rod);
-        }
+    pub fn rubs(&self) -> bool {
+        !self.friction.is_none() || !self.friction_laws.is_empty()
     }
 
-    fn rub(&mut self, stroke_m: f64, duration_s: f64, rod: &RodState) {
+    /// Let the friction follow a stroke (m) that has taken `duration_s` and has led to a state.
+    pub fn follow(&mut self, stroke_m: f64, duration_s: f64, rod: &RodState) {
+        if !self.rubs() {
+            return;
+        }
         let stroke = Stroke {
             stroke_m,
             duration_s,

@@ -8,7 +8,7 @@ use oleo_interface::{Axle, Axles, Corner, Corners};
 /// use oleo_controller::{Axle, SensorMessage};
 /// let last = SensorMessage::Displacement(Axle::Rear);
 /// assert_eq!(SensorMessage::ALL.last(), Some(&last));
-/// assert_eq!(last.contract().name, "DISPLACEMENT_REAR");
+/// assert_eq!(last.contract().id, 0x115);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SensorMessage {

@@ -118,8 +118,8 @@ fn frames_of_noise_beside_the_right_ones() {
             assert_eq!(
                 (n, outputs.mode, outputs.fault),
                 (3, Mode::Degraded, FaultCode::MessageLost),
-                "{}",
-                contract.name
+                "{:#x}",
+                contract.id
             );
         }
     }

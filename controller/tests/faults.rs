@@ -97,10 +97,9 @@ fn every_message_silent() {
         assert_eq!(
             (n, outputs.mode, outputs.fault),
             (4, Mode::Degraded, FaultCode::MessageLost),
-            "{}",
-            contract.name
+            "{message:?}"
         );
-        assert_eq!(outputs.command, limp_pattern(axle_of(message)), "{}", contract.name);
+        assert_eq!(outputs.command, limp_pattern(axle_of(message)), "{message:?}");
     }
 }
 
@@ -118,10 +117,9 @@ fn every_message_corrupted() {
         assert_eq!(
             (n, outputs.mode, outputs.fault),
             (3, Mode::Degraded, FaultCode::MessageLost),
-            "{}",
-            contract.name
+            "{message:?}"
         );
-        assert_eq!(outputs.command, limp_pattern(axle_of(message)), "{}", contract.name);
+        assert_eq!(outputs.command, limp_pattern(axle_of(message)), "{message:?}");
     }
 }
 
@@ -145,10 +143,9 @@ fn every_message_frozen_in_a_gateway() {
         assert_eq!(
             (n, outputs.mode, outputs.fault),
             (5, Mode::Degraded, FaultCode::MessageLost),
-            "{}",
-            contract.name
+            "{message:?}"
         );
-        assert_eq!(outputs.command, limp_pattern(axle_of(message)), "{}", contract.name);
+        assert_eq!(outputs.command, limp_pattern(axle_of(message)), "{message:?}");
     }
 }
 

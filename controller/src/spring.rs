@@ -21,9 +21,12 @@
 //!   change together. After 1 s it opens anyway, but throttled: valve 2 stays closed, so that the volumes equalise through
 //!   damper 2, until p3 and p4 are within 0.2 MPa of each other.
 //! - A valve does not move again within 0.5 s, except to close in an emergency.
+//! - In a bend a valve closes when its strut has its turn, and opens only to let out a lean that was trapped ([`trapped_lean`]).
 //!
-//! The shift that a closing in an emergency traps has no bound. [`Springs::trapped_shift_m`] reports it, and the next opening
+//! The shift that a closing in a bend or an emergency traps has no bound. [`Springs::trapped_shift_m`] reports it, and the next opening
 //! releases it.
+
+mod trapped_lean;
 
 use oleo_interface::{Absolute, Axles, Corner, Corners, Gauge, Side, StrutPressures, Valve};
 
@@ -190,7 +193,7 @@ impl Springs {
     };
 
     /// One tick: returns where valve 3 is to be open; `wanted` says where the strategy wants it open. In both, the bits of the bypass
-    /// valves say nothing. While the mode machine keeps all valves closed, call [`Springs::forced_closed`] instead.
+    /// valves say nothing. In a bend all valves 3 are to close, whatever `wanted` says, but for what lets a lean out. While the mode machine keeps all valves closed, call [`Springs::forced_closed`] instead.
     pub fn step(
         &mut self,
         c: &Parameters,
@@ -199,9 +202,12 @@ impl Springs {
         wanted: ValveCommand,
         urgency: Urgency,
     ) -> ValveCommand {
-        self.observe(c, trusted);
+        let corner = self.observe(c, trusted);
         let wanted = wanted.word() & SPRING_BITS;
-        if wanted == self.open {
+        if let Urgency::Bend { outer } = urgency {
+            self.let_lean_out(c, static_load_n, corner, outer);
+            self.waiting = 0;
+        } else if wanted == self.open {
             self.waiting = 0;
         } else {
             self.change(c, static_load_n, wanted, urgency);
@@ -214,11 +220,12 @@ impl Springs {
         self.observe(c, trusted);
         self.waiting = 0;
         if self.open != 0 {
-            for corner in Corner::ALL {
-                if self.is_open(corner) {
-                    self.set(corner, false);
+            for (corner, valve) in self.valves.iter_mut() {
+                if self.open & bit(corner) != 0 {
+                    valve.changed_at = self.now;
                 }
             }
+            (self.open, self.throttled) = (0, 0);
         }
     }
 
@@ -254,9 +261,9 @@ impl Springs {
             return;
         }
         if smooth {
-            self.set(corner, true);
+            self.toggle(corner);
         } else if self.waits(corner) >= COMFORT_PATIENCE_TICKS {
-            self.set(corner, true);
+            self.toggle(corner);
             self.throttled |= bit(corner);
         }
     }
@@ -264,42 +271,40 @@ impl Springs {
     #[inline(never)]
     fn close_if_due(&mut self, c: &Parameters, corner: Corner, urgency: Urgency) {
         let patience = match urgency {
-            Urgency::Emergency => 0,
+            Urgency::Bend { .. } | Urgency::Emergency => 0,
             Urgency::Handling => HANDLING_PATIENCE_TICKS,
             Urgency::Comfort => COMFORT_PATIENCE_TICKS,
         };
         let rested = self.since(corner) >= DWELL_TICKS || urgency == Urgency::Emergency;
         let little_trapped = self.trapped_shift_m[corner].abs() <= c.trapped_shift_m;
         if rested && (self.waits(corner) > patience || little_trapped) {
-            self.set(corner, false);
+            self.toggle(corner);
         }
     }
 
-    fn set(&mut self, corner: Corner, open: bool) {
+    /// Opens a valve that is closed, or closes one that is open. One copy for all who do: it is rare.
+    #[inline(never)]
+    fn toggle(&mut self, corner: Corner) {
         self.valves[corner].changed_at = self.now;
         self.throttled &= !bit(corner);
-        if open {
-            self.open |= bit(corner);
-        } else {
-            self.open &= !bit(corner);
-        }
+        self.open ^= bit(corner);
     }
 
-    /// Takes over what the pressures of the strut say whose turn it is.
+    /// Takes over what the pressures of the strut say whose turn it is, and returns its corner.
     #[inline(never)]
-    fn observe(&mut self, c: &Parameters, trusted: &Trusted) {
+    fn observe(&mut self, c: &Parameters, trusted: &Trusted) -> Corner {
         self.now = self.now.wrapping_add(1);
         let corner = self.turn;
         self.turn = next(corner);
-        let is_open = self.is_open(corner);
         let pressure = &trusted.pressure[corner];
-        self.trapped_shift_m[corner] = self.valves[corner].observe(c, pressure, trusted.charge[corner], is_open);
+        self.trapped_shift_m[corner] = self.valves[corner].observe(c, pressure, trusted.charge[corner]);
         if self.throttled & bit(corner) != 0 {
             let (since, apart) = (self.since(corner), (pressure.p3 - pressure.p4).abs());
             if apart < EQUAL_PA && since >= SETTLE_TICKS || since >= LONGEST_THROTTLE_TICKS {
                 self.throttled &= !bit(corner);
             }
         }
+        corner
     }
 
     /// Corners at which valve 3 opens throttled through damper 2, so that valve 2 is to stay closed.
@@ -352,13 +357,7 @@ impl SpringValve {
     };
 
     /// Takes over what the pressures say, once in [`OBSERVATION_S`]; returns the trapped shift, m.
-    fn observe(
-        &mut self,
-        c: &Parameters,
-        pressure: &StrutPressures<Gauge<f32>>,
-        charge: Absolute<f32>,
-        is_open: bool,
-    ) -> f32 {
+    fn observe(&mut self, c: &Parameters, pressure: &StrutPressures<Gauge<f32>>, charge: Absolute<f32>) -> f32 {
         if !self.observed {
             self.observed = true;
             self.p1_rate = DerivativeState::at_rest(pressure.p1.pa());
@@ -371,10 +370,8 @@ impl SpringValve {
         };
         let p1 = ahead(pressure.p1, &mut self.p1_rate);
         let p4 = ahead(pressure.p4, &mut self.p4_rate);
-        if !is_open {
-            let gas = v2 * p1;
-            self.opening_step_n = c.piston_area_m2 * (p4 - p1) * gas / (v1 * p4 + gas);
-        }
+        let gas = v2 * p1;
+        self.opening_step_n = c.piston_area_m2 * (p4 - p1) * gas / (v1 * p4 + gas);
         (v2 - v2 * charge.pa() / p4) * c.per_piston_area
     }
 }

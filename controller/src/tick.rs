@@ -13,7 +13,7 @@ use crate::failsafe::{self, FaultCode, Mode};
 use crate::plausibility;
 use crate::reading::Inputs;
 use crate::spring::Springs;
-use crate::strategy::{self, Urgency};
+use crate::strategy::{self, Demand};
 use crate::switching::SwitchingLimit;
 use crate::valves::ValveCommand;
 
@@ -142,7 +142,6 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     // Before the first complete sets of readings there is nothing to learn from.
     if !state.failsafe.was_normal() {
         state.estimate = estimate::State::INITIAL;
-        state.strategy = strategy::State::INITIAL;
     }
     let mut estimate = state.estimate.step(&c.estimate, trusted);
     if !estimate.is_finite() {
@@ -151,14 +150,18 @@ pub fn tick(c: &Configuration, state: &mut State, inputs: &Inputs) -> Outputs {
     }
 
     let mode = state.failsafe.step(&health);
-    let demand = state.strategy.step(&c.strategy, &estimate, trusted);
+    let demand = if state.failsafe.was_normal() {
+        state.strategy.step(&c.strategy, &estimate, trusted)
+    } else {
+        Demand::default()
+    };
     if mode == Mode::Normal {
         let (load_n, wanted) = (state.estimate.static_load_n(), demand.valves);
         state.springs.step(&c.spring, trusted, load_n, wanted, demand.urgency);
     } else {
         state.springs.forced_closed(&c.spring, trusted);
     }
-    let bypass = state.dwell.step(demand.valves, demand.urgency == Urgency::Emergency);
+    let bypass = state.dwell.step(demand.valves, demand.urgency.closes_at_once());
     let decided = state.springs.applied_to(bypass);
     let permitted = failsafe::permitted(mode, state.failsafe.restricted(), decided);
     let command = state.switching.step(permitted);

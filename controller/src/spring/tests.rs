@@ -1,6 +1,7 @@
 //! The rules of the module's page, one by one, against the equations in f64.
 
 extern crate std;
+use super::trapped_lean::DWELL_TICKS as DWELL_IN_BENDS_TICKS;
 use super::*;
 use crate::configuration::Configuration;
 use crate::valves::BYPASS_BITS;
@@ -135,23 +136,6 @@ fn the_first_pressures_have_no_rate_and_the_struts_take_turns() {
             );
         }
     }
-}
-
-/// An open valve equalises: what its opening would have done is not looked at.
-#[test]
-fn an_open_valve_has_no_opening_step() {
-    let mut springs = opened(&Corner::ALL);
-    let before = springs.valves[Corner::FrontLeft].opening_step_n;
-    for _ in 0..10 {
-        springs.step(
-            &parameters(),
-            &under(2.0e6, 4.0e6),
-            &LOAD_N,
-            ValveCommand::SOFT,
-            Urgency::Comfort,
-        );
-    }
-    assert_eq!(springs.valves[Corner::FrontLeft].opening_step_n, before);
 }
 
 #[test]
@@ -300,4 +284,92 @@ fn valve_2_is_closed_where_valve_3_is_closed_or_throttled() {
         assert_eq!(applied.is_open(corner, Valve::Bypass2), corner == Corner::FrontLeft);
         assert_eq!(applied.is_open(corner, Valve::Spring), open);
     }
+}
+
+const BEND: Urgency = Urgency::Bend { outer: Side::Right };
+
+/// The valves that are open after so many ticks of a bend under these pressures, of a vehicle whose valves were all open.
+fn in_bend(trusted: &Trusted, ticks: u32) -> ValveCommand {
+    let mut springs = settled(opened(&Corner::ALL), trusted);
+    let open = (0..ticks).map(|_| springs.step(&parameters(), trusted, &LOAD_N, ValveCommand::SAFE, BEND));
+    open.last().expect("at least one tick")
+}
+
+/// On a road that moves nothing all valves close, each in its strut's turn.
+#[test]
+fn a_bend_closes_all_valves_within_four_ticks() {
+    let left = |ticks| in_bend(&at_rest(), ticks).word().count_ones();
+    assert_eq!([1, 2, 3, 4].map(left), [3, 2, 1, 0]);
+}
+
+/// Which valves stay open: where oil leaves accumulator 2 of a strut on the outer side that is compressed, or enters that of one on the
+/// inner side that is extended.
+#[test]
+fn a_bend_leaves_open_what_lets_a_lean_out() {
+    let (outer, inner) = (
+        only(&[Corner::FrontRight, Corner::RearRight]),
+        only(&[Corner::FrontLeft, Corner::RearLeft]),
+    );
+    for (p1_pa, p4_pa, open) in [
+        (2.4e6, 3.0e6, outer),
+        (3.0e6, 2.4e6, ValveCommand::SAFE),
+        (1.6e6, 1.2e6, inner),
+        (1.2e6, 1.6e6, ValveCommand::SAFE),
+        // It flows the right way, but nothing is trapped.
+        (1.6e6, 2.0e6, ValveCommand::SAFE),
+        (2.4e6, 2.0e6, ValveCommand::SAFE),
+        // It flows the right way, but by less than 10 % of the load: at most 1.9635e-3 m2 x 0.05 MPa = 98 N of 393 N.
+        (2.6e6, 2.65e6, ValveCommand::SAFE),
+    ] {
+        let found = in_bend(&under(p1_pa, p4_pa), 40);
+        assert_eq!(found, open, "{p1_pa} Pa, {p4_pa} Pa");
+    }
+}
+
+/// A valve that is closed opens from twice the shift at which one that is open closes, and 50 ms after its closing.
+#[test]
+fn in_a_bend_a_valve_opens_again() {
+    let v2 = f64::from(parameters().gas_volume_2_m3);
+    let p4_pa = |shift_m: f64| (2_101_325.0 / (1.0 - shift_m * AREA_M2 / v2) - ATMOSPHERE_PA) as f32;
+    let (c, outer) = (parameters(), only(&[Corner::FrontRight, Corner::RearRight]));
+    for (shift_m, stays, opens) in [
+        (0.0075, false, false),
+        (0.0085, true, false),
+        (0.0155, true, false),
+        (0.0165, true, true),
+    ] {
+        let trusted = under(1.0e6, p4_pa(shift_m));
+        assert_eq!(in_bend(&trusted, 40) == outer, stays, "{shift_m} m");
+        let mut springs = rested(&trusted);
+        let opened = (1..=20).find(|_| springs.step(&c, &trusted, &LOAD_N, ValveCommand::SAFE, BEND) == outer);
+        assert_eq!(opened.is_some(), opens, "{shift_m} m");
+    }
+    let (lets_out, turned) = (under(1.0e6, p4_pa(0.03)), under(4.0e6, p4_pa(0.03)));
+    let mut springs = settled(opened(&Corner::ALL), &lets_out);
+    let mut ticks_until = |trusted: &Trusted, open: u32| {
+        (1..=SECOND).find(|_| {
+            let now = springs.step(&c, trusted, &LOAD_N, ValveCommand::SAFE, BEND);
+            now.word().count_ones() == open
+        })
+    };
+    let closed_after = ticks_until(&lets_out, 2).expect("the inner side");
+    assert!(closed_after <= 4, "{closed_after}");
+    // The pressures' rates need some ticks to be forgotten.
+    let closed_after = ticks_until(&turned, 0).expect("the flow has turned");
+    assert!(closed_after <= 8, "{closed_after}");
+    let opened_after = ticks_until(&lets_out, 1).expect("it has turned back");
+    assert!((DWELL_IN_BENDS_TICKS..=30).contains(&opened_after), "{opened_after}");
+}
+
+/// After a bend the rules of comfort hold from that tick on.
+#[test]
+fn after_a_bend_a_valve_waits_from_its_end() {
+    let apart = under(2.0e6, 2.6e6);
+    let mut springs = rested(&apart);
+    springs.step(&parameters(), &apart, &LOAD_N, ValveCommand::SOFT, Urgency::Comfort);
+    for _ in 0..SECOND {
+        springs.step(&parameters(), &apart, &LOAD_N, ValveCommand::SAFE, BEND);
+    }
+    let left = changes(&mut springs, &apart, only(&[Corner::FrontLeft]), Urgency::Comfort);
+    assert_eq!(left, Some(SECOND));
 }

@@ -1,5 +1,7 @@
 //! What a strategy is, and what it asks for.
 
+use oleo_interface::Side;
+
 use crate::estimate::Estimate;
 use crate::plausibility::Trusted;
 use crate::range::ConfigurationError;
@@ -7,15 +9,27 @@ use crate::valves::ValveCommand;
 use crate::vehicle::VehicleDescription;
 
 /// How much a change of springs matters against how smooth it is. See [`Demand`] for an example.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Urgency {
     /// Comfort: the change may wait for a smooth moment.
     #[default]
     Comfort,
     /// Handling: the change may wait for a fraction of a body oscillation.
     Handling,
-    /// Roll-over guard: the change happens now.
+    /// A bend: what is to close does so now, but a spring valve is open while that lets out a lean that was trapped behind it.
+    Bend {
+        /// Side to which the bend pushes the body.
+        outer: Side,
+    },
+    /// Roll-over guard: what is to close does so now.
     Emergency,
+}
+
+impl Urgency {
+    /// Whether a closing waits for nothing.
+    pub(crate) fn closes_at_once(self) -> bool {
+        matches!(self, Self::Bend { .. } | Self::Emergency)
+    }
 }
 
 /// What a strategy asks for in a tick.

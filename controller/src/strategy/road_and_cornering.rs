@@ -5,10 +5,11 @@
 //! | smooth road, or cornering | stiff | high |
 //! | rough road | soft | low |
 //! | rough road on which the body heaves | soft | damper 1 high, damper 2 low |
+//! | rough road, a bend is suspected | soft | high |
 //!
 //! On a smooth road nothing has to be decided in time, because the vehicle is stiff already. On a rough one it becomes stiff as
 //! soon as the lateral acceleration stands out of what the road does ([`super::parts::cornering`]), and at once: a lean that the closing
-//! springs trap is smaller than the one that a later closing would find. It stays so while the gas says that it leans
+//! springs trap is smaller than the one that a later closing would find, and the road lets it out again ([`crate::spring`]). It stays so while the gas says that it leans
 //! (`parts::load_transfer`). How rough the road is is told by the running RMS of the body's vertical acceleration, which is not
 //! judged while the vehicle corners, and does not begin to count as rough while the lateral acceleration has the greater RMS: a bend
 //! that is not recognised, on a vehicle whose sensors are off, must not open the springs.
@@ -16,16 +17,15 @@
 //! High damping quietens a body that heaves on its springs, and passes on what shakes the wheels. So damper 1 is set by the heave alone, the
 //! vertical acceleration below 5 Hz: `docs/controller.md` has the measurement.
 
-use oleo_interface::{Corners, StrutValves};
-
 use super::demand::{Decide, Demand, Urgency};
-use super::parts::{cornering, load_transfer, rollover_guard};
+use super::parts::cornering::{self, Cornering};
+use super::parts::{load_transfer, rollover_guard};
 use crate::estimate::Estimate;
 use crate::filter::LowPass;
 use crate::plausibility::Trusted;
 use crate::range::{ConfigurationError, Hysteresis};
 use crate::timing::ticks;
-use crate::valves::ValveCommand;
+use crate::valves::{BYPASS_BITS, BYPASS2_BITS, SPRING_BITS, ValveCommand};
 use crate::vehicle::VehicleDescription;
 
 /// What passes of a vertical acceleration as heave: what is below 5 Hz, looked at every 20 ms. Constants, because code that computes them
@@ -148,24 +148,30 @@ impl Decide for RoadAndCornering {
             estimate.roll_rad,
             state.corners,
         );
-        let corners = state.cornering.step(&self.cornering, estimate, leans);
+        let cornering = state.cornering.step(&self.cornering, estimate, leans);
+        let corners = matches!(cornering, Cornering::Yes(_));
         state.corners = corners;
         if state.load_transfer.has_looked() {
             self.look_at_road(state, estimate);
         }
-        let valves = if corners || rollover_guard || !state.rough {
-            ValveCommand::SAFE
+        // In a bend at once, whatever lean that traps: the road lets it out again. On a smooth road nothing was trapped, and what seems to
+        // be is a sensor that is off, or gas that is warmer than it was.
+        let (word, urgency) = if corners || rollover_guard {
+            match cornering {
+                Cornering::Yes(outer) if state.rough && !rollover_guard => (0, Urgency::Bend { outer }),
+                _ => (0, Urgency::Emergency),
+            }
+        } else if !state.rough {
+            (0, Urgency::Comfort)
+        } else if cornering == Cornering::Suspected {
+            (SPRING_BITS, Urgency::Comfort)
+        } else if state.heaves {
+            (SPRING_BITS | BYPASS2_BITS, Urgency::Comfort)
         } else {
-            ValveCommand::from_corners(Corners::splat(StrutValves::new(!state.heaves, true, true)))
-        };
-        // At once, whatever lean that traps.
-        let urgency = if rollover_guard || corners {
-            Urgency::Emergency
-        } else {
-            Urgency::Comfort
+            (SPRING_BITS | BYPASS_BITS, Urgency::Comfort)
         };
         Demand {
-            valves,
+            valves: ValveCommand::from_word(word),
             urgency,
             handling: corners,
             rollover_guard,
@@ -206,6 +212,7 @@ impl RoadAndCornering {
 mod tests {
     use super::*;
     use crate::lateral::Bands;
+    use oleo_interface::Side;
 
     fn opens(vertical_rms: f32, lateral_rms: f32) -> bool {
         let strategy = RoadAndCornering::new(&VehicleDescription::default(), &Tuning::default());
@@ -269,7 +276,7 @@ mod tests {
     #[test]
     fn what_each_road_gets() {
         let soft = ValveCommand::SOFT;
-        let firm = ValveCommand::from_corners(Corners::splat(StrutValves::new(false, true, true)));
+        let firm = ValveCommand::from_word(SPRING_BITS | BYPASS2_BITS);
         for (vertical_rms, heave_rms, valves) in [
             (0.1, 0.1, ValveCommand::SAFE),
             (0.5, 0.5, soft),
@@ -282,11 +289,28 @@ mod tests {
                 (valves, Urgency::Comfort, false),
                 "{vertical_rms} m/s2"
             );
-            // A bend closes all valves at once on every road.
+            // A suspected one leaves the springs as they are, and the dampers are high.
+            let demand = on(vertical_rms, heave_rms, 0.21, 0.0);
+            let suspected = if vertical_rms > 0.25 {
+                ValveCommand::from_word(SPRING_BITS)
+            } else {
+                ValveCommand::SAFE
+            };
+            assert_eq!(
+                (demand.valves, demand.urgency, demand.handling),
+                (suspected, Urgency::Comfort, false),
+                "{vertical_rms} m/s2"
+            );
+            // A bend to the left closes all valves on every road, and lets out on a rough one what lean that traps.
+            let in_bend = if vertical_rms > 0.25 {
+                Urgency::Bend { outer: Side::Right }
+            } else {
+                Urgency::Emergency
+            };
             let demand = on(vertical_rms, heave_rms, 3.5, 0.0);
             assert_eq!(
                 (demand.valves, demand.urgency, demand.handling, demand.rollover_guard),
-                (ValveCommand::SAFE, Urgency::Emergency, true, false)
+                (ValveCommand::SAFE, in_bend, true, false)
             );
             // And so does the guard, in the same bend.
             let demand = on(vertical_rms, heave_rms, 3.5, 0.1);

@@ -82,6 +82,7 @@ mod tests {
     use super::*;
     use crate::lateral::Bands;
     use crate::strategy::Urgency;
+    use oleo_interface::Side;
 
     /// After ten seconds on a road with this vertical RMS, m/s2, with the front left strut near its stop, and a lateral acceleration, m/s2.
     fn demand(policy: semi_active::DamperPolicy, vertical_rms: f32, lateral_m_s2: f32) -> Demand {
@@ -113,7 +114,7 @@ mod tests {
         let bend = demand(policy, 2.0, 3.5);
         assert_eq!(
             (bend.valves, bend.urgency, bend.handling),
-            (ValveCommand::SAFE, Urgency::Emergency, true)
+            (ValveCommand::SAFE, Urgency::Bend { outer: Side::Right }, true)
         );
         let mut expected = ValveCommand::SOFT;
         for valve in [Valve::Bypass1, Valve::Bypass2] {

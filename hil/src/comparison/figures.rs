@@ -22,8 +22,8 @@ pub struct Figures {
     pub weighted_rms_m_s2: f64,
     /// Largest roll of the body, degrees; 90 for a vehicle that rolled over.
     pub peak_roll_deg: f64,
-    /// From when the manoeuvre began until all valves are commanded closed, s; `None` without a manoeuvre or where it never
-    /// happened.
+    /// From when the manoeuvre began until the controller takes the drive for cornering, or all valves are commanded closed, s; `None`
+    /// without a manoeuvre or where it never happened.
     pub decision_s: Option<f64>,
     /// Times that the controller took the drive for cornering.
     pub entries: u32,
@@ -91,7 +91,7 @@ impl Witness for Scored {
         let tick = self.ticks;
         self.ticks += 1;
         let begun = self.begun_tick.is_some_and(|begun| tick >= begun);
-        if begun && self.decided.is_none() && now.command == ValveCommand::SAFE {
+        if begun && self.decided.is_none() && (now.handling || now.command == ValveCommand::SAFE) {
             self.decided = Some(tick);
         }
         if tick >= self.scored_from_tick {

@@ -49,7 +49,7 @@ pub struct Scores {
     pub roll_ratio_to_stiff: f64,
     /// Peak roll over that of the vehicle as sold, the worst manoeuvre on a flat road and on class C.
     pub roll_ratio_to_baseline: f64,
-    /// Time from |a_y| > 0.5 m/s2 until all valves are commanded closed, s: the worst drive on a flat road and on class C.
+    /// Time from |a_y| > 0.5 m/s2 until it is taken for cornering or all valves are commanded closed, s: the worst drive on a flat road and on class C.
     pub decision_s: f64,
     /// Decisions for cornering a kilometre straight ahead, the worst road and speed.
     pub false_entries_per_km: f64,

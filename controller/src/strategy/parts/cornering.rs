@@ -11,6 +11,7 @@
 //!   measure            m   = e_q (a_q / b_q)^2 + e_s (a_s / b_s)^2            if both are to the same side
 //!                          = max(e_q (a_q / b_q)^2, e_s (a_s / b_s)^2) / 2    if not
 //!                            e_q = 1.2, e_s = 0.6
+//!   suspects           m (1 + 0.03 l) > 0.7
 //!   corners            m > 1:    for 0.4 s at least
 //!                      m > 1.6^2: until |a_q| < 0.6 b_q and |a_s| < 0.6 b_s, and the gas carries both sides alike
 //!                      (`load_transfer`), for 1.5 s in all
@@ -21,6 +22,8 @@
 //! crosses zero in between, hence 1.5 s. It also exceeds the bounds by far soon after its beginning, which a false decision hardly
 //! ever does, and so a false one costs little ride. docs/controller.md says where the multiples come
 //! from.
+
+use oleo_interface::Side;
 
 use crate::estimate::Estimate;
 use crate::filter::{LowPass, at_least};
@@ -39,6 +42,10 @@ const QUICK_SHARE: f32 = 1.2;
 const SLOW_SHARE: f32 = 0.6;
 /// Part of the measure that counts where the two bands point to opposite sides.
 const OPPOSED: f32 = 0.5;
+/// Measure from which a bend is suspected, and how much more a measure counts for that with the square of the witness over the lift-off
+/// value: the rougher the road, the later a decision and the less a suspicion costs.
+const SUSPICION: f32 = 0.7;
+const SUSPICION_GROWTH: f32 = 0.03;
 /// Time before the road is known well enough to tell a bend from it. Uneven load is learnt as long as this (`estimate`), and is a bend
 /// to the estimate until it is known.
 const LEARNING_TICKS: u16 = ticks(2_500);
@@ -191,6 +198,19 @@ pub(crate) struct State {
     known: u16,
     /// Ticks for which cornering is held yet.
     hold: u16,
+    /// Whether the body is pushed to the right, as the last decision had it.
+    to_right: bool,
+}
+
+/// Whether the vehicle corners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Cornering {
+    /// It does not.
+    No,
+    /// A bend is suspected that has not been decided on.
+    Suspected,
+    /// It does, and the body is pushed to this side.
+    Yes(Side),
 }
 
 impl State {
@@ -200,10 +220,11 @@ impl State {
         corrected: false,
         known: 0,
         hold: 0,
+        to_right: false,
     };
 
     /// One tick, with whether the gas says that the vehicle leans; returns whether it corners.
-    pub fn step(&mut self, c: &Parameters, estimate: &Estimate, leans: bool) -> bool {
+    pub fn step(&mut self, c: &Parameters, estimate: &Estimate, leans: bool) -> Cornering {
         let lateral = &estimate.lateral;
         let squares = lateral.acceleration_m_s2.squared();
         let witnesses = lateral.witness_m_s2.squared();
@@ -256,7 +277,7 @@ impl State {
             band.own += own_part * (if learning || square < largest { square } else { largest } - band.own);
         }
         if learning {
-            return false;
+            return Cornering::No;
         }
         let ([quick, slow], [quick_bound, slow_bound]) = (squares, bounds);
         let Bands { quick: a, slow: b } = lateral.acceleration_m_s2;
@@ -275,10 +296,17 @@ impl State {
                 WEAK_HOLD_TICKS
             };
             self.hold = self.hold.max(hold);
+            self.to_right = a > 0.0;
         } else if quick < c.release_2 * one && slow < c.release_2 * one && !leans {
             self.hold = self.hold.saturating_sub(1);
         }
-        self.hold > 0
+        if self.hold > 0 {
+            Cornering::Yes(if self.to_right { Side::Right } else { Side::Left })
+        } else if measure + SUSPICION_GROWTH * lift_off * measure > SUSPICION * one {
+            Cornering::Suspected
+        } else {
+            Cornering::No
+        }
     }
 }
 

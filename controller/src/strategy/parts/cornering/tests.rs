@@ -1,5 +1,6 @@
 //! What is a bend and what is not, against the bounds of the controller's page in f64.
 
+extern crate std;
 use super::*;
 use crate::lateral::Lateral;
 
@@ -19,6 +20,10 @@ fn estimate(acceleration: f32, witness: f32, corrected: bool) -> Estimate {
     }
 }
 
+fn corners(cornering: Cornering) -> bool {
+    matches!(cornering, Cornering::Yes(_))
+}
+
 /// A sine of an RMS value, m/s2.
 fn sway(tick: usize, rms: f32) -> f32 {
     core::f32::consts::SQRT_2 * rms * libm::sinf(0.05 * tick as f32)
@@ -33,11 +38,11 @@ fn after_a_road(witness: f32, error: f32, corrected: bool, quick: f32, slow: f32
             &estimate(sway(tick, error), sway(tick + 30, witness), corrected),
             false,
         );
-        assert!(!now, "tick {tick}");
+        assert!(!corners(now), "tick {tick}");
     }
     let mut asked = estimate(quick, 0.0, corrected);
     asked.lateral.acceleration_m_s2.slow = slow;
-    state.step(&c, &asked, false)
+    corners(state.step(&c, &asked, false))
 }
 
 #[test]
@@ -82,11 +87,11 @@ fn a_weak_decision_is_over_sooner() {
         }
         let mut begin = estimate(asked, 0.0, true);
         begin.lateral.acceleration_m_s2.slow = 0.01;
-        assert!(state.step(&c, &begin, false));
+        assert!(corners(state.step(&c, &begin, false)));
         for _ in 1..hold {
-            assert!(state.step(&c, &estimate(0.0, 0.0, true), false), "{asked}");
+            assert!(corners(state.step(&c, &estimate(0.0, 0.0, true), false)), "{asked}");
         }
-        assert!(!state.step(&c, &estimate(0.0, 0.0, true), false), "{asked}");
+        assert!(!corners(state.step(&c, &estimate(0.0, 0.0, true), false)), "{asked}");
     }
 }
 
@@ -96,11 +101,59 @@ fn cornering_outlasts_the_crossing_of_a_lane_change_and_ends() {
     for _ in 0..1_000 {
         state.step(&c, &estimate(0.0, 0.0, true), false);
     }
-    assert!(state.step(&c, &estimate(3.0, 0.0, true), false));
+    assert!(corners(state.step(&c, &estimate(3.0, 0.0, true), false)));
     for _ in 1..HOLD_TICKS {
-        assert!(state.step(&c, &estimate(0.0, 0.0, true), false));
+        assert!(corners(state.step(&c, &estimate(0.0, 0.0, true), false)));
     }
-    assert!(!state.step(&c, &estimate(0.0, 0.0, true), false));
+    assert!(!corners(state.step(&c, &estimate(0.0, 0.0, true), false)));
+}
+
+/// A measure of 0.7 on a smooth road, and of 0.7 / (1 + 0.03 l) on a rough one: with a witness of 2.5 m/s2 `l` is 25.
+#[test]
+fn a_bend_is_suspected_before_it_is_decided_on() {
+    for (witness, bound, suspected) in [(0.0, 0.3, 0.7_f32), (2.5, 0.6 * 2.5 * 26.0_f32.sqrt(), 0.7 / 1.75)] {
+        let (c, mut state) = (Parameters::new(&Tuning::default()), State::INITIAL);
+        for _ in 0..4_000 {
+            state.step(&c, &estimate(0.0, witness, true), false);
+        }
+        // The quick band alone: a measure of 1.2 times the square.
+        let mut asked = |measure: f32| {
+            let mut estimate = estimate(0.0, witness, true);
+            estimate.lateral.acceleration_m_s2 = Bands {
+                quick: bound * (measure / QUICK_SHARE).sqrt(),
+                slow: 1e-6,
+            };
+            state.step(&c, &estimate, false)
+        };
+        assert_eq!(asked(0.97 * suspected), Cornering::No, "{witness}");
+        assert_eq!(asked(1.03 * suspected), Cornering::Suspected, "{witness}");
+        assert_eq!(asked(0.97), Cornering::Suspected, "{witness}");
+        assert_eq!(asked(0.0), Cornering::No, "it is not held");
+        assert_eq!(asked(1.03), Cornering::Yes(Side::Right), "{witness}");
+    }
+}
+
+/// The side is that of the last decision, whatever the estimate does between two of them.
+#[test]
+fn a_bend_pushes_to_the_side_of_the_last_decision() {
+    let (c, mut state) = (Parameters::new(&Tuning::default()), State::INITIAL);
+    for _ in 0..1_000 {
+        state.step(&c, &estimate(0.0, 0.0, true), false);
+    }
+    // A left turn pushes the body to the right.
+    for (asked, side) in [
+        (3.0, Side::Right),
+        (0.0, Side::Right),
+        (-0.1, Side::Right),
+        (-3.0, Side::Left),
+        (0.1, Side::Left),
+    ] {
+        assert_eq!(
+            state.step(&c, &estimate(asked, 0.0, true), false),
+            Cornering::Yes(side),
+            "{asked}"
+        );
+    }
 }
 
 #[test]
@@ -110,24 +163,24 @@ fn cornering_is_not_over_while_the_gas_leans() {
         state.step(&c, &estimate(0.0, 0.0, true), false);
     }
     assert!(
-        !state.step(&c, &estimate(0.0, 0.0, true), true),
+        !corners(state.step(&c, &estimate(0.0, 0.0, true), true)),
         "a lean alone is no bend"
     );
-    assert!(state.step(&c, &estimate(3.0, 0.0, true), false));
+    assert!(corners(state.step(&c, &estimate(3.0, 0.0, true), false)));
     for _ in 0..2 * HOLD_TICKS {
-        assert!(state.step(&c, &estimate(0.0, 0.0, true), true));
+        assert!(corners(state.step(&c, &estimate(0.0, 0.0, true), true)));
     }
     for _ in 1..HOLD_TICKS {
-        assert!(state.step(&c, &estimate(0.0, 0.0, true), false));
+        assert!(corners(state.step(&c, &estimate(0.0, 0.0, true), false)));
     }
-    assert!(!state.step(&c, &estimate(0.0, 0.0, true), false));
+    assert!(!corners(state.step(&c, &estimate(0.0, 0.0, true), false)));
 }
 
 #[test]
 fn nothing_is_decided_while_the_road_is_learnt() {
     let (c, mut state) = (Parameters::new(&Tuning::default()), State::INITIAL);
     for _ in 0..LEARNING_TICKS {
-        assert!(!state.step(&c, &estimate(5.0, 0.0, false), false));
+        assert!(!corners(state.step(&c, &estimate(5.0, 0.0, false), false)));
     }
 }
 

@@ -21,7 +21,7 @@
 //!   change together. After 1 s it opens anyway, but throttled: valve 2 stays closed, so that the volumes equalise through
 //!   damper 2, until p3 and p4 are within 0.2 MPa of each other.
 //! - A valve does not move again within 0.5 s, except to close in an emergency.
-//! - In a bend a valve closes when its strut has its turn, and opens only to let out a lean that was trapped ([`trapped_lean`]).
+//! - In a bend a valve closes when its strut has its turn, and opens only to let out a lean that was trapped (`spring/trapped_lean.rs`).
 //!
 //! The shift that a closing in a bend or an emergency traps has no bound. [`Springs::trapped_shift_m`] reports it, and the next opening
 //! releases it.

@@ -67,7 +67,6 @@ fn main() -> ! {
         say!("mode {} for {} ticks", mode, ticks);
     }
     say!("handling for {} ticks, {} changes of the valve word", handling, changes);
-    for (index, cost) in tick_costs.iter().enumerate().filter(|(_, c)| **c >= 2880) { say!("AT {} {}", index, cost); }
     let mut within = true;
     for (name, costs) in ["tick", "node tick", "receive six frames"].into_iter().zip(&mut costs) {
         costs.sort_unstable();

@@ -12,8 +12,8 @@ use super::figures::Figures;
 use super::plan::Group;
 use super::setting::Setting;
 
-/// Raised with every change of the models or of the figures that changes results.
-const MODEL_VERSION: u32 = 1;
+/// Raised with every change of the models, of the controller or of the figures that changes results.
+const MODEL_VERSION: u32 = 2;
 
 /// A comparison that ended early.
 #[derive(Debug, thiserror::Error)]

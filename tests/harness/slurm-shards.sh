@@ -4,7 +4,7 @@
 #
 #     tests/harness/slurm-shards.sh OLEO FOLDER
 set -u
-readonly oleo=$1 shards=12 killed=7 vehicles=48
+readonly oleo=$1 shards=12 vehicles=48
 cd "$2" || exit 1
 study() { echo study robust --vehicles "$vehicles" --first 100; }
 fail() { echo "slurm-shards: $1"; tail -n 3 merged.shards/log/* 2> /dev/null; exit 1; }
@@ -16,12 +16,16 @@ drain() {
     done
     fail "jobs do not end: $(squeue --noheader)"
 }
-# The process of a task: that with this folder on its command line and this number in its environment.
-task() {
-    local process
-    for process in /proc/[0-9]*; do
-        tr '\0' '\n' 2> /dev/null < "$process/cmdline" | grep -qx -e "--out=$PWD/merged.shards" || continue
-        tr '\0' '\n' 2> /dev/null < "$process/environ" | grep -qx "SLURM_ARRAY_TASK_ID=$1" && echo "${process#/proc/}"
+# A shard that is at work and has something done already, so that it has what it can go on from: its process and its number.
+at_work() {
+    local process number
+    for process in $(pgrep -f -- "--out=$PWD/merged.shards"); do
+        number=$(tr '\0' '\n' 2> /dev/null < "/proc/$process/environ" | sed -n 's/^SLURM_ARRAY_TASK_ID=//p')
+        [ -n "$number" ] || continue
+        if [ -n "$(find merged.shards -name "$(printf 'shard-%02d-of-*.begun' "$number")" -size +0)" ]; then
+            echo "$process $number"
+            return
+        fi
     done
 }
 
@@ -33,14 +37,14 @@ submit() { "$oleo" submit --shards "$shards" -- $(study) --out merged; }
 submit || fail "not submitted"
 submit 2> again.log && fail "submitted twice"
 grep -q 'still runs shards' again.log || fail "refused for another reason: $(cat again.log)"
+pid='' killed=''
 for _ in $(seq 3000); do
-    pid=$(task "$killed")
-    # With something done already, so that it has what it can go on from.
-    [ -n "$pid" ] && [ -s "$(echo merged.shards/shard-*"$killed"-of-*.begun)" ] && break
+    read -r pid killed <<< "$(at_work)"
+    if [ -n "$pid" ] || [ -e merged ]; then break; fi
     sleep 0.02
 done
-[ -n "$pid" ] || fail "task $killed was not seen"
-kill -9 "$pid" || fail "task $killed could not be killed"
+[ -n "$pid" ] || fail "no shard was seen at work"
+kill -9 "$pid" || fail "shard $killed could not be killed"
 echo "shard $killed killed"
 drain
 finished=$(find merged.shards -name '*.records' | wc -l)

@@ -8,10 +8,10 @@
 //! mean of a step of steer and two lane changes at 60 km/h, each the mean over the seeds. No controller can know what these rules know; they
 //! tell what closing in another way would earn.
 
-use oleo_hil::comparison::{Bench, DriveCase, Setting, beginning_s, drive};
+use oleo_hil::comparison::{Bench, DriveCase, SCORED_FROM_S, Setting, beginning_s, drive};
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Absolute, Corner, Corners, Gauge, Side, StrutValves};
-use oleo_plant_sim::course::{Course, Drive, DriverStyle, LaneChange};
+use oleo_plant_sim::course::{Course, Drive, DriverStyle, Ending, LaneChange};
 use oleo_plant_sim::road;
 use oleo_plant_sim::strut::{Strut, StrutOutput};
 use oleo_plant_sim::vehicle::StrutElement;
@@ -49,7 +49,7 @@ const RULES: [(&str, Rule); 5] = [
 ];
 
 /// What the springs know of a strut: the shift that closing would trap, m, and the force step that opening would make over the static load.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Look {
     shift_m: f64,
     step_share: f64,
@@ -73,8 +73,8 @@ fn look(bench: &Bench, now: &Corners<StrutOutput>, before: &Corners<StrutOutput>
     })
 }
 
-/// Peak roll of a drive whose springs close by a rule, rad.
-fn peak_roll_rad(bench: &Bench, case: &DriveCase, rule: Rule, delay_s: f64) -> f64 {
+/// Peak roll of a drive whose springs close by a rule, degrees, counted as that of the stiff vehicle is.
+fn peak_roll_deg(bench: &Bench, case: &DriveCase, rule: Rule, delay_s: f64) -> f64 {
     let track = case.manoeuvre.track(case.driver, bench.vehicle.layout.width_m);
     let course = Course {
         manoeuvre: case.manoeuvre,
@@ -89,9 +89,12 @@ fn peak_roll_rad(bench: &Bench, case: &DriveCase, rule: Rule, delay_s: f64) -> f
     let (mut springs, mut peak_rad, mut lateral_m_s2, mut outer) = (Corners::splat(true), 0.0_f64, 0.0, OUTER);
     let mut before = drive.model().strut_output();
     while drive.ending().is_none() {
-        let since_s = f64::from(drive.ticks()) * TICK_S - begins_s;
+        let time_s = f64::from(drive.ticks()) * TICK_S;
+        let since_s = time_s - begins_s;
         let motion = drive.model().motion();
-        peak_rad = peak_rad.max(motion.roll_rad.abs());
+        if time_s >= SCORED_FROM_S {
+            peak_rad = peak_rad.max(motion.roll_rad.abs());
+        }
         lateral_m_s2 += TICK_S / SIDE.0 * (motion.lateral_acceleration_m_s2 - lateral_m_s2);
         if since_s > delay_s && f64::abs(lateral_m_s2) > SIDE.1 {
             outer = if lateral_m_s2 > 0.0 { Side::Right } else { Side::Left };
@@ -124,7 +127,10 @@ fn peak_roll_rad(bench: &Bench, case: &DriveCase, rule: Rule, delay_s: f64) -> f
         let signals = springs.map(|open| StrutValves::new(low, low, open));
         drive.tick(signals, |_| {}).expect("finite motion");
     }
-    peak_rad
+    match drive.ending() {
+        Some(Ending::RolledOver(_)) => 90.0,
+        _ => peak_rad.to_degrees(),
+    }
 }
 
 fn manoeuvres(road: &str, seed: u64) -> [DriveCase; 3] {
@@ -157,7 +163,7 @@ fn main() {
                     let mut case = manoeuvres(road, seed)[which].clone();
                     case.begins_s = begins_s;
                     let stiff = drive(&bench, &case, &Setting::STIFF).expect("a built-in vehicle");
-                    let ruled = RULES.map(|(_, rule)| peak_roll_rad(&bench, &case, rule, delay_s).to_degrees());
+                    let ruled = RULES.map(|(_, rule)| peak_roll_deg(&bench, &case, rule, delay_s));
                     (stiff.peak_roll_deg, ruled)
                 })
                 .collect();

@@ -25,7 +25,7 @@ pub use bench::Bench;
 pub use case::DriveCase;
 pub use compare::{CompareError, Job, Results, by_group, compare, jobs, settings, with_beginnings};
 pub use drive::{ComparisonError, beginning_s, drive, estimates};
-pub use figures::Figures;
+pub use figures::{Figures, SCORED_FROM_S};
 pub use history::{History, history};
 pub use plan::{Extent, Group, groups};
 pub use robust::{DRIVES, VariedResult, robust};

@@ -42,12 +42,7 @@ fn effects(report: &Value) -> Vec<String> {
 
 #[test]
 fn one_altered_strut_is_named_with_its_corner() {
-    let concealed = Concealed {
-        id: EffectId::GasChargeError,
-        variant: 1,
-        amount: 0.1,
-        corners: vec![Corner::RearLeft],
-    };
+    let concealed = Concealed::new(EffectId::GasChargeError, 1, 0.1, vec![Corner::RearLeft]);
     let case = Case {
         seed: 3,
         concealed: vec![concealed],

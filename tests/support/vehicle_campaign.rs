@@ -9,7 +9,7 @@ use std::path::Path;
 
 use oleo_controller::can::{COMMAND, CommandMessage, FRAME_BYTES, MESSAGES, Protector};
 use oleo_controller::{Inputs, PlantEnd, Strategy, ValveCommand};
-use oleo_diagnose::effect::{Drawn, of};
+use oleo_diagnose::effect::{Drawn, TrueNumber, of};
 use oleo_diagnose::selftest::{Draw, nominal};
 use oleo_diagnose::vocabulary::EffectId;
 use oleo_hil::frame::standard;
@@ -30,8 +30,38 @@ pub struct Concealed {
     pub variant: usize,
     /// Its amount, in the unit of its first parameter.
     pub amount: f64,
+    /// 1 or -1, for what may have either sign.
+    pub sign: f64,
+    /// Uniform numbers in 0..1 that shape the rest.
+    pub shape: [f64; 4],
     /// The corners that have it.
     pub corners: Vec<Corner>,
+}
+
+impl Concealed {
+    /// A positive amount of an effect, whose other numbers lie in the middle of what is drawn.
+    pub fn new(id: EffectId, variant: usize, amount: f64, corners: Vec<Corner>) -> Self {
+        Self {
+            id,
+            variant,
+            amount,
+            sign: 1.0,
+            shape: [0.5; 4],
+            corners,
+        }
+    }
+
+    /// Puts the effect into the model of a strut, and returns the numbers that should be found.
+    pub fn put(&self, model: &mut StrutModel) -> Vec<TrueNumber> {
+        let drawn = Drawn {
+            variant: self.variant,
+            sign: self.sign,
+            shape: self.shape,
+            response: model.response_polynomial_s(),
+        };
+        let effect = of(self.id).in_strut().expect("an effect of struts");
+        effect.put_true(model, &drawn, self.amount)
+    }
 }
 
 /// A campaign to make.
@@ -142,14 +172,7 @@ pub fn write(case: &Case, folder: &Path) {
         complete.cylinder.static_pressure_pa = static_pa;
         let mut model = within_tolerance(&complete, &mut draw);
         for concealed in own {
-            let response = model.response_polynomial_s();
-            let drawn = Drawn {
-                variant: concealed.variant,
-                sign: 1.0,
-                shape: [0.5; 4],
-                response,
-            };
-            effect(concealed).put_true(&mut model, &drawn, concealed.amount);
+            concealed.put(&mut model);
         }
         let _ = writeln!(index, "{} = \"{}.toml\"", corner.key(), corner.name());
         std::fs::write(folder.join(format!("{}.toml", corner.name())), given.to_toml()).expect("a strut file");

@@ -1,18 +1,17 @@
 //! Model and drives of a vehicle put together: a strut with its recordings at every corner.
 
-use std::sync::atomic::AtomicBool;
-
-use oleo_interface::{Corner, Corners, Valve};
+use oleo_interface::tick::TICK_S;
+use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::strut::StrutModel;
 
 use super::body::BodyCampaign;
 use super::bridge::bridge;
+use super::command_timing::{a_sample_later, acts_later};
 use super::drive::{Drive, Resolution};
 use super::model::{BodyModel, VehicleModel};
 use super::stretch::{BridgedDrive, Chosen, choose};
 use crate::campaign::{Campaign, MODEL_FILE};
 use crate::error::DiagnoseError;
-use crate::estimation::{LeastSquares, Point};
 use crate::recording::Recording;
 use crate::specimen::strut::TwoStageStrut;
 
@@ -63,11 +62,12 @@ impl VehicleCampaign {
         let at_once = specimens(&struts, &recordings)?;
         let a_tick_later = specimens(
             &struts,
-            &recordings.map(|all| all.into_iter().map(a_tick_later).collect()),
+            &recordings.map(|all| all.into_iter().map(a_sample_later).collect()),
         )?;
-        let is_later = misfit(&a_tick_later) < misfit(&at_once);
+        let period_s = drives.first().map_or(TICK_S, |drive| drive.period_s);
+        let is_later = acts_later(&at_once, &a_tick_later, period_s)?;
         if is_later {
-            let period_ms = (1e4 * drives.first().map_or(0.0, |drive| drive.period_s)).round() / 10.0;
+            let period_ms = (1e4 * period_s).round() / 10.0;
             notes.push(format!(
                 "The commands act one tick ({period_ms} ms) after the sample whose tick they echo: with this the believed models fit the \
                  edges of the valves better."
@@ -115,29 +115,6 @@ fn specimens(
     Corners::try_from_fn(|corner| {
         TwoStageStrut::in_vehicle(struts[corner].clone(), recordings[corner].clone()).map_err(DiagnoseError::Model)
     })
-}
-
-/// The recording with its switching signals one sample later. Whether a command acts at the sample whose tick it echoes or at the next
-/// one depends on what a node calls the end of its tick.
-fn a_tick_later(mut recording: Recording) -> Recording {
-    let first_signal = recording.columns.len() - Valve::ALL.len();
-    for signal in &mut recording.columns[first_signal..] {
-        if let Some(&first) = signal.first() {
-            signal.rotate_right(1);
-            signal[0] = first;
-        }
-    }
-    recording
-}
-
-/// Sum over the corners of the logarithm of what the believed model costs, so that one bad strut does not decide for all.
-fn misfit(specimens: &Corners<TwoStageStrut>) -> f64 {
-    let stop = AtomicBool::new(false);
-    let of = |specimen: &TwoStageStrut| {
-        let cost = LeastSquares::new(specimen, &stop).cost_at(&Point::nominal(specimen));
-        cost.map_or(f64::INFINITY, libm::log)
-    };
-    specimens.values().map(of).sum()
 }
 
 /// A strut whose readings are rounded besides being noisy.

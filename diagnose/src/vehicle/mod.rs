@@ -21,6 +21,7 @@
 //! | `body` | the balance of the body, where drives have an inertial unit |
 //! | `bridge` | missing readings: what is interpolated, and what no longer counts |
 //! | `stretch` | the parts of the drives that are used, and why |
+//! | `command_timing` | when a logged command acts on the valves |
 //! | `campaign` | model and drives put together |
 //! | `common` | effects that all four corners have with one value |
 //! | `diagnosis` | the diagnosis of the vehicle |
@@ -30,6 +31,7 @@
 mod body;
 mod bridge;
 mod campaign;
+mod command_timing;
 mod common;
 mod diagnosis;
 mod drive;

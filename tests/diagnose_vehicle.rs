@@ -49,6 +49,7 @@ fn one_altered_strut_is_named_with_its_corner() {
         drives: drives(3, DURATION_S),
         first_edition: true,
         command_acts_late: false,
+        begins_s: 0.0,
     };
     let (folder, report) = diagnosed(&case);
     assert_eq!(
@@ -104,6 +105,7 @@ fn commands_that_act_a_tick_late_are_not_taken_for_missing_physics() {
         drives: drives(5, DURATION_S),
         first_edition: false,
         command_acts_late: true,
+        begins_s: 0.0,
     };
     let (_folder, report) = diagnosed(&case);
     assert_eq!(report["verdict"], "consistent", "{:#}", report["effects"]);
@@ -118,6 +120,44 @@ fn commands_that_act_a_tick_late_are_not_taken_for_missing_physics() {
         "{}",
         report["notes"]
     );
+}
+
+#[test]
+fn logs_that_begin_in_motion_are_diagnosed_and_their_files_say_so_again() {
+    // What all corners lack outweighs by far what a tick makes of the valves' edges.
+    let concealed = Concealed::new(EffectId::OilCompressibility, 0, 1.0 / 1.4e9, Corner::ALL.to_vec());
+    let case = Case {
+        seed: 6,
+        concealed: vec![concealed],
+        drives: drives(6, DURATION_S),
+        first_edition: false,
+        command_acts_late: false,
+        begins_s: 2.5,
+    };
+    let (folder, report) = diagnosed(&case);
+    assert_eq!(
+        effects(&report),
+        ["oil_compressibility@vehicle/main-chamber"],
+        "{:#}",
+        report["fit"]
+    );
+    assert!(
+        !report["notes"].to_string().contains("The commands act one tick"),
+        "{}",
+        report["notes"]
+    );
+    let modulus = &report["effects"][0]["parameters"]["bulk_modulus_Pa"]["value"];
+    assert!(
+        (modulus.as_f64().expect("a number") / 1.4e9 - 1.0).abs() < 0.02,
+        "{modulus}"
+    );
+    let fitted = report["calibration"].to_string();
+    assert!(
+        fitted.contains("gas_temperature_1_K at the beginning of belgian"),
+        "{fitted}"
+    );
+    let file = std::fs::read_to_string(folder.path().join("found/front-left.toml")).expect("a file");
+    assert!(file.starts_with("starts_at_rest = false"), "{file}");
 }
 
 #[test]
@@ -146,8 +186,8 @@ fn what_cannot_be_used_is_refused_in_one_line() {
     assert!(refused(&[path(folder.path())]).contains("holds no drive"));
     write("a.log", "(1.000000) can0 123#00\n(1.100000) can0 124#00\n");
     assert!(refused(&[path(folder.path())]).contains("strut.toml"));
-    write("strut.toml", &format!("starts_at_rest = false\n{strut}"));
-    assert!(refused(&[path(folder.path())]).contains("starts_at_rest is false"));
+    write("strut.toml", &format!("starts_at_rest = 3\n{strut}"));
+    assert!(refused(&[path(folder.path())]).contains("starts_at_rest is 3"));
     write("strut.toml", &strut);
     let text = refused(&[path(folder.path())]);
     assert!(

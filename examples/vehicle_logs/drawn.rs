@@ -1,7 +1,7 @@
 //! Cases in which everything is drawn: effects, corners, sizes, roads, speeds, strategies, and when commands act.
 
 use oleo_controller::Strategy;
-use oleo_diagnose::effect::of;
+use oleo_diagnose::effect::{StrutEffect, of};
 use oleo_diagnose::selftest::Draw;
 use oleo_diagnose::vocabulary::EffectId;
 use oleo_hil::Scenario;
@@ -33,15 +33,18 @@ const VISIBLE: [EffectId; 17] = [
 ];
 /// Part of the largest amount from which amounts are drawn, evenly in their logarithm.
 const SMALLEST_PART: f64 = 3e-3;
-/// Roads that are drawn from.
-const ROADS: [&str; 4] = ["iso-c", "iso-d", "iso-e", "belgian"];
+/// Roads that are drawn from, each with the fastest drive on it, m/s.
+const ROADS: [(&str, f64); 4] = [("iso-c", 20.0), ("iso-d", 16.0), ("iso-e", 9.0), ("belgian", 14.0)];
 /// Shortest and longest drive, s.
 const DURATION_S: (f64, f64) = (18.0, 40.0);
-/// Slowest and fastest drive, m/s.
-const SPEED_M_S: (f64, f64) = (8.0, 20.0);
+/// Slowest drive, m/s.
+const SLOWEST_M_S: f64 = 6.0;
 
-/// The case of a seed.
-pub fn case(seed: u64) -> Case {
+/// Times after the start at which a log may begin that does not begin at rest, s.
+const MOTION_S: (f64, f64) = (2.0, 9.0);
+
+/// The case of a seed, whose logs begin in motion or at rest.
+pub fn case(seed: u64, in_motion: bool) -> Case {
     let mut draw = Draw::named(&format!("drawn vehicle {seed}"));
     let number = match draw.uniform() {
         u if u < 0.1 => 0,
@@ -69,14 +72,18 @@ pub fn case(seed: u64) -> Case {
         drives,
         first_edition: draw.uniform() < 0.5,
         command_acts_late: draw.uniform() < 0.25,
+        begins_s: if in_motion {
+            draw.between(MOTION_S.0, MOTION_S.1)
+        } else {
+            0.0
+        },
     }
 }
 
 fn effect(draw: &mut Draw) -> Concealed {
     let id = VISIBLE[draw.index(VISIBLE.len())];
     let effect = of(id).in_strut().expect("an effect of struts");
-    // The displacement's own instrument shows only through what it does to the pressures.
-    let variant = draw.index(effect.variants());
+    let variant = recorded_variant(effect, draw);
     let amount = effect.amounts(variant).map_or(1.0, |(low, high)| {
         let low = low.max(SMALLEST_PART * high);
         low * libm::pow(high / low, draw.uniform())
@@ -100,10 +107,21 @@ fn effect(draw: &mut Draw) -> Concealed {
     }
 }
 
+/// A variant that is not of the load cell, which no vehicle has.
+fn recorded_variant(effect: &dyn StrutEffect, draw: &mut Draw) -> usize {
+    loop {
+        let variant = draw.index(effect.variants());
+        if effect.faulty_column(variant) != Some("force_N") {
+            return variant;
+        }
+    }
+}
+
 /// The drive with another duration, and with another road and speed where it goes straight ahead.
 fn varied(scenario: Scenario, draw: &mut Draw) -> Scenario {
     let ticks = (draw.between(DURATION_S.0, DURATION_S.1) / TICK_S) as u32;
-    let (road, speed_m_s) = (ROADS[draw.index(ROADS.len())], draw.between(SPEED_M_S.0, SPEED_M_S.1));
+    let (road, fastest_m_s) = ROADS[draw.index(ROADS.len())];
+    let speed_m_s = draw.between(SLOWEST_M_S, fastest_m_s);
     let strategies = [Strategy::RideHandling, Strategy::default()];
     let strategy = strategies[draw.index(strategies.len())];
     let straight = (scenario.course.as_ref()).is_none_or(|course| course.kind == ManoeuvreKind::Straight);

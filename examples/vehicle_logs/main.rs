@@ -3,11 +3,11 @@
 //!
 //! ```text
 //! cargo build --release && cargo run --release --example vehicle_logs -- DIR [--seeds N] [--first SEED] [CASE...]
-//! cargo build --release && cargo run --release --example vehicle_logs -- DIR --drawn N [--first SEED]
+//! cargo build --release && cargo run --release --example vehicle_logs -- DIR --drawn N [--in-motion] [--first SEED]
 //! ```
 //!
-//! The first form runs listed cases of one effect each, the second N campaigns in which effects, corners, sizes and drives are drawn. DIR gets
-//! a folder for each campaign, with its answer and the results of the diagnosis.
+//! The first form runs listed cases of one effect each, the second N campaigns in which effects, corners, sizes and drives are drawn, with logs that
+//! begin at rest or in the middle of a drive. DIR gets a folder for each campaign, with its answer and the results of the diagnosis.
 
 #[path = "../../tests/support/vehicle_campaign.rs"]
 mod vehicle_campaign;
@@ -31,11 +31,13 @@ const ON_FORCE_ALONE: [EffectId; 3] = [EffectId::SealFriction, EffectId::SideLoa
 fn main() {
     let mut words = std::env::args().skip(1);
     let (mut folder, mut seeds, mut drawn, mut first, mut wanted) = (None, 1, 0, 1, Vec::new());
+    let mut in_motion = false;
     while let Some(word) = words.next() {
         let number = |next: Option<String>| next.and_then(|n| n.parse().ok()).expect("a whole number follows");
         match word.as_str() {
             "--seeds" => seeds = number(words.next()),
             "--drawn" => drawn = number(words.next()),
+            "--in-motion" => in_motion = true,
             "--first" => first = number(words.next()),
             _ if folder.is_none() => folder = Some(PathBuf::from(word)),
             _ => wanted.push(word),
@@ -44,7 +46,8 @@ fn main() {
     let folder = folder.expect("a folder for the campaigns");
     let cases: Vec<(String, Case)> = if drawn > 0 {
         let all = first..first + drawn;
-        all.map(|seed| (format!("drawn-{seed}"), drawn::case(seed))).collect()
+        all.map(|seed| (format!("drawn-{seed}"), drawn::case(seed, in_motion)))
+            .collect()
     } else {
         (first..first + seeds)
             .flat_map(|seed| listed::cases(seed, &wanted))

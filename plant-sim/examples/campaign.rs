@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use oleo_interface::StrutValves;
-use oleo_plant_sim::strut::{Inputs, Replay, StrutModel, replay, replay_all};
+use oleo_plant_sim::strut::{Beginning, Inputs, Replay, StrutModel, replay, replay_all};
 
 /// Every term of the vocabulary, with ordinary figures.
 const EVERY_TERM: &str = r#"
@@ -119,6 +119,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         .map(|r| Replay {
             model: &model,
             inputs: &r.inputs,
+            begins: Beginning::AtRest,
             with_course: false,
         })
         .collect();

@@ -77,6 +77,8 @@ pub struct Case {
     pub first_edition: bool,
     /// Whether a command acts one tick after the sample whose tick it echoes.
     pub command_acts_late: bool,
+    /// Time at which each log begins after the start from rest, s; 0 for logs that begin at rest.
+    pub begins_s: f64,
 }
 
 /// Three drives of `duration_s`: Belgian block straight ahead, a lane change on a rough road, a random road with another strategy.
@@ -175,13 +177,21 @@ pub fn write(case: &Case, folder: &Path) {
             concealed.put(&mut model);
         }
         let _ = writeln!(index, "{} = \"{}.toml\"", corner.key(), corner.name());
-        std::fs::write(folder.join(format!("{}.toml", corner.name())), given.to_toml()).expect("a strut file");
+        let beginning = if case.begins_s > 0.0 {
+            "starts_at_rest = false\n"
+        } else {
+            ""
+        };
+        let text = format!("{beginning}{}", given.to_toml());
+        std::fs::write(folder.join(format!("{}.toml", corner.name())), text).expect("a strut file");
         model
     });
     std::fs::write(folder.join("model.toml"), index).expect("model.toml");
     let truth = Corners::from_array(truth);
     for (k, (name, scenario)) in case.drives.iter().enumerate() {
-        let lines = drive(case, scenario, &truth, &mut draw, k);
+        let mut lines = drive(case, scenario, &truth, &mut draw, k);
+        let begins_us = lines.first().map_or(0, |line| line.0) + (1e6 * case.begins_s) as u64;
+        lines.retain(|line| line.0 >= begins_us);
         std::fs::write(folder.join(format!("{name}.log")), damaged(lines, &mut draw)).expect("a log");
     }
 }
@@ -199,7 +209,8 @@ fn drive(case: &Case, scenario: &Scenario, truth: &Corners<StrutModel>, draw: &m
     let vehicle = run::vehicle_on(scenario, physical).expect("a vehicle");
     let outcome = run::both(scenario, vehicle, 1, &mut |_| true).expect("a run");
     let samples = &outcome.plant.recording.samples;
-    let time_s: Vec<f64> = (0..samples.len()).map(|k| k as f64 * TICK_S).collect();
+    // What drifts with time does so from the beginning of the log.
+    let time_s: Vec<f64> = (0..samples.len()).map(|k| k as f64 * TICK_S - case.begins_s).collect();
     let mut read = |corner: Corner, column: usize| -> Vec<f64> {
         let model = &truth[corner];
         let mut series: Vec<f64> = (samples.iter())

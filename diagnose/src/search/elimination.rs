@@ -2,7 +2,10 @@
 
 use super::selector::Selector;
 use crate::error::DiagnoseError;
-use crate::estimation::Fit;
+use crate::estimation::{Fit, covariance};
+
+/// Half of a 95 % interval in standard deviations of a normal distribution.
+const HALF_INTERVAL: f64 = 1.96;
 
 impl Selector<'_, '_> {
     /// Drops effects, one at a time and the weakest first, until each that is left is accepted beside the others.
@@ -25,6 +28,11 @@ impl Selector<'_, '_> {
                 .fitted(best.point.without_effect(self.specimen(), position))
                 .map(Some);
         }
+        if let Some(position) = self.cannot_be_told_from_nothing(best) {
+            return self
+                .fitted(best.point.without_effect(self.specimen(), position))
+                .map(Some);
+        }
         let (laws, named): (Vec<usize>, Vec<usize>) =
             (0..effects.len()).partition(|&position| self.candidate(effects[position]).is_unlisted());
         for positions in [laws, named] {
@@ -43,6 +51,21 @@ impl Selector<'_, '_> {
             }
         }
         Ok(None)
+    }
+
+    /// An effect of one size whose interval contains zero. The recordings do not show it: with it the simulation only takes other steps, or treats
+    /// oil near vacuum in another way, and may come closer to them by that.
+    fn cannot_be_told_from_nothing(&self, fit: &Fit) -> Option<usize> {
+        let deviations = covariance::deviations(fit);
+        (0..fit.point.effects.len()).find(|&position| {
+            let coordinates = fit.point.coordinates_of(self.specimen(), position);
+            let parameters = &self.candidate(fit.point.effects[position]).parameters;
+            let mut sizes = (parameters.iter().zip(coordinates)).filter(|(parameter, _)| parameter.is_size);
+            match (sizes.next(), sizes.next()) {
+                (Some((size, k)), None) => (fit.point.z[k] - size.z(0.0)).abs() < HALF_INTERVAL * deviations[k],
+                _ => false,
+            }
+        })
     }
 }
 
@@ -88,6 +111,24 @@ mod tests {
         // Its cost of nothing would be kept.
         let less = selector.eliminate(fit, 0.0).expect("a fit");
         assert!(less.point.effects.is_empty());
+    }
+
+    #[test]
+    fn what_cannot_be_told_from_nothing_leaves() {
+        let specimen = Recipe {
+            truth: vec![(FRICTION, vec![0.1])],
+            ..Recipe::default()
+        }
+        .make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut selector = Selector::new(&problem);
+        let start = Point::nominal(&specimen).with_effect(&specimen, FRICTION, &[0.1]);
+        let with_both = selector
+            .fitted(start.with_effect(&specimen, CUBIC, &[0.0]))
+            .expect("a fit");
+        assert_eq!(selector.cannot_be_told_from_nothing(&with_both), Some(1));
+        let alone = selector.fitted(start).expect("a fit");
+        assert_eq!(selector.cannot_be_told_from_nothing(&alone), None);
     }
 
     #[test]

@@ -49,20 +49,22 @@ impl VehicleCampaign {
                 struts: drive.struts.each_ref().map(|strut| bridge(strut, drive.period_s)),
             })
             .collect();
-        let Chosen { recordings, mut notes } = choose(&bridged);
+        let Chosen { recordings, mut notes } = choose(&bridged, &model.starts_at_rest);
         if let Some(corner) = Corner::ALL.into_iter().find(|corner| recordings[*corner].is_empty()) {
             let why = notes.first().map_or_else(String::new, |note| format!(" ({note})"));
             let what = format!(
-                "nothing of the {} strut can be used{why}; log drives that begin at rest, for at least a minute",
+                "nothing of the {} strut can be used{why}; log drives that begin at rest, for at least a minute, or say starts_at_rest = false in the file of the strut",
                 corner.name()
             );
             return Err(DiagnoseError::file(source, what));
         }
         let struts = Corners::from_fn(|corner| as_read(&model.struts[corner], resolution[corner]));
-        let at_once = specimens(&struts, &recordings)?;
+        let at_rest = &model.starts_at_rest;
+        let at_once = specimens(&struts, &recordings, at_rest)?;
         let a_tick_later = specimens(
             &struts,
             &recordings.map(|all| all.into_iter().map(a_sample_later).collect()),
+            at_rest,
         )?;
         let period_s = drives.first().map_or(TICK_S, |drive| drive.period_s);
         let is_later = acts_later(&at_once, &a_tick_later, period_s)?;
@@ -111,9 +113,11 @@ impl VehicleCampaign {
 fn specimens(
     struts: &Corners<StrutModel>,
     recordings: &Corners<Vec<Recording>>,
+    starts_at_rest: &Corners<bool>,
 ) -> Result<Corners<TwoStageStrut>, DiagnoseError> {
     Corners::try_from_fn(|corner| {
-        TwoStageStrut::in_vehicle(struts[corner].clone(), recordings[corner].clone()).map_err(DiagnoseError::Model)
+        let (model, recordings) = (struts[corner].clone(), recordings[corner].clone());
+        TwoStageStrut::in_vehicle(model, recordings, starts_at_rest[corner]).map_err(DiagnoseError::Model)
     })
 }
 

@@ -104,7 +104,7 @@ impl VehicleDiagnosis {
             let mut strut = StrutModel::from_toml(&own.model_toml, &names[corner])?;
             // The noise that was fitted with contains the rounding of the bus; the file states the sensor's.
             strut.noise.clone_from(&campaign.model.struts[corner].noise);
-            files.push((names[corner].clone(), strut.to_toml()));
+            files.push((names[corner].clone(), campaign.model.strut_to_toml(corner, &strut)));
         }
         if let Some(body) = &campaign.model.body
             && let Some(name) = body.own_file()

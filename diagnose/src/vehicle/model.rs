@@ -23,6 +23,8 @@ pub struct VehicleModel {
     pub files: Corners<String>,
     /// The struts.
     pub struts: Corners<StrutModel>,
+    /// Whether the drives begin with each strut at rest; where they do not, the state of its gas is fitted.
+    pub starts_at_rest: Corners<bool>,
     /// The body with an inertial unit, where something is believed of it.
     pub body: Option<BodyModel>,
 }
@@ -133,24 +135,28 @@ pub fn is_vehicle(text: &str) -> bool {
     specimen_name(text, "").is_ok_and(|head| head.kind == VEHICLE)
 }
 
-/// The text of a strut's file without the key `starts_at_rest`, which only files of a vehicle's struts have.
-fn starting_at_rest(text: String, path: &Path) -> Result<String, DiagnoseError> {
-    const KEY: &str = "starts_at_rest";
+/// Key of a strut's file, which only files of a vehicle's struts have.
+const STARTS_AT_REST: &str = "starts_at_rest";
+
+/// The text of a strut's file without the key [`STARTS_AT_REST`], and what it says.
+fn without_beginning(text: String, path: &Path) -> Result<(String, bool), DiagnoseError> {
     // What is no TOML gets the message of the model's reader.
     let Ok(mut table) = toml::from_str::<toml::Table>(&text) else {
-        return Ok(text);
+        return Ok((text, true));
     };
-    let inside = (table.get_mut("specimen")).and_then(|s| s.as_table_mut()?.remove(KEY));
-    let Some(says) = table.remove(KEY).or(inside) else {
-        return Ok(text);
+    let inside = (table.get_mut("specimen")).and_then(|s| s.as_table_mut()?.remove(STARTS_AT_REST));
+    let Some(says) = table.remove(STARTS_AT_REST).or(inside) else {
+        return Ok((text, true));
     };
-    if says.as_bool() != Some(true) {
+    let Some(at_rest) = says.as_bool() else {
         let what = format!(
-            "{KEY} is {says}: only drives that begin at rest can be diagnosed; log drives from standstill, and leave the key out"
+            "{STARTS_AT_REST} is {says}: must be true where every drive begins with this strut at rest, or false where the state of its \
+             gas at the first sample is not known"
         );
         return Err(DiagnoseError::file(path, what));
-    }
-    toml::to_string(&table).map_err(|e| DiagnoseError::Output(e.to_string()))
+    };
+    let text = toml::to_string(&table).map_err(|e| DiagnoseError::Output(e.to_string()))?;
+    Ok((text, at_rest))
 }
 
 /// Reads what a table `[body]` names.
@@ -206,15 +212,18 @@ impl VehicleModel {
         let strut = |corner: Corner| {
             let path = folder.join(&files[corner]);
             let source = path.display().to_string();
-            let model = StrutModel::from_toml(&starting_at_rest(text_of(&path)?, &path)?, &source)?;
+            let (text, at_rest) = without_beginning(text_of(&path)?, &path)?;
+            let model = StrutModel::from_toml(&text, &source)?;
             model
                 .check_noise_is_complete()
                 .map_err(|invalid| DiagnoseError::file(&path, invalid.to_string()))?;
-            Ok::<_, DiagnoseError>(model)
+            Ok::<_, DiagnoseError>((model, at_rest))
         };
+        let read = Corners::try_from_fn(strut)?;
         Ok(Self {
             name: specimen.name,
-            struts: Corners::try_from_fn(strut)?,
+            starts_at_rest: read.each_ref().map(|(_, at_rest)| *at_rest),
+            struts: read.map(|(model, _)| model),
             body: body.map(|body| body_model(body, folder)).transpose()?,
             files,
         })
@@ -231,6 +240,17 @@ impl VehicleModel {
             Corners::from_fn(|corner| format!("{}.toml", corner.key()))
         } else {
             self.files.clone()
+        }
+    }
+
+    /// The text of the file of a strut with this model.
+    #[must_use]
+    pub fn strut_to_toml(&self, corner: Corner, strut: &StrutModel) -> String {
+        let text = strut.to_toml();
+        if self.starts_at_rest[corner] {
+            text
+        } else {
+            format!("{STARTS_AT_REST} = false\n{text}")
         }
     }
 

@@ -1,7 +1,7 @@
 //! The parts of the drives that are used, and why.
 //!
-//! A simulation needs the state of the strut at its beginning, which is known where a drive begins at rest. A part of a drive is
-//! therefore always its beginning, without a stretch in which nothing has moved yet. Hours of data add little to the first
+//! A simulation needs the state of the strut at its beginning, which is known where a drive begins at rest, and is fitted where the strut's file
+//! says that drives do not. A part of a drive is always its beginning, without a stretch in which nothing has moved yet. Hours of data add little to the first
 //! minutes of those drives that move the struts fastest, farthest, and with most switchings of valve 3; these are used.
 
 use oleo_interface::{Corner, Corners, Valve};
@@ -75,15 +75,17 @@ pub struct Chosen {
     pub notes: Vec<String>,
 }
 
-/// Chooses what is used of all drives.
+/// Chooses what is used of all drives. Of a drive that does not begin at rest only those struts are used of which that is not expected.
 #[must_use]
-pub fn choose(drives: &[BridgedDrive]) -> Chosen {
+pub fn choose(drives: &[BridgedDrive], starts_at_rest: &Corners<bool>) -> Chosen {
     let mut notes = Vec::new();
     let mut known: Vec<(&BridgedDrive, usize)> = Vec::new();
+    let mut begun_at_rest: Vec<bool> = Vec::new();
     let reference = drives.iter().find(|drive| drive.is_first);
     for drive in drives {
         let begins_at_rest = drive.is_first || reference.is_some_and(|first| begins_as(first, drive));
-        if begins_at_rest {
+        if begins_at_rest || !starts_at_rest.values().all(|&at_rest| at_rest) {
+            begun_at_rest.push(begins_at_rest);
             let kept_still = samples_in(KEPT_STILL_S, drive.period_s);
             known.push((drive, moves_from(drive).saturating_sub(kept_still)));
         } else {
@@ -102,7 +104,9 @@ pub fn choose(drives: &[BridgedDrive]) -> Chosen {
         .collect();
     let used = shares(&lengths, &excitation);
     let mut recordings = Corners::from_fn(|_| Vec::new());
-    for (((drive, from), share), (excited, whole)) in known.iter().zip(&used).zip(excitation.iter().zip(&lengths)) {
+    for (k, (((drive, from), share), (excited, whole))) in
+        (known.iter().zip(&used).zip(excitation.iter().zip(&lengths))).enumerate()
+    {
         if *share < MIN_SAMPLES {
             let why = if *whole < MIN_SAMPLES {
                 "it is too short"
@@ -125,6 +129,14 @@ pub fn choose(drives: &[BridgedDrive]) -> Chosen {
             if share < whole { "; more would add little" } else { "" },
         ));
         for corner in Corner::ALL {
+            if starts_at_rest[corner] && !begun_at_rest[k] {
+                notes.push(format!(
+                    "{}: not used for the {} strut, because it does not begin at rest, as the strut's file says that it does.",
+                    drive.name,
+                    corner.name()
+                ));
+                continue;
+            }
             match &drive.struts[corner] {
                 Some(strut) if strut.displacement_m.len() >= from + MIN_SAMPLES => {
                     recordings[corner].push(recording(drive, strut, *from, *share));
@@ -268,6 +280,8 @@ mod tests {
     use oleo_interface::StrutValves;
     use oleo_interface::tick::{TICK_S, TICKS_PER_SECOND};
 
+    const AT_REST: Corners<bool> = Corners::from_array([true; 4]);
+
     /// A drive that stands still, then moves with an amplitude (m).
     fn drive(name: &str, is_first: bool, samples: usize, still: usize, amplitude_m: f64) -> BridgedDrive {
         let x = |k: usize| amplitude_m * libm::sin(0.3 * k.saturating_sub(still) as f64);
@@ -296,7 +310,7 @@ mod tests {
             drive("rough", true, hour, 60_000, 0.02),
             drive("short", true, 10, 0, 0.02),
         ];
-        let chosen = choose(&drives);
+        let chosen = choose(&drives, &AT_REST);
         let used: Vec<(&str, usize)> = chosen.recordings[Corner::RearLeft]
             .iter()
             .map(|r| (r.name.as_str(), r.len()))
@@ -320,7 +334,7 @@ mod tests {
     fn a_later_drive_is_used_if_it_begins_as_the_first() {
         let mut in_motion = drive("b", false, 4000, 0, 0.02);
         let names = |drives: &[BridgedDrive]| -> Vec<String> {
-            choose(drives).recordings[Corner::FrontLeft]
+            choose(drives, &AT_REST).recordings[Corner::FrontLeft]
                 .iter()
                 .map(|r| r.name.clone())
                 .collect()
@@ -328,6 +342,14 @@ mod tests {
         let first = || drive("a", true, 4000, 50, 0.02);
         assert_eq!(names(&[first(), drive("b", false, 4000, 50, 0.02)]), ["a", "b"]);
         assert_eq!(names(&[first(), in_motion]), ["a"]);
+        // One strut is expected to begin in motion, and the drive is used for it alone.
+        let mut expected = AT_REST;
+        expected[Corner::FrontRight] = false;
+        let used = choose(&[first(), drive("b", false, 4000, 0, 0.02)], &expected).recordings;
+        assert_eq!(
+            [Corner::FrontLeft, Corner::FrontRight].map(|corner| used[corner].len()),
+            [1, 2]
+        );
         // Still, but the gas is warm or oil is trapped behind valve 3.
         in_motion = drive("b", false, 4000, 50, 0.02);
         if let Some(strut) = &mut in_motion.struts[Corner::RearRight] {

@@ -94,6 +94,12 @@ impl Gas {
         self.mass_kg
     }
 
+    /// Whether the gas has ambient temperature whatever is done to it.
+    #[must_use]
+    pub fn is_isothermal(&self) -> bool {
+        self.cooling_rate_1_s.is_none()
+    }
+
     /// Volume at a pressure and ambient temperature, m3.
     #[must_use]
     pub fn volume_at(&self, pressure: Absolute<f64>) -> f64 {

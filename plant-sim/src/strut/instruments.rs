@@ -70,6 +70,20 @@ pub fn record_column(effects: &Effects, column: &str, times_s: &[f64], signal: &
     }
 }
 
+/// The true value behind the first reading of an instrument, as far as its scale and zero say: lags, skews and laws without a name are left out.
+///
+/// ```
+/// use oleo_plant_sim::strut::{Effects, true_first_value};
+/// let mut effects = Effects::default();
+/// effects.sensor_gain.get_or_insert_default().insert("p1_Pa".to_owned(), 0.02);
+/// assert!((true_first_value(&effects, "p1_Pa", 1.02e6) - 1.0e6).abs() < 1e-6);
+/// ```
+#[must_use]
+pub fn true_first_value(effects: &Effects, column: &str, reading: f64) -> f64 {
+    let faults = Faults::of(effects, column);
+    (reading - faults.offset) / faults.factor()
+}
+
 /// The true motion behind the recording of a faulty displacement sensor. `None` if the model has no such fault.
 pub(super) fn true_motion(effects: &Effects, times_s: &[f64], recorded: &Motion) -> Option<Motion> {
     let all = [

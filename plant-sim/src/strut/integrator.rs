@@ -10,6 +10,7 @@ use oleo_interface::{StrutValves, Valve};
 
 use crate::model_file::{Checked, InvalidValue};
 
+use super::beginning::Beginning;
 use super::characteristic::Characteristic;
 use super::gas::GasState;
 use super::hydraulics::{Flowing, GAMMA, Hydraulics, Step};
@@ -170,10 +171,31 @@ impl Strut {
         signals: StrutValves<bool>,
         displacement_m: f64,
     ) -> Result<Self, InvalidValue> {
+        Self::beginning(model, signals, displacement_m, &Beginning::AtRest)
+    }
+
+    /// A strut at a displacement (m) at which it is at rest, or in the middle of a drive.
+    ///
+    /// # Errors
+    /// Impossible values in the model.
+    pub(super) fn beginning(
+        model: &StrutModel,
+        signals: StrutValves<bool>,
+        displacement_m: f64,
+        begins: &Beginning,
+    ) -> Result<Self, InvalidValue> {
         model.check()?;
         let effects = &model.effects;
         let hydraulics = Hydraulics::of(model);
-        let state = hydraulics.network.at_rest(displacement_m, model.gas.temperature_k);
+        let (network, ambient_k) = (&hydraulics.network, model.gas.temperature_k);
+        let state = match begins {
+            Beginning::AtRest => network.at_rest(displacement_m, ambient_k),
+            Beginning::InMotion(begins) => network.in_motion(displacement_m, ambient_k, begins),
+        };
+        let mut pressure_pa = [state.p1_pa; 4];
+        if let Beginning::InMotion(begins) = begins {
+            [pressure_pa[1], pressure_pa[3]] = begins.gas_pa;
+        }
         Ok(Self {
             swing: OilSwing::of(&hydraulics.network, model.gas.temperature_k),
             hydraulics,
@@ -191,7 +213,7 @@ impl Strut {
             flowing: Flowing {
                 state,
                 last: LastSolution::default(),
-                pressure_pa: [state.p1_pa; 4],
+                pressure_pa,
                 supplied_m: displacement_m,
             },
             valves: signals.map(ValveMotion::at_rest),

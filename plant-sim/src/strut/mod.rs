@@ -41,6 +41,7 @@
 //! | `replay`, `replay_abreast` | a recording's inputs through a model, and many at once in the vectors of the processor |
 
 mod abreast;
+mod beginning;
 mod characteristic;
 mod damper;
 mod equation_of_state;
@@ -72,6 +73,7 @@ mod terms;
 mod valve;
 
 pub use abreast::StrutsAbreast;
+pub use beginning::{Beginning, InMotion};
 pub use characteristic::Characteristic;
 pub use damper::DamperTable;
 pub use equation_of_state::NITROGEN_R_J_KG_K;
@@ -79,14 +81,14 @@ pub use flow_path::FlowPath;
 pub use friction::{PRESLIDING_STIFFNESS_N_M, advance_friction};
 pub use gas::{Gas, GasState, NITROGEN_CV_J_KG_K};
 pub use inputs::Inputs;
-pub use instruments::record_column;
+pub use instruments::{record_column, true_first_value};
 pub use integrator::{Strut, StrutOutput, StrutSnapshot};
 pub use model::{Accumulator, Cylinder, GasCharge, Orifice, Specimen, StrutModel, Valve, ValveTiming};
 pub use motion::{Motion, Segment, StrutMove};
 pub use nitrogen::Nitrogen;
 pub use prediction::Prediction;
 pub use pressure::ATMOSPHERE_PA;
-pub use replay::{replay, replay_with_course};
+pub use replay::{replay, replay_from, replay_with_course};
 pub use replay_abreast::{Replay, replay_all};
 pub use rod_course::RodCourse;
 pub use run::Replayed;

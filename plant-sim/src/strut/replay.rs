@@ -2,13 +2,14 @@
 
 use crate::model_file::InvalidValue;
 
+use super::beginning::Beginning;
 use super::inputs::Inputs;
 use super::model::StrutModel;
 use super::prediction::Prediction;
 use super::rod_course::RodCourse;
 use super::run::{Replayed, Run};
 
-/// Simulate a recording's inputs with a model. O(samples); the same bits every time.
+/// Simulate a recording's inputs with a model, from rest. O(samples); the same bits every time.
 ///
 /// ```
 /// use oleo_interface::StrutValves;
@@ -27,7 +28,15 @@ use super::run::{Replayed, Run};
 /// # Errors
 /// Impossible values in the model.
 pub fn replay(model: &StrutModel, inputs: &Inputs) -> Result<Prediction, InvalidValue> {
-    let mut run = Run::begin(model, inputs)?;
+    replay_from(model, inputs, &Beginning::AtRest)
+}
+
+/// The same for a recording that may begin in the middle of a drive.
+///
+/// # Errors
+/// Impossible values in the model.
+pub fn replay_from(model: &StrutModel, inputs: &Inputs, begins: &Beginning) -> Result<Prediction, InvalidValue> {
+    let mut run = Run::begin(model, inputs, begins)?;
     run.go_on_to_the_end();
     Ok(run.into_replayed().prediction)
 }
@@ -37,7 +46,7 @@ pub fn replay(model: &StrutModel, inputs: &Inputs) -> Result<Prediction, Invalid
 /// # Errors
 /// Impossible values in the model.
 pub fn replay_with_course(model: &StrutModel, inputs: &Inputs) -> Result<(Prediction, RodCourse), InvalidValue> {
-    let mut run = Run::begin(model, inputs)?.with_course();
+    let mut run = Run::begin(model, inputs, &Beginning::AtRest)?.with_course();
     run.go_on_to_the_end();
     let Replayed { prediction, course } = run.into_replayed();
     Ok((prediction, course.unwrap_or_default()))

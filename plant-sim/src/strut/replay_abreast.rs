@@ -6,6 +6,7 @@
 
 use pulp::Simd;
 
+use super::beginning::Beginning;
 use super::hydraulics::Hydraulics;
 use super::inputs::Inputs;
 use super::model::StrutModel;
@@ -21,22 +22,24 @@ pub struct Replay<'a> {
     pub model: &'a StrutModel,
     /// The inputs.
     pub inputs: &'a Inputs,
+    /// How it begins.
+    pub begins: Beginning,
     /// Whether it is to be noted what the rod goes through, which takes about 200 bytes a sample.
     pub with_course: bool,
 }
 
-/// Simulates many recordings, or one with many models, on this thread: what [`replay`](super::replay()) gives for each, to the bit, but in less time
+/// Simulates many recordings, or one with many models, on this thread: what [`replay`](super::replay()) gives for each that begins at rest, to the bit, but in less time
 /// where models are of the same kind, because four are solved at once.
 ///
 /// ```
 /// use oleo_interface::StrutValves;
-/// use oleo_plant_sim::strut::{Inputs, Replay, StrutModel, replay, replay_all};
+/// use oleo_plant_sim::strut::{Beginning, Inputs, Replay, StrutModel, replay, replay_all};
 /// let time_s: Vec<f64> = (0..=200).map(|k| 0.01 * f64::from(k)).collect();
 /// let displacement_m: Vec<f64> = time_s.iter().map(|t| 0.01 * t).collect();
 /// let signals = vec![StrutValves::new(true, true, false); 201];
 /// let inputs = Inputs::from_recording(&time_s, &displacement_m, &signals, 5.0e-6);
 /// let models = [6000.0, 7000.0, 8000.0].map(StrutModel::defender110);
-/// let wanted = models.each_ref().map(|model| Replay { model, inputs: &inputs, with_course: false });
+/// let wanted = models.each_ref().map(|model| Replay { begins: Beginning::AtRest, model, inputs: &inputs, with_course: false });
 /// for (model, replayed) in models.iter().zip(replay_all(&wanted)) {
 ///     assert_eq!(replayed?.prediction, replay(model, &inputs)?);
 /// }
@@ -53,7 +56,7 @@ pub fn replay_all(wanted: &[Replay<'_>]) -> Vec<Result<Replayed, InvalidValue>> 
 }
 
 fn begun<'a>(wanted: &Replay<'a>) -> Result<Run<'a>, InvalidValue> {
-    let run = Run::begin(wanted.model, wanted.inputs)?;
+    let run = Run::begin(wanted.model, wanted.inputs, &wanted.begins)?;
     Ok(if wanted.with_course { run.with_course() } else { run })
 }
 
@@ -251,6 +254,7 @@ mod tests {
                 (inputs.iter().enumerate()).map(move |(i, inputs)| Replay {
                     model,
                     inputs,
+                    begins: Beginning::AtRest,
                     with_course: (m + i) % 3 == 0,
                 })
             })

@@ -4,7 +4,7 @@
 //! p1. How much follows from the recordings themselves: their smoothed motion with noise of the stated size added once
 //! more and smoothed once more, both simulated. Only what exceeds this floor is unexplained.
 
-use oleo_plant_sim::strut::{Inputs, Prediction, Replay, StrutModel, replay_all};
+use oleo_plant_sim::strut::{Beginning, Inputs, Prediction, Replay, StrutModel, replay_all};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -56,7 +56,7 @@ pub fn excesses(
         let squares = differences.iter().zip(channels).map(|(d, channel)| square(d, channel));
         (squares.sum(), differences.iter().map(Vec::len).sum())
     };
-    (differences_of_all(model, pairs, layout).into_iter())
+    (differences_of_all(model, pairs, &Beginning::AtRest, layout).into_iter())
         .map(|differences| differences.map(excess))
         .collect()
 }
@@ -77,18 +77,24 @@ pub fn local_deviation(series: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// What two motions make different, every recorded channel, in the unit of its column; `None` if the model cannot be simulated.
+/// What two motions make different in a recording that begins in this way, every recorded channel, in the unit of its column; `None` if the model cannot be simulated.
 #[must_use]
-pub fn differences(model: &StrutModel, pair: [&Inputs; 2], layout: Layout) -> Option<Series> {
-    differences_of_all(model, &[pair], layout).pop().flatten()
+pub fn differences(model: &StrutModel, pair: [&Inputs; 2], begins: &Beginning, layout: Layout) -> Option<Series> {
+    differences_of_all(model, &[pair], begins, layout).pop().flatten()
 }
 
 /// The same of each pair of motions. All are simulated together, which takes less time.
-fn differences_of_all(model: &StrutModel, pairs: &[[&Inputs; 2]], layout: Layout) -> Vec<Option<Series>> {
+fn differences_of_all(
+    model: &StrutModel,
+    pairs: &[[&Inputs; 2]],
+    begins: &Beginning,
+    layout: Layout,
+) -> Vec<Option<Series>> {
     let wanted: Vec<Replay<'_>> = (pairs.iter().flatten())
         .map(|inputs| Replay {
             model,
             inputs,
+            begins: *begins,
             with_course: false,
         })
         .collect();

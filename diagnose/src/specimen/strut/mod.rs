@@ -1,5 +1,6 @@
 //! The two-stage hydropneumatic strut: the belief as a [`StrutModel`] and five compared channels.
 
+mod beginning;
 mod calibration;
 mod candidates;
 mod channels;
@@ -13,7 +14,7 @@ use std::sync::OnceLock;
 
 use oleo_interface::{StrutValves, Valve};
 use oleo_plant_sim::model_file::InvalidValue;
-use oleo_plant_sim::strut::{COLUMNS, Inputs, Prediction, StrutModel, record_column, smooth_free_motion};
+use oleo_plant_sim::strut::{Beginning, COLUMNS, Inputs, Prediction, StrutModel, record_column, smooth_free_motion};
 use rayon::prelude::*;
 
 use calibration::Calibration;
@@ -55,10 +56,15 @@ pub struct TwoStageStrut {
     model: StrutModel,
     recordings: Vec<Recording>,
     layout: Layout,
-    is_in_vehicle: bool,
+    /// Of a strut in a vehicle, what its motion leaves unknown.
+    free_motion: Option<FreeMotionLeft>,
     inputs: Vec<Inputs>,
     channels: Vec<Channel>,
+    /// How each recording begins, as it was read.
+    begins: Vec<Beginning>,
     calibration: Vec<Calibration>,
+    /// What is not known of the beginnings; its parameters follow those of the calibration.
+    unknown_beginnings: Vec<beginning::Unknown>,
     parameters: Vec<Parameter>,
     candidates: Vec<Candidate>,
     /// What the recordings say of the instruments, by which residuals are judged.
@@ -101,7 +107,8 @@ impl TwoStageStrut {
         let inputs = (recordings.par_iter().enumerate())
             .map(|(k, r)| smoothed(&r.time_s, &r.columns[0], &layout.signals(r), &instruments, k))
             .collect();
-        let mut strut = Self::with_layout(model, recordings, inputs, layout, instruments)?;
+        let begins = vec![Beginning::AtRest; recordings.len()];
+        let mut strut = Self::with_layout(model, recordings, inputs, begins, layout, instruments)?;
         strut.count_poor_motion();
         strut.take_out_more_spikes();
         Ok(strut)
@@ -115,7 +122,14 @@ impl TwoStageStrut {
         }
         let drawn: Vec<Option<Series>> = (0..self.inputs.len())
             .into_par_iter()
-            .map(|r| floor::differences(&self.model, [&self.inputs[r], &self.jittered()[r]], self.layout))
+            .map(|r| {
+                floor::differences(
+                    &self.model,
+                    [&self.inputs[r], &self.jittered()[r]],
+                    &self.begins[r],
+                    self.layout,
+                )
+            })
             .collect();
         for (r, differences) in drawn.iter().enumerate() {
             for (c, series) in differences.iter().flatten().enumerate() {
@@ -170,9 +184,19 @@ impl TwoStageStrut {
     /// into pressure. This is noise of p1 and p3 as the sensor's is, and is added to it: its size is the difference that two
     /// motions make which the readings cannot tell apart.
     ///
+    /// A recording that does not begin at rest begins with the pressures that were read first; volume and temperature of the gas are then part of
+    /// every fit, and the readings of the first tenth of a second do not count.
+    ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn in_vehicle(model: StrutModel, recordings: Vec<Recording>) -> Result<Self, String> {
+    pub fn in_vehicle(model: StrutModel, mut recordings: Vec<Recording>, starts_at_rest: bool) -> Result<Self, String> {
+        let mut begins = vec![Beginning::AtRest; recordings.len()];
+        if !starts_at_rest {
+            for (begins, recording) in begins.iter_mut().zip(&mut recordings) {
+                *begins = beginning::as_read(&model, recording, Layout::VEHICLE).unwrap_or_default();
+                beginning::without_first_readings(recording, Layout::VEHICLE);
+            }
+        }
         let (mut inputs, mut possible) = (Vec::new(), Vec::new());
         for r in &recordings {
             let motion = smooth_free_motion(&r.columns[0], r.interval_s(), displacement_noise(&model));
@@ -185,20 +209,20 @@ impl TwoStageStrut {
             possible.push(with(motion.possible));
         }
         let as_stated = Examined::default();
-        let mut strut = Self::with_layout(model, recordings, inputs, Layout::VEHICLE, as_stated)?;
-        strut.is_in_vehicle = true;
-        strut.add_noise_of_motion(&possible);
+        let mut strut = Self::with_layout(model, recordings, inputs, begins, Layout::VEHICLE, as_stated)?;
+        strut.add_noise_of_motion(possible);
         Ok(strut)
     }
 
     /// Adds to the noise of each channel what the motion leaves unknown. Its course in time is that of the difference between two
     /// motions; its size is measured by the second difference of the residuals, in which a model that lacks something shows next
     /// to nothing, because that changes slowly.
-    fn add_noise_of_motion(&mut self, possible: &[Inputs]) {
+    fn add_noise_of_motion(&mut self, possible: Vec<Inputs>) {
         let believed = self.as_given();
         let mut sums = vec![Unknown::default(); self.channels.len()];
-        for (r, (best, possible)) in self.inputs.iter().zip(possible).enumerate() {
-            let Some(differences) = floor::differences(&self.model, [best, possible], self.layout) else {
+        for (r, (best, possible)) in self.inputs.iter().zip(&possible).enumerate() {
+            let Some(differences) = floor::differences(&self.model, [best, possible], &self.begins[r], self.layout)
+            else {
                 continue;
             };
             let Ok(simulated) = self.simulate(&believed, r) else {
@@ -208,16 +232,25 @@ impl TwoStageStrut {
                 sum.add(self.measured(r, c), &differences[c], &simulated[c]);
             }
         }
-        for (channel, sum) in self.channels.iter_mut().zip(sums) {
+        let mut believed = Vec::with_capacity(sums.len());
+        for (channel, sum) in self.channels.iter_mut().zip(&sums) {
             let variance = channel.noise * channel.noise;
-            channel.noise = (variance + sum.of_motion(variance)).sqrt();
+            let of_motion = sum.of_motion(variance);
+            channel.noise = (variance + of_motion).sqrt();
+            let estimated = sum.estimated();
+            believed.push(Unresolved {
+                estimated,
+                counted: (of_motion / estimated.max(f64::MIN_POSITIVE)).max(1.0),
+            });
         }
+        self.free_motion = Some(FreeMotionLeft { possible, believed });
     }
 
     fn with_layout(
         model: StrutModel,
         recordings: Vec<Recording>,
         inputs: Vec<Inputs>,
+        begins: Vec<Beginning>,
         layout: Layout,
         instruments: Examined,
     ) -> Result<Self, String> {
@@ -231,15 +264,23 @@ impl TwoStageStrut {
         let displacement_noise = displacement_noise(&model);
         let noises = [P3, P4].map(|c| layout.has(c).then(|| channels[layout.channel(c)].noise));
         let pressure_noise = noises.into_iter().flatten().fold(0.0, f64::max);
-        let (calibration, parameters) = calibration::of(&model, layout);
+        let (calibration, mut parameters) = calibration::of(&model, layout);
+        let mut unknown_beginnings = Vec::new();
+        if begins.iter().any(|begins| *begins != Beginning::AtRest) {
+            let (unknowns, their_parameters) = beginning::unknowns(&recordings);
+            unknown_beginnings = unknowns;
+            parameters.extend(their_parameters);
+        }
         let mut strut = Self {
             model,
             recordings,
             layout,
-            is_in_vehicle: false,
+            free_motion: None,
             inputs,
             channels,
+            begins,
             calibration,
+            unknown_beginnings,
             parameters,
             candidates: vec![],
             instruments,
@@ -317,21 +358,53 @@ impl TwoStageStrut {
         model
     }
 
+    /// The floor of a strut in a vehicle. What the motion leaves unknown is part of the channels' noise, as far as the believed model turns it into
+    /// pressure; another model, such as one with an oil column that swings, may turn it into more.
+    fn floor_of_free_motion(&self, left: &FreeMotionLeft, hypothesis: &Hypothesis) -> f64 {
+        let model = self.applied(hypothesis);
+        let differences: Vec<Option<Series>> = (0..self.inputs.len())
+            .into_par_iter()
+            .map(|r| {
+                let pair = [&self.inputs[r], &left.possible[r]];
+                floor::differences(&model, pair, &self.beginning(hypothesis, &model, r), self.layout)
+            })
+            .collect();
+        let beyond = self.channels.iter().enumerate().map(|(c, channel)| {
+            let series = differences.iter().flatten().map(|channels| &channels[c]);
+            let (sum, count) = (series.flatten()).fold((0.0, 0), |(sum, count), d| (sum + d * d, count + 1));
+            let Unresolved { estimated, counted } = left.believed[c];
+            counted * (sum / f64::from(count.max(1)) - estimated).max(0.0) / (channel.noise * channel.noise)
+        });
+        (1.0 + beyond.sum::<f64>() / self.channels.len() as f64).sqrt()
+    }
+
+    /// How a recording begins under a hypothesis, whose model with its instruments is given.
+    fn beginning(&self, hypothesis: &Hypothesis, model: &StrutModel, recording: usize) -> Beginning {
+        let mut begins = beginning::behind_readings(self.begins[recording], &model.effects);
+        let values = hypothesis.calibration.iter().skip(self.calibration.len());
+        for (unknown, &value) in self.unknown_beginnings.iter().zip(values) {
+            unknown.apply(recording, &mut begins, value);
+        }
+        begins
+    }
+
     /// All of [`CHANNELS`] under hypotheses and of recordings, also those that are not recorded.
     fn all_channels(&self, wanted: &[(&Hypothesis, usize)]) -> Vec<Result<Series, String>> {
-        let models: Vec<StrutModel> = (wanted.iter())
-            .map(|&(hypothesis, _)| {
+        let models: Vec<(StrutModel, Beginning)> = (wanted.iter())
+            .map(|&(hypothesis, recording)| {
                 let mut model = self.applied(hypothesis);
+                let begins = self.beginning(hypothesis, &model, recording);
                 // Faults of the displacement sensor change the motion; all other instruments are applied afterwards.
                 model.effects.retain_sensor_faults(|column| column == COLUMNS[0]);
-                model
+                (model, begins)
             })
             .collect();
         let replays: Vec<Wanted<'_>> = (models.iter().zip(wanted))
-            .map(|(model, &(_, recording))| Wanted {
+            .map(|((model, begins), &(_, recording))| Wanted {
                 memory: &self.memories[recording],
                 model,
                 inputs: &self.inputs[recording],
+                begins: *begins,
             })
             .collect();
         let predicted = rod_memory::replay_all(&replays);
@@ -361,6 +434,22 @@ impl TwoStageStrut {
                 .collect()
         })
     }
+}
+
+/// What the readings leave unknown of a motion that is not smooth between them.
+struct FreeMotionLeft {
+    /// For each recording another motion that the readings allow.
+    possible: Vec<Inputs>,
+    /// What that changes in each channel under the believed model.
+    believed: Vec<Unresolved>,
+}
+
+/// What is not known of the motion in a channel.
+struct Unresolved {
+    /// Mean square of the difference that two possible motions make.
+    estimated: f64,
+    /// By how much more the residuals show, at least 1.
+    counted: f64,
 }
 
 /// All of [`CHANNELS`], if they are numbers.
@@ -435,9 +524,8 @@ impl Specimen for TwoStageStrut {
     }
 
     fn noise_floor(&self, hypothesis: &Hypothesis) -> f64 {
-        // What the motion leaves unknown is part of the channels' noise.
-        if self.is_in_vehicle {
-            return 1.0;
+        if let Some(left) = &self.free_motion {
+            return self.floor_of_free_motion(left, hypothesis);
         }
         if self.instruments.motion_is_poor {
             return FLOOR_OF_POOR_MOTION;

@@ -7,7 +7,7 @@ use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use oleo_plant_sim::model_file::{Checked, InvalidValue};
-use oleo_plant_sim::strut::{self, Inputs, Prediction, Replay, Replayed, RodCourse, StrutModel};
+use oleo_plant_sim::strut::{self, Beginning, Inputs, Prediction, Replay, Replayed, RodCourse, StrutModel};
 
 /// Models of which is known that they were simulated once. A fit simulates one for each of its parameters before it returns to the first.
 const SEEN: usize = 48;
@@ -23,15 +23,22 @@ pub struct RodMemory {
 #[derive(Default)]
 struct Remembered {
     /// Models without rod forces that were wanted once, the last one first.
-    seen: VecDeque<StrutModel>,
+    seen: VecDeque<(StrutModel, Beginning)>,
     /// Those that were wanted again, with what their rods went through.
     kept: VecDeque<Arc<Kept>>,
 }
 
 struct Kept {
     bare: StrutModel,
+    begins: Beginning,
     prediction: Prediction,
     course: RodCourse,
+}
+
+impl Kept {
+    fn is_of(&self, bare: &StrutModel, begins: Beginning) -> bool {
+        self.bare == *bare && self.begins == begins
+    }
 }
 
 /// A recording that is wanted under a model. The model has no instrument but that of the displacement.
@@ -41,6 +48,8 @@ pub struct Wanted<'a> {
     pub memory: &'a RodMemory,
     pub model: &'a StrutModel,
     pub inputs: &'a Inputs,
+    /// How the recording begins under the hypothesis.
+    pub begins: Beginning,
 }
 
 /// How a wanted recording is come by.
@@ -64,6 +73,7 @@ pub fn replay_all(wanted: &[Wanted<'_>]) -> Vec<Result<Prediction, InvalidValue>
             let of = |model, with_course| Replay {
                 model,
                 inputs: wanted.inputs,
+                begins: wanted.begins,
                 with_course,
             };
             match plan {
@@ -89,6 +99,7 @@ pub fn replay_all(wanted: &[Wanted<'_>]) -> Vec<Result<Prediction, InvalidValue>
                     let course = course.unwrap_or_default();
                     let kept = Arc::new(Kept {
                         bare: *bare,
+                        begins: wanted.begins,
                         prediction,
                         course,
                     });
@@ -112,7 +123,7 @@ fn from_kept(kept: Option<Arc<Kept>>, wanted: &Wanted<'_>) -> (Option<Arc<Kept>>
             force_n: kept.course.force_n(&wanted.model.effects),
             pressure_pa: kept.prediction.pressure_pa.clone(),
         }),
-        None => strut::replay(wanted.model, wanted.inputs),
+        None => strut::replay_from(wanted.model, wanted.inputs, &wanted.begins),
     };
     (kept, prediction)
 }
@@ -130,9 +141,11 @@ fn planned(wanted: &[Wanted<'_>]) -> Vec<Result<Plan, InvalidValue>> {
             plans.push(Err(invalid));
             continue;
         }
-        let found = this.memory.find(&bare);
+        let found = this.memory.find(&bare, this.begins);
         let earlier = (plans.iter_mut().zip(wanted).enumerate()).find_map(|(k, (plan, other))| match plan {
-            Ok(Plan::Bare { bare: same, is_kept }) if std::ptr::eq(other.memory, this.memory) && **same == bare => {
+            Ok(Plan::Bare { bare: same, is_kept })
+                if std::ptr::eq(other.memory, this.memory) && **same == bare && other.begins == this.begins =>
+            {
                 *is_kept = true;
                 Some(k)
             }
@@ -151,22 +164,30 @@ fn planned(wanted: &[Wanted<'_>]) -> Vec<Result<Plan, InvalidValue>> {
 }
 
 impl RodMemory {
-    fn find(&self, bare: &StrutModel) -> Found {
+    fn find(&self, bare: &StrutModel, begins: Beginning) -> Found {
         let mut remembered = self.remembered.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(kept) = remembered.kept.iter().find(|kept| kept.bare == *bare) {
+        if let Some(kept) = remembered.kept.iter().find(|kept| kept.is_of(bare, begins)) {
             return Found::Known(Arc::clone(kept));
         }
-        if remembered.seen.contains(bare) {
+        if remembered
+            .seen
+            .iter()
+            .any(|(model, began)| model == bare && *began == begins)
+        {
             return Found::Again;
         }
-        remembered.seen.push_front(bare.clone());
+        remembered.seen.push_front((bare.clone(), begins));
         remembered.seen.truncate(SEEN);
         Found::First
     }
 
     fn keep(&self, kept: &Arc<Kept>) {
         let mut remembered = self.remembered.lock().unwrap_or_else(PoisonError::into_inner);
-        if remembered.kept.iter().all(|other| other.bare != kept.bare) {
+        if remembered
+            .kept
+            .iter()
+            .all(|other| !other.is_of(&kept.bare, kept.begins))
+        {
             remembered.kept.push_front(Arc::clone(kept));
             remembered.kept.truncate(KEPT);
         }
@@ -213,6 +234,7 @@ mod tests {
                         memory: &memory,
                         model,
                         inputs: &inputs,
+                        begins: Beginning::AtRest,
                     })
                     .collect();
                 for (predicted, alone) in replay_all(&wanted).into_iter().zip(alone) {

@@ -32,6 +32,12 @@ impl Unknown {
             .for_each(|w| square(&mut self.residual, second(w[0], w[1], w[2])));
     }
 
+    /// Mean square of the difference that two motions make.
+    pub fn estimated(&self) -> f64 {
+        let (sum, count) = self.difference;
+        sum / count.max(1) as f64
+    }
+
     /// Variance that the unknown motion adds to that of the sensor.
     pub fn of_motion(&self, sensor: f64) -> f64 {
         let mean = |(sum, count): (f64, usize)| sum / count.max(1) as f64;

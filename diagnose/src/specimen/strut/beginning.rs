@@ -38,12 +38,30 @@ enum Quantity {
     Temperature,
 }
 
+/// Lets a recording begin at the first sample that holds the pressures of the chamber and of both accumulators: a pressure that was read a sample later
+/// may be a tenth of itself away.
+pub fn from_first_complete_sample(recording: &mut Recording, layout: Layout) {
+    let has_all = |k: usize| {
+        [P1, P2, P4]
+            .iter()
+            .all(|&c| recording.columns[layout.column(c)][k].is_finite())
+    };
+    let Some(first) = (0..recording.len()).find(|&k| has_all(k)) else {
+        return;
+    };
+    recording.time_s.drain(..first);
+    recording
+        .columns
+        .iter_mut()
+        .for_each(|column| drop(column.drain(..first)));
+}
+
 /// What the first readings say: the oil has the pressures that were read. Both gases are as much warmer than ambient as they must be to leave
-/// the oil the volume that the believed model has for it at this displacement. `None` where nothing was read.
+/// the oil the volume that the believed model has for it at this displacement. `None` where no sample is complete.
 pub fn as_read(model: &StrutModel, recording: &Recording, layout: Layout) -> Option<Beginning> {
     let first = |channel: usize| {
-        let column = &recording.columns[layout.column(channel)];
-        column.iter().copied().find(|v| v.is_finite())
+        let reading = recording.columns[layout.column(channel)].first().copied();
+        reading.filter(|v| v.is_finite())
     };
     let (chamber_pa, gas_pa) = (first(P1)?, [first(P2)?, first(P4)?]);
     let static_pa = model.cylinder.static_pressure_pa;
@@ -86,12 +104,8 @@ pub fn without_first_readings(recording: &mut Recording, layout: Layout) {
     for channel in [P1, P2, P3, P4] {
         let column = &mut recording.columns[layout.column(channel)];
         let end = uncounted.min(column.len());
-        let of_gas = matches!(channel, P2 | P4);
-        let kept = column[..end].iter().position(|v| of_gas && v.is_finite());
-        let readings = column[..end].iter_mut().enumerate();
-        readings
-            .filter(|(k, _)| Some(*k) != kept)
-            .for_each(|(_, v)| *v = f64::NAN);
+        let kept = usize::from(matches!(channel, P2 | P4));
+        column[kept.min(end)..end].fill(f64::NAN);
     }
 }
 

@@ -193,6 +193,7 @@ impl TwoStageStrut {
         let mut begins = vec![Beginning::AtRest; recordings.len()];
         if !starts_at_rest {
             for (begins, recording) in begins.iter_mut().zip(&mut recordings) {
+                beginning::from_first_complete_sample(recording, Layout::VEHICLE);
                 *begins = beginning::as_read(&model, recording, Layout::VEHICLE).unwrap_or_default();
                 beginning::without_first_readings(recording, Layout::VEHICLE);
             }

@@ -35,13 +35,13 @@ const VISIBLE: [EffectId; 17] = [
 const SMALLEST_PART: f64 = 3e-3;
 /// Roads that are drawn from, each with the fastest drive on it, m/s.
 const ROADS: [(&str, f64); 4] = [("iso-c", 20.0), ("iso-d", 16.0), ("iso-e", 9.0), ("belgian", 14.0)];
-/// Shortest and longest drive, s.
+/// Shortest and longest log, s.
 const DURATION_S: (f64, f64) = (18.0, 40.0);
 /// Slowest drive, m/s.
 const SLOWEST_M_S: f64 = 6.0;
 
 /// Times after the start at which a log may begin that does not begin at rest, s.
-const MOTION_S: (f64, f64) = (2.0, 9.0);
+const MOTION_S: (f64, f64) = (2.0, 60.0);
 
 /// The case of a seed, whose logs begin in motion or at rest.
 pub fn case(seed: u64, in_motion: bool) -> Case {
@@ -63,8 +63,13 @@ pub fn case(seed: u64, in_motion: bool) -> Case {
             concealed.push(drawn);
         }
     }
+    let begins_s = if in_motion {
+        draw.between(MOTION_S.0, MOTION_S.1)
+    } else {
+        0.0
+    };
     let drives = (drives(seed, DURATION_S.0).into_iter())
-        .map(|(name, scenario)| (name, varied(scenario, &mut draw)))
+        .map(|(name, scenario)| (name, varied(scenario, begins_s, &mut draw)))
         .collect();
     Case {
         seed,
@@ -72,11 +77,7 @@ pub fn case(seed: u64, in_motion: bool) -> Case {
         drives,
         first_edition: draw.uniform() < 0.5,
         command_acts_late: draw.uniform() < 0.25,
-        begins_s: if in_motion {
-            draw.between(MOTION_S.0, MOTION_S.1)
-        } else {
-            0.0
-        },
+        begins_s,
     }
 }
 
@@ -117,9 +118,9 @@ fn recorded_variant(effect: &dyn StrutEffect, draw: &mut Draw) -> usize {
     }
 }
 
-/// The drive with another duration, and with another road and speed where it goes straight ahead.
-fn varied(scenario: Scenario, draw: &mut Draw) -> Scenario {
-    let ticks = (draw.between(DURATION_S.0, DURATION_S.1) / TICK_S) as u32;
+/// The drive with another duration, so long that its log may begin in motion, and with another road and speed where it goes straight ahead.
+fn varied(scenario: Scenario, begins_s: f64, draw: &mut Draw) -> Scenario {
+    let ticks = ((begins_s + draw.between(DURATION_S.0, DURATION_S.1)) / TICK_S) as u32;
     let (road, fastest_m_s) = ROADS[draw.index(ROADS.len())];
     let speed_m_s = draw.between(SLOWEST_M_S, fastest_m_s);
     let strategies = [Strategy::RideHandling, Strategy::default()];

@@ -209,8 +209,9 @@ fn drive(case: &Case, scenario: &Scenario, truth: &Corners<StrutModel>, draw: &m
     let vehicle = run::vehicle_on(scenario, physical).expect("a vehicle");
     let outcome = run::both(scenario, vehicle, 1, &mut |_| true).expect("a run");
     let samples = &outcome.plant.recording.samples;
+    let time_s: Vec<f64> = (0..samples.len()).map(|k| k as f64 * TICK_S).collect();
     // What drifts with time does so from the beginning of the log.
-    let time_s: Vec<f64> = (0..samples.len()).map(|k| k as f64 * TICK_S - case.begins_s).collect();
+    let begins = ((case.begins_s / TICK_S) as usize).min(samples.len());
     let mut read = |corner: Corner, column: usize| -> Vec<f64> {
         let model = &truth[corner];
         let mut series: Vec<f64> = (samples.iter())
@@ -219,7 +220,12 @@ fn drive(case: &Case, scenario: &Scenario, truth: &Corners<StrutModel>, draw: &m
                 Some(point) => s.strut[corner].pressure_pa[point],
             })
             .collect();
-        record_column(&model.effects, COLUMNS[column], &time_s, &mut series);
+        record_column(
+            &model.effects,
+            COLUMNS[column],
+            &time_s[begins..],
+            &mut series[begins..],
+        );
         let noise = model.noise[COLUMNS[column]];
         series.iter_mut().for_each(|v| *v += noise * draw.normal());
         series

@@ -2,10 +2,9 @@
 
 use crate::error::DiagnoseError;
 use crate::estimation::covariance::covariance;
+use crate::estimation::interval::HALF_INTERVAL;
 use crate::estimation::{Fit, LeastSquares, interval};
 
-/// Half of a 95 % interval in standard deviations of a normal distribution.
-const HALF_INTERVAL: f64 = 1.96;
 /// Estimates are called strongly correlated above this size of their correlation.
 const STRONG_CORRELATION: f64 = 0.9;
 

@@ -16,6 +16,9 @@ use super::gauss_newton::{Start, fit_from};
 use super::least_squares::LeastSquares;
 use crate::error::DiagnoseError;
 
+/// Half of a 95 % interval in standard deviations of a normal distribution.
+pub const HALF_INTERVAL: f64 = 1.96;
+
 /// Where leaving out parts costs too much: neighbouring blocks share the state of the gas and what smoothing left of the
 /// displacement's noise, and are not as independent as the sandwich takes them. `oleo diagnose --self-test --seed 1
 /// --campaigns 158` found 88 of 107 true values in intervals without this factor, as if they were 1.46 times too narrow.

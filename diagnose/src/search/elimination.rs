@@ -2,10 +2,8 @@
 
 use super::selector::Selector;
 use crate::error::DiagnoseError;
+use crate::estimation::interval::HALF_INTERVAL;
 use crate::estimation::{Fit, covariance};
-
-/// Half of a 95 % interval in standard deviations of a normal distribution.
-const HALF_INTERVAL: f64 = 1.96;
 
 impl Selector<'_, '_> {
     /// Drops effects, one at a time and the weakest first, until each that is left is accepted beside the others.
@@ -23,12 +21,8 @@ impl Selector<'_, '_> {
         let hypothesis = best.point.hypothesis(self.specimen());
         let absent = |(effect, values): &(usize, Vec<f64>)| self.candidate(*effect).absent_at(values);
         // What has become nothing explains nothing, even where the steps of the simulation are other ones with it.
-        if let Some(position) = hypothesis.effects.iter().position(absent) {
-            return self
-                .fitted(best.point.without_effect(self.specimen(), position))
-                .map(Some);
-        }
-        if let Some(position) = self.cannot_be_told_from_nothing(best) {
+        let nothing = (hypothesis.effects.iter().position(absent)).or_else(|| self.cannot_be_told_from_nothing(best));
+        if let Some(position) = nothing {
             return self
                 .fitted(best.point.without_effect(self.specimen(), position))
                 .map(Some);
@@ -74,14 +68,21 @@ mod tests {
     use super::*;
     use crate::analytic::{CUBIC, FRICTION, GAIN, RUN, Recipe, TABLE};
     use crate::estimation::{LeastSquares, Point};
+    use crate::specimen::Specimen;
 
-    /// Effects that are left of a model when the truth holds friction only.
-    fn left_of(effects: &[usize]) -> Vec<usize> {
-        let specimen = Recipe {
-            truth: vec![(FRICTION, vec![0.1])],
+    /// What the truth holds is friction only.
+    fn with_friction() -> impl Specimen {
+        let truth = vec![(FRICTION, vec![0.1])];
+        let recipe = Recipe {
+            truth,
             ..Recipe::default()
-        }
-        .make();
+        };
+        recipe.make()
+    }
+
+    /// Effects that are left of a model.
+    fn left_of(effects: &[usize]) -> Vec<usize> {
+        let specimen = with_friction();
         let problem = LeastSquares::new(&specimen, &RUN);
         let mut selector = Selector::new(&problem);
         let start = effects.iter().fold(Point::nominal(&specimen), |point, &e| {
@@ -115,11 +116,7 @@ mod tests {
 
     #[test]
     fn what_cannot_be_told_from_nothing_leaves() {
-        let specimen = Recipe {
-            truth: vec![(FRICTION, vec![0.1])],
-            ..Recipe::default()
-        }
-        .make();
+        let specimen = with_friction();
         let problem = LeastSquares::new(&specimen, &RUN);
         let mut selector = Selector::new(&problem);
         let start = Point::nominal(&specimen).with_effect(&specimen, FRICTION, &[0.1]);

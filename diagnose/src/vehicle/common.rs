@@ -8,10 +8,9 @@
 use oleo_interface::{Corner, Corners};
 
 use crate::diagnosis::{Effect, Estimate};
+use crate::estimation::interval::HALF_INTERVAL;
 use crate::vocabulary::EffectId;
 
-/// Half of a 95 % interval in standard deviations of a normal distribution.
-const HALF_INTERVAL: f64 = 1.96;
 /// Upper 0.1 % point of chi-square with three degrees of freedom.
 const LARGEST_Q: f64 = 16.27;
 /// Degrees of freedom of four estimates about their mean.

@@ -75,19 +75,29 @@ pub struct Chosen {
     pub notes: Vec<String>,
 }
 
+/// A drive of which something may be used.
+struct Usable<'d> {
+    drive: &'d BridgedDrive,
+    /// The first sample that is used.
+    from: usize,
+    begins_at_rest: bool,
+}
+
 /// Chooses what is used of all drives. Of a drive that does not begin at rest only those struts are used of which that is not expected.
 #[must_use]
 pub fn choose(drives: &[BridgedDrive], starts_at_rest: &Corners<bool>) -> Chosen {
     let mut notes = Vec::new();
-    let mut known: Vec<(&BridgedDrive, usize)> = Vec::new();
-    let mut begun_at_rest: Vec<bool> = Vec::new();
+    let mut known: Vec<Usable<'_>> = Vec::new();
     let reference = drives.iter().find(|drive| drive.is_first);
     for drive in drives {
         let begins_at_rest = drive.is_first || reference.is_some_and(|first| begins_as(first, drive));
         if begins_at_rest || !starts_at_rest.values().all(|&at_rest| at_rest) {
-            begun_at_rest.push(begins_at_rest);
             let kept_still = samples_in(KEPT_STILL_S, drive.period_s);
-            known.push((drive, moves_from(drive).saturating_sub(kept_still)));
+            known.push(Usable {
+                drive,
+                from: moves_from(drive).saturating_sub(kept_still),
+                begins_at_rest,
+            });
         } else {
             notes.push(format!(
                 "{}: not used, because it does not begin at rest, so that the state of the struts at its beginning is not known.",
@@ -97,16 +107,19 @@ pub fn choose(drives: &[BridgedDrive], starts_at_rest: &Corners<bool>) -> Chosen
     }
     let lengths: Vec<usize> = known
         .iter()
-        .map(|(drive, from)| length(drive).saturating_sub(*from))
+        .map(|usable| length(usable.drive).saturating_sub(usable.from))
         .collect();
     let excitation: Vec<Excitation> = (known.iter().zip(&lengths))
-        .map(|((drive, from), n)| Excitation::of(drive, *from, (*n).min(FIRST_SHARE)))
+        .map(|(usable, n)| Excitation::of(usable.drive, usable.from, (*n).min(FIRST_SHARE)))
         .collect();
     let used = shares(&lengths, &excitation);
     let mut recordings = Corners::from_fn(|_| Vec::new());
-    for (k, (((drive, from), share), (excited, whole))) in
-        (known.iter().zip(&used).zip(excitation.iter().zip(&lengths))).enumerate()
-    {
+    for ((usable, share), (excited, whole)) in known.iter().zip(&used).zip(excitation.iter().zip(&lengths)) {
+        let Usable {
+            drive,
+            from,
+            begins_at_rest,
+        } = usable;
         if *share < MIN_SAMPLES {
             let why = if *whole < MIN_SAMPLES {
                 "it is too short"
@@ -129,7 +142,7 @@ pub fn choose(drives: &[BridgedDrive], starts_at_rest: &Corners<bool>) -> Chosen
             if share < whole { "; more would add little" } else { "" },
         ));
         for corner in Corner::ALL {
-            if starts_at_rest[corner] && !begun_at_rest[k] {
+            if starts_at_rest[corner] && !begins_at_rest {
                 notes.push(format!(
                     "{}: not used for the {} strut, because it does not begin at rest, as the strut's file says that it does.",
                     drive.name,

@@ -11,17 +11,18 @@ pub enum Beginning {
 }
 
 /// What is known or assumed of a strut in the middle of a drive. Its valves have settled, and nothing flows yet: what flows follows from the
-/// pressures within milliseconds. No oil was lost, so that the displacement says what volume both gases have together; that of the first follows from
-/// its pressure and temperature, and the second has the rest. Gas that is believed to stay at ambient temperature has the volume that follows from its
-/// pressure.
+/// pressures within milliseconds. As long as no oil is lost, the displacement says what volume both gases have together; that of the first follows from
+/// its pressure and temperature, and the second has the rest, from which its temperature follows. Gas that is believed to stay at ambient temperature
+/// has the volume that follows from its pressure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct InMotion {
     /// Gauge pressure of the main chamber, Pa.
     pub chamber_pa: f64,
-    /// Gauge pressure of the gas in accumulators 1 and 2, Pa. For a real gas this is what it would be if it were ideal from ambient temperature on.
+    /// Gauge pressure of the gas in accumulators 1 and 2, Pa.
     pub gas_pa: [f64; 2],
-    /// Temperature of the gas in accumulator 1 above ambient, K.
-    pub first_above_ambient_k: f64,
-    /// Temperature of the gas in accumulator 2 beyond what follows from its volume, K: what the volume of the oil leaves open.
-    pub second_beyond_k: f64,
+    /// Temperature of the gas in accumulator 1 beyond that which both would have if they were equally warm, K.
+    pub first_beyond_k: f64,
+    /// Volume of both gases together beyond what the displacement says, relative. The recordings' equation does not conserve oil: what the dampers
+    /// have turned into heat, divided by the bulk modulus, is lost.
+    pub volume_beyond: f64,
 }

@@ -10,6 +10,7 @@ use oleo_interface::Absolute;
 
 use super::equation_of_state::{EquationOfState, NITROGEN_R_J_KG_K};
 use super::nitrogen::Nitrogen;
+use super::settled::settled;
 use super::terms::EnergyStep;
 use crate::lanes::{Mask, Number};
 
@@ -103,11 +104,21 @@ impl Gas {
     /// Volume at a pressure and ambient temperature, m3.
     #[must_use]
     pub fn volume_at(&self, pressure: Absolute<f64>) -> f64 {
+        self.warm_volume_at(pressure, self.ambient_k)
+    }
+
+    /// Volume at a pressure and a temperature (K), m3.
+    pub(super) fn warm_volume_at(&self, pressure: Absolute<f64>, temperature_k: f64) -> f64 {
         let density = match &self.real {
-            None => pressure.pa() / (NITROGEN_R_J_KG_K * self.ambient_k),
-            Some([gas]) => gas.density(pressure, self.ambient_k),
+            None => pressure.pa() / (NITROGEN_R_J_KG_K * temperature_k),
+            Some([gas]) => gas.density(pressure, temperature_k),
         };
         self.mass_kg / density
+    }
+
+    /// Temperature at a pressure and a volume (m3), K. A volume is nearly proportional to its temperature, so that a few rounds settle.
+    pub(super) fn temperature_at(&self, pressure: Absolute<f64>, volume_m3: f64) -> f64 {
+        settled(self.ambient_k, 30, |k| k * volume_m3 / self.warm_volume_at(pressure, k))
     }
 
     /// Pressure of a state.

@@ -28,8 +28,8 @@ pub struct Replay<'a> {
     pub with_course: bool,
 }
 
-/// Simulates many recordings, or one with many models, on this thread: what [`replay`](super::replay()) gives for each that begins at rest, to the bit, but in less time
-/// where models are of the same kind, because four are solved at once.
+/// Simulates many recordings, or one with many models, on this thread: what [`replay_from`](super::replay_from()) gives for each, to the bit, but in
+/// less time where models are of the same kind, because four are solved at once.
 ///
 /// ```
 /// use oleo_interface::StrutValves;

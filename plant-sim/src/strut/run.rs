@@ -184,7 +184,9 @@ impl<'a> Run<'a> {
 mod tests {
     use super::*;
     use crate::strut::beginning::InMotion;
-    use crate::strut::terms::{Effects, GasHeatTransfer};
+    use crate::strut::gas::GasState;
+    use crate::strut::replay::replay;
+    use crate::strut::terms::{Effects, OilCompressibility, OilCount};
 
     /// Samples of a motion with all valves open, from one on.
     fn inputs(from: usize, to: usize) -> Inputs {
@@ -211,50 +213,87 @@ mod tests {
         }
     }
 
-    #[test]
-    fn a_drive_goes_on_from_its_middle_as_from_its_start() {
-        const MIDDLE: usize = 400;
-        let mut model = StrutModel::defender110(6000.0);
-        model.effects = Effects {
-            oil_compressibility: model.effects.oil_compressibility,
-            gas_heat_transfer: Some(GasHeatTransfer {
-                time_constant_1_s: 3.0,
-                time_constant_2_s: 6.0,
-            }),
-            ..Effects::default()
-        };
-        let whole = inputs(0, 1200);
-        let mut from_rest = Run::begin(&model, &whole, &Beginning::AtRest).unwrap();
-        from_rest.go_on_to_the_end();
-        let first = inputs(0, MIDDLE);
-        let mut to_the_middle = Run::begin(&model, &first, &Beginning::AtRest).unwrap();
-        to_the_middle.go_on_to_the_end();
-        let (state, output) = (&to_the_middle.strut.flowing.state, to_the_middle.strut.output());
-        let ambient_k = model.gas.temperature_k;
+    /// A run over the first samples, and the beginning of what follows without knowledge of the second gas.
+    fn middle_of<'a>(model: &'a StrutModel, first: &'a Inputs) -> (Run<'a>, InMotion) {
+        let mut run = Run::begin(model, first, &Beginning::AtRest).unwrap();
+        run.go_on_to_the_end();
+        let output = run.strut.output();
         let mut begins = InMotion {
             chamber_pa: output.pressure_pa[0],
             gas_pa: [output.pressure_pa[1], output.pressure_pa[3]],
-            first_above_ambient_k: state.gas[0].temperature_k - ambient_k,
-            second_beyond_k: 0.0,
+            first_beyond_k: 0.0,
+            volume_beyond: 0.0,
         };
-        let rest = inputs(MIDDLE, 1200);
-        let from_the_oil = Run::begin(&model, &rest, &Beginning::InMotion(begins)).unwrap();
-        // The oil that is not lost says how warm the second gas is, within a hundredth of its volume.
-        let second_k = from_the_oil.strut.flowing.state.gas[1].temperature_k;
-        begins.second_beyond_k = state.gas[1].temperature_k - second_k;
-        assert!(begins.second_beyond_k.abs() < 3.0, "{begins:?}");
+        let equally_warm = begun_gas(model, first, begins)[0].temperature_k;
+        begins.first_beyond_k = run.strut.flowing.state.gas[0].temperature_k - equally_warm;
+        (run, begins)
+    }
+
+    /// The gas with which a recording begins that goes on where another one ends.
+    fn begun_gas(model: &StrutModel, first: &Inputs, begins: InMotion) -> [GasState; 2] {
+        let samples = first.time_s.len() - 1;
+        let next = inputs(samples, samples + 1);
+        let run = Run::begin(model, &next, &Beginning::InMotion(begins)).unwrap();
+        run.strut.flowing.state.gas
+    }
+
+    #[test]
+    fn a_drive_goes_on_from_its_middle_as_from_its_start() {
+        const MIDDLE: usize = 400;
+        // Real gas, heat, undissolved air, and oil that is counted at its static density and not lost.
+        let model = StrutModel::defender110(6000.0);
+        let (first, rest, whole) = (inputs(0, MIDDLE), inputs(MIDDLE, 1200), inputs(0, 1200));
+        let (to_the_middle, begins) = middle_of(&model, &first);
+        let truth = to_the_middle.strut.flowing.state.gas;
         let mut from_the_middle = Run::begin(&model, &rest, &Beginning::InMotion(begins)).unwrap();
-        from_the_middle.go_on_to_the_end();
-        let (a, b) = (
-            from_rest.into_replayed().prediction,
-            from_the_middle.into_replayed().prediction,
-        );
-        for point in 0..4 {
-            let (a, b) = (&a.pressure_pa[point][MIDDLE + 10..], &b.pressure_pa[point][10..]);
-            let range = |s: &[f64]| s.iter().fold(0.0_f64, |m, v| m.max((v - s[0]).abs()));
-            let off = a.iter().zip(b).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
-            assert!(off < 2e-3 * range(a), "p{}: {off} of {}", point + 1, range(a));
+        let begun = from_the_middle.strut.flowing.state.gas;
+        for (begun, truth) in begun.iter().zip(&truth) {
+            assert!(
+                (begun.temperature_k - truth.temperature_k).abs() < 0.1,
+                "{begun:?} {truth:?}"
+            );
+            assert!(
+                (begun.volume_m3 / truth.volume_m3 - 1.0).abs() < 3e-4,
+                "{begun:?} {truth:?}"
+            );
         }
+        from_the_middle.go_on_to_the_end();
+        let from_rest = replay(&model, &whole).unwrap();
+        let from_the_middle = from_the_middle.into_replayed().prediction;
+        for point in 0..4 {
+            let (a, b) = (
+                &from_rest.pressure_pa[point][MIDDLE + 10..],
+                &from_the_middle.pressure_pa[point][10..],
+            );
+            let range = a.iter().fold(0.0_f64, |m, v| m.max((v - a[0]).abs()));
+            let off = a.iter().zip(b).fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()));
+            assert!(off < 1e-3 * range, "p{}: {off} of {range}", point + 1);
+        }
+    }
+
+    #[test]
+    fn the_recordings_equation_loses_the_volume_of_the_work_that_became_heat() {
+        let mut model = StrutModel::defender110(6000.0);
+        model.effects = Effects {
+            oil_compressibility: Some(OilCompressibility {
+                bulk_modulus_pa: 1.5e9,
+                counted_at: OilCount::Chamber,
+            }),
+            gas_heat_transfer: model.effects.gas_heat_transfer,
+            ..Effects::default()
+        };
+        let first = inputs(0, 4000);
+        let (run, begins) = middle_of(&model, &first);
+        let both_m3 = |gas: [GasState; 2]| gas[0].volume_m3 + gas[1].volume_m3;
+        let off_m3 = both_m3(begun_gas(&model, &first, begins)) - both_m3(run.strut.flowing.state.gas);
+        // (V - A x) dp / beta over the drive, less what the same rise takes up where it ends.
+        let (area_m2, p1) = (model.piston_area_m2(), &run.prediction.pressure_pa[0]);
+        let x = |k: usize| 0.05 * libm::sin(0.03 * k as f64) + 0.02 * libm::sin(0.2 * k as f64);
+        let to = p1.len() - 1;
+        let path: f64 = (1..=to).map(|k| 0.5 * (x(k) + x(k - 1)) * (p1[k] - p1[k - 1])).sum();
+        let lost_m3 = area_m2 * (path - x(to) * (p1[to] - p1[0])) / 1.5e9;
+        assert!(lost_m3.abs() > 1e-6, "{lost_m3}");
+        assert!((off_m3.abs() / lost_m3.abs() - 1.0).abs() < 0.05, "{off_m3} {lost_m3}");
     }
 
     #[test]
@@ -264,8 +303,8 @@ mod tests {
         let begins = InMotion {
             chamber_pa: 5e6,
             gas_pa: [4e6, 3e6],
-            first_above_ambient_k: 40.0,
-            second_beyond_k: -500.0,
+            first_beyond_k: 40.0,
+            volume_beyond: -0.2,
         };
         let some = inputs(7, 8);
         let run = Run::begin(&model, &some, &Beginning::InMotion(begins)).unwrap();

@@ -77,7 +77,8 @@ pub fn local_deviation(series: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// What two motions make different in a recording that begins in this way, every recorded channel, in the unit of its column; `None` if the model cannot be simulated.
+/// What two motions make different in a recording that begins in this way, every recorded channel, in the unit of its column; `None` if the model
+/// cannot be simulated.
 #[must_use]
 pub fn differences(model: &StrutModel, pair: [&Inputs; 2], begins: &Beginning, layout: Layout) -> Option<Series> {
     differences_of_all(model, &[pair], begins, layout).pop().flatten()

@@ -23,7 +23,7 @@ pub use channels::{CHANNELS, columns};
 use channels::{FORCE, Layout, P1, P2, P3, P4};
 use relations::Measured;
 use rod_memory::{RodMemory, Wanted};
-use unknown_motion::Unknown;
+use unknown_motion::{Unknown, UnknownMotion};
 
 use super::channel::{Channel, Series, StateSeries};
 use super::contract::{BelievedModel, Specimen};
@@ -57,7 +57,7 @@ pub struct TwoStageStrut {
     recordings: Vec<Recording>,
     layout: Layout,
     /// Of a strut in a vehicle, what its motion leaves unknown.
-    free_motion: Option<FreeMotionLeft>,
+    unknown_motion: Option<UnknownMotion>,
     inputs: Vec<Inputs>,
     channels: Vec<Channel>,
     /// How each recording begins, as it was read.
@@ -194,7 +194,7 @@ impl TwoStageStrut {
         if !starts_at_rest {
             for (begins, recording) in begins.iter_mut().zip(&mut recordings) {
                 beginning::from_first_complete_sample(recording, Layout::VEHICLE);
-                *begins = beginning::as_read(&model, recording, Layout::VEHICLE).unwrap_or_default();
+                *begins = beginning::as_read(recording, Layout::VEHICLE).unwrap_or_default();
                 beginning::without_first_readings(recording, Layout::VEHICLE);
             }
         }
@@ -233,18 +233,14 @@ impl TwoStageStrut {
                 sum.add(self.measured(r, c), &differences[c], &simulated[c]);
             }
         }
-        let mut believed = Vec::with_capacity(sums.len());
+        let mut added = Vec::with_capacity(sums.len());
         for (channel, sum) in self.channels.iter_mut().zip(&sums) {
             let variance = channel.noise * channel.noise;
             let of_motion = sum.of_motion(variance);
             channel.noise = (variance + of_motion).sqrt();
-            let estimated = sum.estimated();
-            believed.push(Unresolved {
-                estimated,
-                counted: (of_motion / estimated.max(f64::MIN_POSITIVE)).max(1.0),
-            });
+            added.push(of_motion);
         }
-        self.free_motion = Some(FreeMotionLeft { possible, believed });
+        self.unknown_motion = Some(UnknownMotion::new(possible, sums.iter().zip(added)));
     }
 
     fn with_layout(
@@ -276,7 +272,7 @@ impl TwoStageStrut {
             model,
             recordings,
             layout,
-            free_motion: None,
+            unknown_motion: None,
             inputs,
             channels,
             begins,
@@ -361,20 +357,19 @@ impl TwoStageStrut {
 
     /// The floor of a strut in a vehicle. What the motion leaves unknown is part of the channels' noise, as far as the believed model turns it into
     /// pressure; another model, such as one with an oil column that swings, may turn it into more.
-    fn floor_of_free_motion(&self, left: &FreeMotionLeft, hypothesis: &Hypothesis) -> f64 {
+    fn floor_of_unknown_motion(&self, motion: &UnknownMotion, hypothesis: &Hypothesis) -> f64 {
         let model = self.applied(hypothesis);
         let differences: Vec<Option<Series>> = (0..self.inputs.len())
             .into_par_iter()
             .map(|r| {
-                let pair = [&self.inputs[r], &left.possible[r]];
+                let pair = [&self.inputs[r], motion.possible(r)];
                 floor::differences(&model, pair, &self.beginning(hypothesis, &model, r), self.layout)
             })
             .collect();
         let beyond = self.channels.iter().enumerate().map(|(c, channel)| {
             let series = differences.iter().flatten().map(|channels| &channels[c]);
             let (sum, count) = (series.flatten()).fold((0.0, 0), |(sum, count), d| (sum + d * d, count + 1));
-            let Unresolved { estimated, counted } = left.believed[c];
-            counted * (sum / f64::from(count.max(1)) - estimated).max(0.0) / (channel.noise * channel.noise)
+            motion.beyond(c, sum / f64::from(count.max(1))) / (channel.noise * channel.noise)
         });
         (1.0 + beyond.sum::<f64>() / self.channels.len() as f64).sqrt()
     }
@@ -435,22 +430,6 @@ impl TwoStageStrut {
                 .collect()
         })
     }
-}
-
-/// What the readings leave unknown of a motion that is not smooth between them.
-struct FreeMotionLeft {
-    /// For each recording another motion that the readings allow.
-    possible: Vec<Inputs>,
-    /// What that changes in each channel under the believed model.
-    believed: Vec<Unresolved>,
-}
-
-/// What is not known of the motion in a channel.
-struct Unresolved {
-    /// Mean square of the difference that two possible motions make.
-    estimated: f64,
-    /// By how much more the residuals show, at least 1.
-    counted: f64,
 }
 
 /// All of [`CHANNELS`], if they are numbers.
@@ -525,8 +504,8 @@ impl Specimen for TwoStageStrut {
     }
 
     fn noise_floor(&self, hypothesis: &Hypothesis) -> f64 {
-        if let Some(left) = &self.free_motion {
-            return self.floor_of_free_motion(left, hypothesis);
+        if let Some(motion) = &self.unknown_motion {
+            return self.floor_of_unknown_motion(motion, hypothesis);
         }
         if self.instruments.motion_is_poor {
             return FLOOR_OF_POOR_MOTION;

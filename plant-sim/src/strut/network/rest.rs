@@ -14,8 +14,10 @@ use crate::strut::settled::settled;
 const LOWEST_PA: f64 = -0.9 * ATMOSPHERE_PA;
 const HIGHEST_PA: f64 = 60e6;
 /// Temperatures between which the gas may begin, over ambient temperature.
-const COLDEST: f64 = 0.3;
-const HOTTEST: f64 = 3.0;
+const COLDEST: f64 = 0.5;
+const HOTTEST: f64 = 2.0;
+/// Smallest share of both gas volumes that the second gas has.
+const LEAST_SHARE: f64 = 0.01;
 
 impl Network {
     /// The state at rest: ambient temperature (K), valves open for long, no flow. Both accumulators are connected.
@@ -32,23 +34,34 @@ impl Network {
     /// may ask for it.
     pub fn in_motion(&self, displacement_m: f64, ambient_k: f64, begins: &InMotion) -> State {
         let possible = |pa: f64| Gauge(pa.clamp(LOWEST_PA, HIGHEST_PA));
-        let warmed = |by_k: f64| (1.0 + by_k / ambient_k).max(COLDEST);
-        let [at_ambient_1, at_ambient_2] =
-            [0, 1].map(|i| self.paths[i].gas.volume_at(possible(begins.gas_pa[i]).absolute()));
+        let warm = |temperature_k: f64| temperature_k.clamp(COLDEST * ambient_k, HOTTEST * ambient_k);
         let chamber = possible(begins.chamber_pa);
-        let together = self.gas_at_static().iter().sum::<f64>()
-            - (self.chamber.area_m2 * displacement_m - self.oil_by_pressure(chamber.pa()));
-        let first = warmed(begins.first_above_ambient_k);
-        let of_rest = (together - first * at_ambient_1) / at_ambient_2 - 1.0;
-        let second = warmed(ambient_k * of_rest + begins.second_beyond_k).min(HOTTEST);
-        let gas = [(first, at_ambient_1), (second, at_ambient_2)].map(|(warmed, at_ambient)| {
-            let temperature = if self.paths[0].gas.is_isothermal() { 1.0 } else { warmed };
+        let gas_pa = begins.gas_pa.map(|pa| possible(pa).absolute());
+        let gas = |i: usize, temperature_k: f64| {
+            let gas = &self.paths[i].gas;
+            let temperature_k = if gas.is_isothermal() {
+                ambient_k
+            } else {
+                warm(temperature_k)
+            };
             GasState {
-                volume_m3: temperature * at_ambient,
-                temperature_k: temperature * ambient_k,
+                volume_m3: gas.warm_volume_at(gas_pa[i], temperature_k),
+                temperature_k,
             }
-        });
-        self.without_flow(displacement_m, chamber, gas)
+        };
+        let rest = self.at_rest(0.0, ambient_k);
+        let taken_up = self
+            .chamber
+            .taken_up::<true>(&rest, chamber.pa(), displacement_m)
+            .volume_m3;
+        let pushed_in = self.chamber.area_m2 * displacement_m - taken_up;
+        let together = (1.0 + begins.volume_beyond) * (rest.gas[0].volume_m3 + rest.gas[1].volume_m3 - pushed_in);
+        let at_ambient: f64 = (0..2).map(|i| self.paths[i].gas.volume_at(gas_pa[i])).sum();
+        let first = gas(0, ambient_k * together / at_ambient + begins.first_beyond_k);
+        // What is left is never nothing, whatever a fit asks for.
+        let left = (together - first.volume_m3).max(LEAST_SHARE * together);
+        let second = gas(1, self.paths[1].gas.temperature_at(gas_pa[1], left));
+        self.without_flow(displacement_m, chamber, [first, second])
     }
 
     /// A state in which no oil flows and nothing has been heated.
@@ -65,16 +78,6 @@ impl Network {
         }
     }
 
-    /// Volume of the gas in accumulators 1 and 2 at static pressure and ambient temperature, m3.
-    fn gas_at_static(&self) -> [f64; 2] {
-        [0, 1].map(|i| self.paths[i].gas.volume_at(Gauge(self.chamber.static_pa).absolute()))
-    }
-
-    /// Volume that the oil of the main chamber gives way by at a gauge pressure (Pa) beyond the static one, m3.
-    fn oil_by_pressure(&self, pa: f64) -> f64 {
-        self.chamber.oil_volume_m3 * self.chamber.compressibility_1_pa * (pa - self.chamber.static_pa)
-    }
-
     /// Pressure at which the gas charges and the oil have taken up the volume that the piston has pushed in since the
     /// static position. Newton's method on a monotone function.
     fn rest_pressure(&self, displacement_m: f64) -> Gauge<f64> {
@@ -82,10 +85,11 @@ impl Network {
         if displacement_m == 0.0 {
             return at_static;
         }
-        let static_m3 = self.gas_at_static();
+        let static_m3 = [0, 1].map(|i| self.paths[i].gas.volume_at(at_static.absolute()));
         let taken_up = |p: f64| {
             let gas = |i: usize| static_m3[i] - self.paths[i].gas.volume_at(Gauge(p).absolute());
-            gas(0) + gas(1) + self.oil_by_pressure(p)
+            let oil_by_pressure = self.chamber.oil_volume_m3 * self.chamber.compressibility_1_pa;
+            gas(0) + gas(1) + oil_by_pressure * (p - at_static.pa())
         };
         let pushed_in = self.chamber.area_m2 * displacement_m;
         Gauge(settled(at_static.pa(), 30, |p| {

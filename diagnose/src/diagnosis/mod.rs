@@ -94,6 +94,14 @@ impl Diagnosis {
     pub fn of(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Self, DiagnoseError> {
         let selection = select(problem, progress)?;
         progress("judging on held-out blocks", 0.95);
+        Self::of_selection(problem, selection)
+    }
+
+    /// The figures of a search that has been made.
+    ///
+    /// # Errors
+    /// As [`Diagnosis::of`].
+    pub fn of_selection(problem: &LeastSquares<'_>, selection: Selection) -> Result<Self, DiagnoseError> {
         let (specimen, evaluation) = (problem.specimen(), &problem.evaluation);
         let (calibrated, best) = (&selection.calibrated, &selection.best);
         let given = evaluation.residuals_at(&Point::nominal(specimen))?;

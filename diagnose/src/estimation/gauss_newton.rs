@@ -4,6 +4,7 @@
 //! parameters would be re-laid-out for it at every step, and the sums over blocks that held-out figures and intervals are
 //! made of would have to be formed again. The step itself is Marquardt's (J. SIAM 11(2), 1963), with bounds.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::bounded_step::bounded_step;
@@ -73,6 +74,8 @@ pub struct Start {
     sensitivities: Vec<Sensitivity>,
     /// By how much steps with these derivatives have lowered the cost already.
     gained: f64,
+    /// Coordinates that keep their value.
+    held: Range<usize>,
 }
 
 impl Start {
@@ -92,7 +95,14 @@ impl Start {
             point,
             sensitivities,
             gained: 0.0,
+            held: 0..0,
         })
+    }
+
+    /// The same with coordinates that keep their value.
+    #[must_use]
+    pub fn holding(self, held: Range<usize>) -> Self {
+        Self { held, ..self }
     }
 
     /// Where a fit has ended. Its derivatives, where it still has them, are those from which its last steps were taken.
@@ -107,6 +117,7 @@ impl Start {
             point: fitted.point,
             sensitivities: Arc::unwrap_or_clone(kept),
             gained: 0.0,
+            held: 0..0,
         })
     }
 }
@@ -121,8 +132,12 @@ pub fn fit_from(problem: &LeastSquares<'_>, start: Start, effort: Effort) -> Res
         mut point,
         mut sensitivities,
         mut gained,
+        held,
     } = start;
-    let (prior, ranges) = (point.prior(specimen), point.ranges(specimen));
+    let (prior, mut ranges) = (point.prior(specimen), point.ranges(specimen));
+    for k in held {
+        ranges[k] = (point.z[k], point.z[k]);
+    }
     let all: Vec<usize> = (0..point.z.len()).collect();
     let mut normals = assemble(blocks, &sensitivities);
     let mut cost = total_cost(&normals) + point.prior_cost(specimen);
@@ -194,6 +209,7 @@ pub fn fit_from(problem: &LeastSquares<'_>, start: Start, effort: Effort) -> Res
 mod tests {
     use super::*;
     use crate::analytic::{CUBIC, FRAGILE, FRICTION, RUN, Recipe, VIBRATION};
+    use crate::estimation::covariance::deviations;
     use crate::specimen::Specimen;
 
     fn fitted(recipe: &Recipe, effects: &[(usize, &[f64])]) -> (Vec<f64>, f64) {
@@ -286,6 +302,32 @@ mod tests {
         assert_eq!(fitted(&recipe, &[(FRICTION, &[0.2])]).0, [0.0]);
         // And a start outside is moved inside.
         assert_eq!(fitted(&recipe, &[(FRICTION, &[-3.0])]).0, [0.0]);
+    }
+
+    #[test]
+    fn a_number_that_is_held_keeps_its_value_and_the_others_make_the_best_of_it() {
+        let truth = vec![(CUBIC, vec![0.25]), (FRICTION, vec![0.07])];
+        let recipe = Recipe {
+            truth,
+            ..Recipe::default()
+        };
+        let specimen = recipe.make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let start = Point::nominal(&specimen)
+            .with_effect(&specimen, CUBIC, &[0.0])
+            .with_effect(&specimen, FRICTION, &[0.1]);
+        let friction = start.coordinates_of(&specimen, 1);
+        let effort = problem.criteria.fitting.converged;
+        let held = Start::at(&problem, start.clone())
+            .and_then(|at| fit_from(&problem, at.holding(friction.clone()), effort))
+            .expect("a fit");
+        let free = fit(&problem, start.clone(), effort).expect("a fit");
+        let k = friction.start;
+        assert_eq!(held.point.z[k], start.z[k]);
+        // In a linear model with white noise, holding a number costs its squared distance from the best value over its variance.
+        let distance = (held.point.z[k] - free.point.z[k]) / deviations(&free)[k];
+        let ratio = (held.cost - free.cost) / (distance * distance);
+        assert!((0.5..1.5).contains(&ratio), "{ratio}");
     }
 
     #[test]

@@ -71,12 +71,7 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
         let open = selector.open(&best.point, open);
         screened = selector.screen(&best, open)?;
     }
-    for (candidate, fit) in &screened {
-        if let (Some(score), Some(fit)) = (scores.iter_mut().find(|s| s.candidate == *candidate), fit) {
-            score.added = Some(selector.held_out_ratio(fit));
-            score.least_sizes = selector.least_sizes(&best, *candidate, fit);
-        }
-    }
+    selector.score_added(&screened, &best, &mut scores);
     let improved_ratio = selector.held_out_ratio(&best);
     let incomplete = improved_ratio > selector.complete_up_to(&best);
     let of_excitation_hz = if incomplete && open != Open::Names {
@@ -100,6 +95,16 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
 }
 
 impl Selector<'_, '_> {
+    /// Notes what candidates would explain beside the improved model, and from which sizes they would have shown.
+    pub fn score_added(&self, screened: &[Screened], best: &Fit, scores: &mut [CandidateScore]) {
+        for (candidate, fit) in screened {
+            if let (Some(score), Some(fit)) = (scores.iter_mut().find(|s| s.candidate == *candidate), fit) {
+                score.added = Some(self.held_out_ratio(fit));
+                score.least_sizes = self.least_sizes(best, *candidate, fit);
+            }
+        }
+    }
+
     /// What may join a model that is not complete, and has lost effects that came before laws were tried: they had a part of what a
     /// law explains, so that it was not accepted beside them, or they were so many that none was tried. `None` if there is no reason to
     /// go on.

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::body::BodyCampaign;
 use super::campaign::VehicleCampaign;
 use super::common::{Common, common};
+use super::sharing::with_what_all_share;
 use crate::body::BodyFindings;
 use crate::campaign::MODEL_FILE;
 use crate::diagnosis::{Diagnosis, Effect, Estimate, Verdict};
@@ -17,6 +18,9 @@ use crate::error::DiagnoseError;
 use crate::estimation::LeastSquares;
 use crate::search::Progress;
 use crate::vocabulary::{Place, VehiclePart};
+
+/// Fraction of the work that is done when all corners have been diagnosed on their own.
+const SHARING_BEGINS: f64 = 0.97;
 
 /// An effect with the part of the vehicle that has it.
 #[derive(Debug, Clone)]
@@ -62,6 +66,8 @@ impl VehicleDiagnosis {
             .collect();
         let mut diagnosed = diagnosed.into_iter();
         let corners = Corners::try_from_fn(|_| diagnosed.next().unwrap_or(Err(DiagnoseError::Interrupted)))?;
+        progress("trying at all corners what some of them show", SHARING_BEGINS);
+        let corners = with_what_all_share(campaign, corners, stop)?;
         Ok(Self {
             effects: effects(&corners),
             corners,

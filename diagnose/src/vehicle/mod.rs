@@ -10,7 +10,8 @@
 //! ```
 //!
 //! A corner is a strut as on a test rig, with three differences: no force is recorded, readings are rounded to the steps of the
-//! bus, and some are missing. What is common to all four is decided afterwards, from the four estimates and their intervals.
+//! bus, and some are missing. What is common to all four is decided afterwards, from the four estimates and their intervals; what two or three corners show
+//! of the oil, the gas or the design is tried at the others.
 //!
 //! This module knows nothing of CAN: a [`Drive`] may come from any log.
 //!
@@ -23,6 +24,7 @@
 //! | `stretch` | the parts of the drives that are used, and why |
 //! | `command_timing` | when a logged command acts on the valves |
 //! | `campaign` | model and drives put together |
+//! | `sharing` | effects that some corners show, tried at the others |
 //! | `common` | effects that all four corners have with one value |
 //! | `diagnosis` | the diagnosis of the vehicle |
 //! | `report` | `report.json` |
@@ -38,6 +40,7 @@ mod drive;
 mod model;
 mod page;
 mod report;
+mod sharing;
 mod stretch;
 
 pub use campaign::VehicleCampaign;

@@ -167,7 +167,8 @@ fn common(page: &mut Page, diagnosis: &VehicleDiagnosis, shared: &VehicleEffect)
     let e = &shared.effect;
     page.text(&format!(
         "All four struts have the effect {}, and their estimates do not contradict each other. It is therefore reported once for the \
-         vehicle, with the mean of the four, weighted by their intervals.",
+         vehicle, with the mean of the four, weighted by their intervals. A strut with an interval that contains nothing does not show it alone, but \
+         its recordings do not speak against it.",
         words::effect_name(e)
     ));
     let mut table = Table::new([

@@ -161,6 +161,32 @@ fn logs_that_begin_in_motion_are_diagnosed_and_their_files_say_so_again() {
 }
 
 #[test]
+fn what_three_corners_show_of_the_oil_is_the_vehicles() {
+    // At 44 GPa all corners show it alone, at 46 GPa one.
+    let concealed = Concealed::new(EffectId::OilCompressibility, 0, 1.0 / 45e9, Corner::ALL.to_vec());
+    let case = Case {
+        seed: 8,
+        concealed: vec![concealed],
+        drives: drives(8, DURATION_S),
+        first_edition: false,
+        command_acts_late: false,
+        begins_s: 0.0,
+    };
+    let (folder, report) = diagnosed(&case);
+    assert_eq!(effects(&report), ["oil_compressibility@vehicle/main-chamber"]);
+    let effect = &report["effects"][0];
+    let interval = &effect["parameters"]["bulk_modulus_Pa"]["ci95"];
+    let [low, high] = [&interval[0], &interval[1]].map(|v| v.as_f64().expect("a number"));
+    assert!(low < 45e9 && 45e9 < high && high < 1.4 * low, "{interval}");
+    assert_eq!(effect["at_corners"].as_object().expect("corners").len(), 4);
+    for corner in Corner::ALL {
+        let file = folder.path().join("found").join(format!("{}.toml", corner.name()));
+        let text = std::fs::read_to_string(file).expect("a file");
+        assert!(text.contains("bulk_modulus_Pa"), "{}: {text}", corner.name());
+    }
+}
+
+#[test]
 fn what_cannot_be_used_is_refused_in_one_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let strut = StrutModel::defender110(4000.0).to_toml();

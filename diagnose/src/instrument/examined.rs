@@ -108,6 +108,16 @@ impl Examined {
         out
     }
 
+    /// Recordings that are taken as stated, with the noise of each column.
+    #[must_use]
+    pub fn as_stated(noise: Vec<f64>, recordings: usize) -> Self {
+        Self {
+            relative: vec![vec![None; noise.len()]; recordings],
+            noise,
+            ..Self::default()
+        }
+    }
+
     /// Noise of the samples of a column of a recording, as multiples of the column's; `None` if all are 1.
     #[must_use]
     pub fn relative(&self, recording: usize, column: usize) -> Option<&[f64]> {

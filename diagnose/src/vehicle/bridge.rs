@@ -1,9 +1,11 @@
 //! Missing readings of one strut in one drive.
 //!
-//! A missing displacement must not become a step: it is interpolated, and the pressures about it do not count. A missing pressure
+//! A missing displacement stays missing: the smoother of the motion bridges it, and says what it does not know. The pressures about it do not count. A missing pressure
 //! does not count. Where a command is missing, the valves are taken to stay as they were; if they were switched meanwhile, nobody
-//! knows in which tick, so the pressures do not count until the valve has settled. The drive is cut where more than
+//! knows in which tick, so the signals stay missing and the pressures do not count until the valve has settled. The drive is cut where more than
 //! [`LONGEST_BRIDGE_S`] in a row are missing, because the state of the strut is not known after it.
+
+use std::ops::Range;
 
 use oleo_interface::StrutValves;
 
@@ -11,7 +13,7 @@ use super::drive::StrutSamples;
 
 /// Longest time without readings that is bridged, s.
 pub const LONGEST_BRIDGE_S: f64 = 0.1;
-/// Gaps up to this length are interpolated so well that only the pressures next to them are touched, s.
+/// Gaps up to this length are bridged so well that only the pressures next to them are touched, s.
 const SHORT_GAP_S: f64 = 0.015;
 /// Pressures that do not count before a gap, and after a short one, in samples: the dampers' pressures settle within milliseconds.
 const BESIDE_SHORT: (usize, usize) = (2, 6);
@@ -23,22 +25,22 @@ pub fn samples_in(time_s: f64, period_s: f64) -> usize {
     // A time that is a multiple of the period is not to lose a sample by rounding.
     (time_s / period_s + 1e-6) as usize
 }
-/// Known readings on each side of a gap through which the interpolating polynomial goes.
-const NODES: usize = 3;
 
 /// A strut's samples without gaps in what drives the model.
 #[derive(Debug, Clone)]
 pub struct Bridged {
-    /// Displacement, m, from the first reading to the cut.
+    /// Displacement, m, from the first reading to the cut; NaN where there is none.
     pub displacement_m: Vec<f64>,
     /// Pressures, Pa; NaN where they do not count.
     pub pressure_pa: [Vec<f64>; 4],
-    /// Switching signals.
+    /// Switching signals; where one is missing, as they were before.
     pub valves: Vec<StrutValves<bool>>,
+    /// Samples without a command during which valves were switched.
+    pub switched_unseen: Vec<Range<usize>>,
     /// Index of the first sample in the drive.
     pub from: usize,
-    /// Number of displacements that were interpolated.
-    pub interpolated: usize,
+    /// Number of displacements that are missing.
+    pub missing: usize,
     /// Number of commands that are missing.
     pub without_command: usize,
     /// The sample at which the drive was cut, where it was.
@@ -66,25 +68,21 @@ pub fn bridge(samples: &StrutSamples, period_s: f64) -> Option<Bridged> {
         .map(|gap| gap.0)
         .min();
     let to = cut_at.unwrap_or(last);
-    let mut displacement_m = x[from..to].to_vec();
     let mut pressure_pa = samples.pressure_pa.each_ref().map(|p| p[from..to].to_vec());
     let mut uncounted = |start: usize, end: usize| {
         for p in &mut pressure_pa {
             p[start.max(from) - from..end.min(to) - from].fill(f64::NAN);
         }
     };
-    let mut interpolated = 0;
+    let mut missing = 0;
     for &(start, end) in gaps.iter().filter(|gap| gap.1 <= to) {
-        interpolated += end - start;
+        missing += end - start;
         let after = if end - start <= short_gap {
             BESIDE_SHORT.1
         } else {
             after_long
         };
         uncounted(start.saturating_sub(BESIDE_SHORT.0), end + after);
-        for k in start..end {
-            displacement_m[k - from] = interpolated_at(x, k, (start, end));
-        }
     }
     let mut valves: Vec<StrutValves<bool>> = Vec::with_capacity(to - from);
     let mut held = StrutValves::default();
@@ -92,20 +90,23 @@ pub fn bridge(samples: &StrutSamples, period_s: f64) -> Option<Bridged> {
         held = signal.unwrap_or(held);
         valves.push(held);
     }
+    let mut switched_unseen = Vec::new();
     let mut without_command = first_command.clamp(from, to) - from;
     for &(start, end) in silences.iter().filter(|gap| gap.1 <= to) {
         without_command += end - start;
         let known = |k: usize| samples.valves.get(k).copied().flatten();
         if start.checked_sub(1).and_then(known) != known(end) {
             uncounted(start, end + after_long);
+            switched_unseen.push(start - from..end - from);
         }
     }
     Some(Bridged {
-        displacement_m,
+        displacement_m: x[from..to].to_vec(),
         pressure_pa,
         valves,
+        switched_unseen,
         from,
-        interpolated,
+        missing,
         without_command,
         cut_at,
     })
@@ -128,22 +129,6 @@ fn gaps(from: usize, to: usize, known: impl Fn(usize) -> bool) -> Vec<(usize, us
     found
 }
 
-/// The polynomial through the nearest readings before and after a gap (Lagrange), at sample `k`.
-fn interpolated_at(x: &[f64], k: usize, (start, end): (usize, usize)) -> f64 {
-    let known = |i: &usize| x.get(*i).is_some_and(|v| v.is_finite());
-    let before = (0..start).rev().take(2 * NODES).filter(known).take(NODES);
-    let after = (end..x.len()).take(2 * NODES).filter(known).take(NODES);
-    let nodes: Vec<usize> = before.chain(after).collect();
-    (nodes.iter())
-        .map(|&i| {
-            let weight: f64 = (nodes.iter().filter(|&&j| j != i))
-                .map(|&j| (k as f64 - j as f64) / (i as f64 - j as f64))
-                .product();
-            weight * x[i]
-        })
-        .sum()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -152,33 +137,22 @@ mod tests {
     /// Most missing readings in a row that are bridged.
     const MOST: usize = 20;
 
-    /// Wheel hop of 12 Hz and 5 mm on a slow stroke.
-    fn motion(k: usize) -> f64 {
-        let t = 0.005 * k as f64;
-        0.005 * libm::sin(75.0 * t) + 0.03 * libm::sin(6.0 * t)
-    }
-
     fn samples(n: usize) -> StrutSamples {
         StrutSamples {
-            displacement_m: (0..n).map(motion).collect(),
+            displacement_m: (0..n).map(|k| 0.03 * libm::sin(0.03 * k as f64)).collect(),
             pressure_pa: std::array::from_fn(|_| vec![4e6; n]),
             valves: vec![Some(StrutValves::default()); n],
         }
     }
 
     #[test]
-    fn a_lost_displacement_becomes_no_step() {
+    fn the_pressures_about_a_lost_displacement_do_not_count() {
         let mut s = samples(400);
         for k in [100, 200, 201, 390] {
             s.displacement_m[k] = f64::NAN;
         }
         let b = bridge(&s, TICK_S).expect("a drive");
-        assert_eq!((b.interpolated, b.cut_at, b.displacement_m.len()), (4, None, 400));
-        for (k, x) in b.displacement_m.iter().enumerate() {
-            // Half a step of the bus for one, ten steps for two; a straight line would be off by 0.7 mm.
-            let within = if (200..202).contains(&k) { 2e-5 } else { 5e-6 };
-            assert!((x - motion(k)).abs() < within, "{k}: {:e}", x - motion(k));
-        }
+        assert_eq!((b.missing, b.cut_at, b.displacement_m.len()), (4, None, 400));
         assert!(b.pressure_pa[0][98..107].iter().all(|p| p.is_nan()));
         assert!(b.pressure_pa[0][107].is_finite() && b.pressure_pa[0][97].is_finite());
     }
@@ -189,11 +163,7 @@ mod tests {
         s.displacement_m[150..150 + MOST].fill(f64::NAN);
         s.displacement_m[250..251 + MOST].fill(f64::NAN);
         let b = bridge(&s, TICK_S).expect("a drive");
-        assert_eq!(
-            (b.cut_at, b.displacement_m.len(), b.interpolated),
-            (Some(250), 250, MOST)
-        );
-        assert!(b.displacement_m.iter().all(|x| x.is_finite()));
+        assert_eq!((b.cut_at, b.displacement_m.len(), b.missing), (Some(250), 250, MOST));
     }
 
     #[test]
@@ -208,6 +178,7 @@ mod tests {
         assert_eq!(b.without_command, 2);
         assert!(b.pressure_pa[0][50].is_finite() && b.pressure_pa[0][200].is_nan() && b.pressure_pa[0][260].is_nan());
         assert!(b.pressure_pa[0][262].is_finite());
+        assert!(b.switched_unseen.len() == 1 && b.switched_unseen[0] == (200..201));
         // Before the first command the valves are closed.
         s.valves[..60].fill(None);
         let b = bridge(&s, TICK_S).expect("a drive");

@@ -59,10 +59,20 @@ pub fn acts_later(
     Ok(median(shares).is_some_and(|share| share > HALF))
 }
 
+/// Residuals of the believed model, Pa: the noise of a sample is not the same in both problems.
 fn residuals(strut: &TwoStageStrut) -> Result<Vec<Series>, DiagnoseError> {
     let stop = AtomicBool::new(false);
     let problem = LeastSquares::new(strut, &stop);
-    problem.evaluation.residuals_at(&Point::nominal(strut))
+    let in_noise = problem.evaluation.residuals_at(&Point::nominal(strut))?;
+    Ok((in_noise.iter().enumerate())
+        .map(|(r, channels)| {
+            (channels
+                .iter()
+                .enumerate()
+                .map(|(c, series)| strut.in_units(r, c, series)))
+            .collect()
+        })
+        .collect())
 }
 
 /// The samples at which a switching signal differs from the one before.

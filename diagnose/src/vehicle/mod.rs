@@ -20,7 +20,7 @@
 //! | `model` | the model files of a vehicle |
 //! | `drive` | what a drive recorded |
 //! | `body` | the balance of the body, where drives have an inertial unit |
-//! | `bridge` | missing readings: what is interpolated, and what no longer counts |
+//! | `bridge` | missing readings: what stays missing, and what no longer counts |
 //! | `stretch` | the parts of the drives that are used, and why |
 //! | `command_timing` | when a logged command acts on the valves |
 //! | `campaign` | model and drives put together |

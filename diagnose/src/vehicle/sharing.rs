@@ -121,7 +121,8 @@ fn pooled(estimates: &[Vec<[f64; 2]>], parameters: &[Parameter]) -> Option<Vec<f
         .map(|(k, parameter)| {
             let weighed = estimates.iter().map(|numbers| {
                 let [z, one_away] = numbers.get(k).map_or([f64::NAN; 2], |v| v.map(|v| parameter.z(v)));
-                (z, 1.0 / (one_away - z).powi(2))
+                let deviation = one_away - z;
+                (z, 1.0 / (deviation * deviation))
             });
             let known: Vec<(f64, f64)> = weighed.filter(|(z, w)| z.is_finite() && w.is_normal()).collect();
             let weights: f64 = known.iter().map(|(_, w)| w).sum();

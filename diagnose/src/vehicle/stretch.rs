@@ -54,8 +54,10 @@ impl Excitation {
             let end = (from + samples).min(strut.displacement_m.len());
             let x = &strut.displacement_m[from.min(end)..end];
             // Over two samples, so that a step of the bus is no speed.
-            square += x.windows(3).map(|w| (w[2] - w[0]) * (w[2] - w[0])).sum::<f64>();
-            count += x.len().saturating_sub(2);
+            for step in x.windows(3).map(|w| w[2] - w[0]).filter(|step| step.is_finite()) {
+                square += step * step;
+                count += 1;
+            }
             let (low, high) = x.iter().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
             out.range_m = out.range_m.max(high - low);
             out.spring_edges += (strut.valves[from.min(end)..end].windows(2))
@@ -173,11 +175,8 @@ pub fn choose(drives: &[BridgedDrive], starts_at_rest: &Corners<bool>) -> Chosen
 /// What was missing at a corner, and what became of it.
 fn bridged(drive: &BridgedDrive, corner: Corner, strut: &Bridged) -> Option<String> {
     let mut parts = Vec::new();
-    if strut.interpolated > 0 {
-        parts.push(format!(
-            "{} missing displacements were interpolated",
-            strut.interpolated
-        ));
+    if strut.missing > 0 {
+        parts.push(format!("{} displacements are missing", strut.missing));
     }
     if strut.without_command > 0 {
         parts.push(format!("{} ticks have no command", strut.without_command));
@@ -233,7 +232,11 @@ fn begins_as(first: &BridgedDrive, later: &BridgedDrive) -> bool {
             known.iter().sum::<f64>() / known.len().max(1) as f64
         };
         let x = mean(&b.displacement_m);
-        let still = b.displacement_m.iter().take(BEGINNING).all(|v| (v - x).abs() < MOVED_M);
+        let still = b
+            .displacement_m
+            .iter()
+            .take(BEGINNING)
+            .all(|v| v.is_nan() || (v - x).abs() < MOVED_M);
         let [p, q] = [a, b].map(|s| s.pressure_pa.each_ref().map(|p| mean(p)));
         let equal = (1..4).all(|k| ((q[k] - q[0]) - (p[k] - p[0])).abs() < EQUAL_PA);
         let same = (x - mean(&a.displacement_m)).abs() < SAME_REST.0 && (q[0] - p[0]).abs() < SAME_REST.1 * p[0].abs();
@@ -274,9 +277,13 @@ fn recording(drive: &BridgedDrive, strut: &Bridged, from: usize, samples: usize)
     let end = (from + samples).min(strut.displacement_m.len());
     let mut columns = vec![strut.displacement_m[from..end].to_vec()];
     columns.extend(strut.pressure_pa.iter().map(|p| p[from..end].to_vec()));
+    let is_unknown = |k: usize| strut.switched_unseen.iter().any(|unseen| unseen.contains(&k));
     columns.extend(Valve::ALL.map(|valve| {
-        (strut.valves[from..end].iter())
-            .map(|signals| f64::from(u8::from(signals[valve])))
+        (from..end)
+            .map(|k| match strut.valves[k][valve] {
+                _ if is_unknown(k) => f64::NAN,
+                signal => f64::from(u8::from(signal)),
+            })
             .collect()
     }));
     Recording {
@@ -302,8 +309,9 @@ mod tests {
             displacement_m: (0..samples).map(x).collect(),
             pressure_pa: std::array::from_fn(|_| vec![4e6; samples]),
             valves: vec![StrutValves::default(); samples],
+            switched_unseen: vec![],
             from: 0,
-            interpolated: 0,
+            missing: 0,
             without_command: 0,
             cut_at: None,
         };

@@ -109,7 +109,7 @@ impl EquationOfState {
             let at = self.state(density, temperature_k);
             let missing = pressure.pa() - at.pressure.pa() - added * density;
             let step = missing / (at.dp_drho_pa_m3_kg + added);
-            density + step.clamp(-0.5 * density, density)
+            density + step.max(-0.5 * density).min(density)
         })
     }
 }

@@ -17,6 +17,9 @@ use crate::lanes::{Mask, Number};
 /// Isochoric specific heat of nitrogen, J/kg/K (recordings README).
 pub const NITROGEN_CV_J_KG_K: f64 = 743.0;
 
+/// Lowest and highest temperature that a charge can have, over ambient temperature.
+const POSSIBLE_TEMPERATURE: [f64; 2] = [0.5, 2.0];
+
 /// Volume and temperature of a gas charge.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct GasState<N = f64> {
@@ -116,9 +119,21 @@ impl Gas {
         self.mass_kg / density
     }
 
-    /// Temperature at a pressure and a volume (m3), K. A volume is nearly proportional to its temperature, so that a few rounds settle.
+    /// Temperature at a pressure and a volume (m3), K, as far as it is possible. A volume is nearly proportional to its temperature, so that a few rounds settle.
     pub(super) fn temperature_at(&self, pressure: Absolute<f64>, volume_m3: f64) -> f64 {
-        settled(self.ambient_k, 30, |k| k * volume_m3 / self.warm_volume_at(pressure, k))
+        settled(self.ambient_k, 30, |k| {
+            self.possible_k(k * volume_m3 / self.warm_volume_at(pressure, k))
+        })
+    }
+
+    /// A temperature, K, moved to where that of a charge can be; one that is no number becomes the ambient one.
+    pub(super) fn possible_k(&self, temperature_k: f64) -> f64 {
+        let [coldest, hottest] = POSSIBLE_TEMPERATURE.map(|part| part * self.ambient_k);
+        if temperature_k.is_nan() {
+            self.ambient_k
+        } else {
+            temperature_k.max(coldest).min(hottest)
+        }
     }
 
     /// Pressure of a state.
@@ -313,6 +328,15 @@ mod tests {
             (s, p) = (step.state, step.pressure.pa());
         }
         p
+    }
+
+    #[test]
+    fn a_temperature_follows_from_pressure_and_volume_as_far_as_it_is_possible() {
+        let gas = Gas::charged(Absolute(4.0e6), 1.0e-4, 300.0, None, None);
+        let at = |volume_m3: f64| gas.temperature_at(Absolute(8.0e6), volume_m3);
+        assert!((at(0.5e-4) - 300.0).abs() < 1e-9 && (at(0.6e-4) - 360.0).abs() < 1e-9);
+        // Half of ambient temperature at least, and twice at most; nothing that a fit asks for is no number.
+        assert_eq!([at(-1e-4), at(1.0), at(f64::NAN)], [150.0, 600.0, 300.0]);
     }
 
     #[test]

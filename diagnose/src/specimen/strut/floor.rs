@@ -64,15 +64,22 @@ pub fn excesses(
 /// Root mean square of a series around each sample.
 #[must_use]
 pub fn local_deviation(series: &[f64]) -> Vec<f64> {
-    let mut sums = Vec::with_capacity(series.len() + 1);
+    local_deviation_of_all(&[series])
+}
+
+/// Root mean square of several series, all of one length, around each sample.
+#[must_use]
+pub fn local_deviation_of_all(series: &[&[f64]]) -> Vec<f64> {
+    let length = series.first().map_or(0, |series| series.len());
+    let mut sums = Vec::with_capacity(length + 1);
     sums.push(0.0);
-    for v in series {
-        sums.push(sums[sums.len() - 1] + v * v);
+    for k in 0..length {
+        sums.push(sums[k] + series.iter().map(|series| series[k] * series[k]).sum::<f64>());
     }
-    (0..series.len())
+    (0..length)
         .map(|k| {
-            let (from, to) = (k.saturating_sub(BESIDE), (k + BESIDE + 1).min(series.len()));
-            ((sums[to] - sums[from]).max(0.0) / (to - from) as f64).sqrt()
+            let (from, to) = (k.saturating_sub(BESIDE), (k + BESIDE + 1).min(length));
+            ((sums[to] - sums[from]).max(0.0) / ((to - from) * series.len()) as f64).sqrt()
         })
         .collect()
 }
@@ -85,7 +92,7 @@ pub fn differences(model: &StrutModel, pair: [&Inputs; 2], begins: &Beginning, l
 }
 
 /// The same of each pair of motions. All are simulated together, which takes less time.
-fn differences_of_all(
+pub fn differences_of_all(
     model: &StrutModel,
     pairs: &[[&Inputs; 2]],
     begins: &Beginning,

@@ -9,6 +9,7 @@ mod floor;
 mod relations;
 mod rod_memory;
 mod unknown_motion;
+mod unread;
 
 use std::sync::OnceLock;
 
@@ -23,7 +24,7 @@ pub use channels::{CHANNELS, columns};
 use channels::{FORCE, Layout, P1, P2, P3, P4};
 use relations::Measured;
 use rod_memory::{RodMemory, Wanted};
-use unknown_motion::{Unknown, UnknownMotion};
+use unknown_motion::{Counted, Unknown, UnknownMotion};
 
 use super::channel::{Channel, Series, StateSeries};
 use super::contract::{BelievedModel, Specimen};
@@ -181,8 +182,9 @@ impl TwoStageStrut {
     /// that was not received is NaN and does not count.
     ///
     /// Between two samples of 5 ms a wheel moves in a way that is not recorded, and the dampers turn what is not known of its speed
-    /// into pressure. This is noise of p1 and p3 as the sensor's is, and is added to it: its size is the difference that two
-    /// motions make which the readings cannot tell apart.
+    /// into pressure. This is noise of p1 and p3 as the sensor's is, and is added to it: its size is the difference that
+    /// motions make which the readings cannot tell apart. A displacement or a switching signal that was not received is NaN, and what it leaves unknown counts in the
+    /// same way.
     ///
     /// A recording that does not begin at rest begins with the pressures that were read first; volume and temperature of the gas are then part of
     /// every fit, and the readings of the first tenth of a second do not count.
@@ -198,49 +200,111 @@ impl TwoStageStrut {
                 beginning::without_first_readings(recording, Layout::VEHICLE);
             }
         }
-        let (mut inputs, mut possible) = (Vec::new(), Vec::new());
-        for r in &recordings {
+        let (mut inputs, mut unread) = (Vec::new(), Vec::new());
+        for r in &mut recordings {
+            let signals = unread::fill_signals(r, Layout::VEHICLE);
             let motion = smooth_free_motion(&r.columns[0], r.interval_s(), displacement_noise(&model));
-            let with = |motion| Inputs {
+            let best = Inputs {
                 time_s: r.time_s.clone(),
-                motion,
+                motion: motion.best,
                 signals: Layout::VEHICLE.signals(r),
             };
-            inputs.push(with(motion.best));
-            possible.push(with(motion.possible));
+            unread::fill_displacement(&mut r.columns[0], &best);
+            unread.push(Unread {
+                motions: (motion.possible.into_iter())
+                    .map(|motion| Inputs { motion, ..best.clone() })
+                    .collect(),
+                signals: (signals.into_iter().flatten())
+                    .map(|signals| Inputs {
+                        signals,
+                        ..best.clone()
+                    })
+                    .collect(),
+            });
+            inputs.push(best);
         }
         let as_stated = Examined::default();
         let mut strut = Self::with_layout(model, recordings, inputs, begins, Layout::VEHICLE, as_stated)?;
-        strut.add_noise_of_motion(possible);
+        strut.count_what_is_unread(unread);
         Ok(strut)
     }
 
-    /// Adds to the noise of each channel what the motion leaves unknown. Its course in time is that of the difference between two
-    /// motions; its size is measured by the second difference of the residuals, in which a model that lacks something shows next
-    /// to nothing, because that changes slowly.
-    fn add_noise_of_motion(&mut self, possible: Vec<Inputs>) {
+    /// Adds to the noise of each sample what the readings leave unknown: how far the pressures of other motions and other switching signals are from
+    /// those of the best ones. What the motion makes is measured by the second difference of the residuals, in which a model that lacks something shows
+    /// next to nothing, because that changes slowly.
+    fn count_what_is_unread(&mut self, unread: Vec<Unread>) {
+        let sensors = std::iter::once(displacement_noise(&self.model)).chain(self.channels.iter().map(|c| c.noise));
+        self.instruments = Examined::as_stated(sensors.collect(), self.recordings.len());
         let believed = self.as_given();
-        let mut sums = vec![Unknown::default(); self.channels.len()];
-        for (r, (best, possible)) in self.inputs.iter().zip(&possible).enumerate() {
-            let Some(differences) = floor::differences(&self.model, [best, possible], &self.begins[r], self.layout)
-            else {
-                continue;
-            };
-            let Ok(simulated) = self.simulate(&believed, r) else {
-                continue;
-            };
-            for (c, sum) in sums.iter_mut().enumerate() {
-                sum.add(self.measured(r, c), &differences[c], &simulated[c]);
+        let mut seen = vec![Unknown::default(); self.channels.len()];
+        let mut of_motions: Vec<Vec<Series>> = Vec::with_capacity(unread.len());
+        for (r, unread) in unread.iter().enumerate() {
+            let differences = self.differences_from_best(r, &unread.motions);
+            if let Ok(simulated) = self.simulate(&believed, r) {
+                for (c, seen) in seen.iter_mut().enumerate() {
+                    differences.iter().for_each(|series| seen.add_difference(&series[c]));
+                    seen.add_residual(self.measured(r, c), &simulated[c]);
+                }
+            }
+            for (c, deviations) in self.deviations(&self.differences_from_best(r, &unread.signals)) {
+                self.instruments.add_noise(r, 1 + c, &deviations);
+            }
+            of_motions.push(differences);
+        }
+        let shares: Vec<f64> = (seen.iter().zip(&self.channels))
+            .map(|(seen, channel)| seen.share(channel.noise * channel.noise))
+            .collect();
+        for (r, differences) in of_motions.iter().enumerate() {
+            for (c, mut deviations) in self.deviations(differences) {
+                deviations.iter_mut().for_each(|v| *v *= shares[c].sqrt());
+                self.instruments.add_noise(r, 1 + c, &deviations);
             }
         }
-        let mut added = Vec::with_capacity(sums.len());
-        for (channel, sum) in self.channels.iter_mut().zip(&sums) {
-            let variance = channel.noise * channel.noise;
-            let of_motion = sum.of_motion(variance);
-            channel.noise = (variance + of_motion).sqrt();
-            added.push(of_motion);
+        let firsts: Vec<Option<&Series>> = of_motions.iter().map(|series| series.first()).collect();
+        let counted = (shares.into_iter().enumerate())
+            .map(|(c, share)| Counted {
+                estimated: self.mean_square(c, &firsts),
+                share,
+            })
+            .collect();
+        let possible = unread
+            .into_iter()
+            .filter_map(|unread| unread.motions.into_iter().next());
+        self.unknown_motion = Some(UnknownMotion::new(possible.collect(), counted));
+    }
+
+    /// What other inputs of a recording make different, with the believed model.
+    fn differences_from_best(&self, recording: usize, others: &[Inputs]) -> Vec<Series> {
+        let pairs: Vec<[&Inputs; 2]> = others.iter().map(|other| [&self.inputs[recording], other]).collect();
+        (floor::differences_of_all(&self.model, &pairs, &self.begins[recording], self.layout).into_iter())
+            .flatten()
+            .collect()
+    }
+
+    /// Root mean square of differences around each sample, every channel; nothing without differences.
+    fn deviations(&self, differences: &[Series]) -> Vec<(usize, Vec<f64>)> {
+        let channels = if differences.is_empty() { 0 } else { self.channels.len() };
+        (0..channels)
+            .map(|c| {
+                let of_channel: Vec<&[f64]> = differences.iter().map(|series| series[c].as_slice()).collect();
+                (c, floor::local_deviation_of_all(&of_channel))
+            })
+            .collect()
+    }
+
+    /// Mean square of differences of a channel, one for each recording, in units of the noise of the samples.
+    fn mean_square(&self, channel: usize, differences: &[Option<&Series>]) -> f64 {
+        let (mut sum, mut count) = (0.0, 0_usize);
+        for (r, series) in differences.iter().enumerate() {
+            let Some(series) = series else { continue };
+            let relative = self.relative_noise(r, channel);
+            for (k, d) in series[channel].iter().enumerate() {
+                let in_units = d / (self.channels[channel].noise * relative.map_or(1.0, |relative| relative[k]));
+                sum += in_units * in_units;
+            }
+            count += series[channel].len();
         }
-        self.unknown_motion = Some(UnknownMotion::new(possible, sums.iter().zip(added)));
+        sum / count.max(1) as f64
     }
 
     fn with_layout(
@@ -366,11 +430,8 @@ impl TwoStageStrut {
                 floor::differences(&model, pair, &self.beginning(hypothesis, &model, r), self.layout)
             })
             .collect();
-        let beyond = self.channels.iter().enumerate().map(|(c, channel)| {
-            let series = differences.iter().flatten().map(|channels| &channels[c]);
-            let (sum, count) = (series.flatten()).fold((0.0, 0), |(sum, count), d| (sum + d * d, count + 1));
-            motion.beyond(c, sum / f64::from(count.max(1))) / (channel.noise * channel.noise)
-        });
+        let differences: Vec<Option<&Series>> = differences.iter().map(Option::as_ref).collect();
+        let beyond = (0..self.channels.len()).map(|c| motion.beyond(c, self.mean_square(c, &differences)));
         (1.0 + beyond.sum::<f64>() / self.channels.len() as f64).sqrt()
     }
 
@@ -599,6 +660,14 @@ impl Specimen for TwoStageStrut {
         }
         states
     }
+}
+
+/// Inputs of a recording that its readings allow beside the best ones.
+struct Unread {
+    /// With other motions.
+    motions: Vec<Inputs>,
+    /// With other samples at which valves were switched.
+    signals: Vec<Inputs>,
 }
 
 /// The inputs of a recording, its displacement smoothed by what is known of its noise.

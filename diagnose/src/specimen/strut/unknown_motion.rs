@@ -7,7 +7,7 @@ const MOST_BEYOND_ESTIMATE: f64 = 4.0;
 /// Variance of the second difference of white noise of variance one.
 const OF_WHITE_NOISE: f64 = 6.0;
 
-/// Mean squares over a channel: of the difference that two motions make, of its second difference, and of the second difference
+/// Mean squares over a channel: of the difference that other motions make, of its second difference, and of the second difference
 /// of the residuals.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Unknown {
@@ -17,33 +17,40 @@ pub(super) struct Unknown {
 }
 
 impl Unknown {
-    pub fn add(&mut self, measured: &[f64], difference: &[f64], simulated: &[f64]) {
-        let square = |sum: &mut (f64, usize), v: f64| {
-            if !v.is_nan() {
-                *sum = (sum.0 + v * v, sum.1 + 1);
-            }
-        };
-        let second = |a: f64, b: f64, c: f64| a - 2.0 * b + c;
+    /// What another motion makes different.
+    pub fn add_difference(&mut self, difference: &[f64]) {
         difference.iter().for_each(|d| square(&mut self.difference, *d));
-        difference
-            .windows(3)
-            .for_each(|w| square(&mut self.second, second(w[0], w[1], w[2])));
-        let residual: Vec<f64> = measured.iter().zip(simulated).map(|(m, s)| m - s).collect();
-        residual
-            .windows(3)
-            .for_each(|w| square(&mut self.residual, second(w[0], w[1], w[2])));
+        second_differences(difference).for_each(|d| square(&mut self.second, d));
     }
 
-    /// Variance that the unknown motion adds to that of the sensor.
-    pub fn of_motion(&self, sensor: f64) -> f64 {
-        let mean = |(sum, count): (f64, usize)| sum / count.max(1) as f64;
-        let [estimated, second, residual] = [self.difference, self.second, self.residual].map(mean);
+    /// What is measured and simulated.
+    pub fn add_residual(&mut self, measured: &[f64], simulated: &[f64]) {
+        let residual: Vec<f64> = measured.iter().zip(simulated).map(|(m, s)| m - s).collect();
+        second_differences(&residual).for_each(|d| square(&mut self.residual, d));
+    }
+
+    /// Variance that the unknown motion adds to that of the sensor, over the mean square of the difference that other motions make.
+    pub fn share(&self, sensor: f64) -> f64 {
+        let [second, residual] = [self.second, self.residual].map(mean);
         if second <= 0.0 {
             return 0.0;
         }
-        let measured = (residual - OF_WHITE_NOISE * sensor).max(0.0) * estimated / second;
-        measured.min(MOST_BEYOND_ESTIMATE * estimated)
+        ((residual - OF_WHITE_NOISE * sensor).max(0.0) / second).min(MOST_BEYOND_ESTIMATE)
     }
+}
+
+fn square(sum: &mut (f64, usize), v: f64) {
+    if !v.is_nan() {
+        *sum = (sum.0 + v * v, sum.1 + 1);
+    }
+}
+
+fn mean((sum, count): (f64, usize)) -> f64 {
+    sum / count.max(1) as f64
+}
+
+fn second_differences(series: &[f64]) -> impl Iterator<Item = f64> {
+    series.windows(3).map(|w| w[0] - 2.0 * w[1] + w[2])
 }
 
 /// What the readings leave unknown of a motion, and what is counted as noise of it.
@@ -55,28 +62,18 @@ pub(super) struct UnknownMotion {
 }
 
 /// What the unknown motion makes of a channel under the believed model.
-struct Counted {
-    /// Mean square of the difference that two motions make.
-    estimated: f64,
-    /// By how much more the residuals show, at least 1.
-    share: f64,
+#[derive(Clone, Copy)]
+pub(super) struct Counted {
+    /// Mean square of the difference that the other motion makes, in units of the noise of the samples.
+    pub estimated: f64,
+    /// The part of it that is in that noise.
+    pub share: f64,
 }
 
 impl UnknownMotion {
-    /// What was seen of each channel, with the variance that was added to its noise.
-    pub fn new<'u>(possible: Vec<Inputs>, seen: impl Iterator<Item = (&'u Unknown, f64)>) -> Self {
-        let counted = seen.map(|(seen, added)| {
-            let (sum, count) = seen.difference;
-            let estimated = sum / count.max(1) as f64;
-            Counted {
-                estimated,
-                share: (added / estimated.max(f64::MIN_POSITIVE)).max(1.0),
-            }
-        });
-        Self {
-            counted: counted.collect(),
-            possible,
-        }
+    /// Another motion for each recording, and what is counted of it in each channel.
+    pub const fn new(possible: Vec<Inputs>, counted: Vec<Counted>) -> Self {
+        Self { possible, counted }
     }
 
     /// The other motion of a recording.
@@ -84,10 +81,11 @@ impl UnknownMotion {
         &self.possible[recording]
     }
 
-    /// Variance of a channel beyond what is counted as its noise, under another model with which two motions differ by this mean square.
+    /// Variance of a channel beyond what is counted as its noise, in units of it, under another model with which the motions differ by this mean
+    /// square.
     pub fn beyond(&self, channel: usize, mean_square: f64) -> f64 {
         let Counted { estimated, share } = self.counted[channel];
-        share * (mean_square - estimated).max(0.0)
+        share.max(1.0) * (mean_square - estimated).max(0.0)
     }
 }
 
@@ -96,14 +94,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_another_model_makes_more_of_the_motion_is_beyond_the_noise() {
+    fn the_share_is_what_the_residuals_show_beside_the_noise_of_the_sensor() {
         let mut seen = Unknown::default();
-        seen.add(&[1.0, 5.0, 2.0, 8.0], &[1.0, -1.0, 1.0, -1.0], &[0.0; 4]);
-        let motion = UnknownMotion::new(vec![], [(&seen, 3.0)].into_iter());
-        assert_eq!((motion.beyond(0, 0.5), motion.beyond(0, 1.0)), (0.0, 0.0));
-        // The residuals show three times as much as the two motions differ.
-        assert_eq!(motion.beyond(0, 5.0), 12.0);
-        let motion = UnknownMotion::new(vec![], [(&seen, 0.0)].into_iter());
-        assert_eq!(motion.beyond(0, 5.0), 4.0);
+        assert_eq!(seen.share(1.0), 0.0);
+        // Second differences of 4 by the other motion.
+        seen.add_difference(&[1.0, -1.0, 1.0, -1.0]);
+        // And of 6 by the residuals; what is missing does not count.
+        seen.add_residual(&[1.5, -1.5, 1.5, f64::NAN], &[0.0; 4]);
+        assert_eq!(
+            (seen.share(0.0), seen.share(2.0), seen.share(10.0)),
+            (36.0 / 16.0, 1.5, 0.0)
+        );
+        seen.add_residual(&[100.0, -100.0, 100.0], &[0.0; 3]);
+        assert_eq!(seen.share(0.0), MOST_BEYOND_ESTIMATE);
+    }
+
+    #[test]
+    fn only_what_another_model_makes_more_of_the_motion_is_beyond_the_noise() {
+        let beyond = |share: f64, mean_square: f64| {
+            let counted = vec![Counted { estimated: 1.0, share }];
+            UnknownMotion::new(vec![], counted).beyond(0, mean_square)
+        };
+        assert_eq!((beyond(3.0, 0.5), beyond(3.0, 1.0), beyond(3.0, 5.0)), (0.0, 0.0, 12.0));
+        assert_eq!(beyond(0.0, 5.0), 4.0);
     }
 }

@@ -13,9 +13,6 @@ use crate::strut::settled::settled;
 /// Gauge pressures between which a strut may begin, Pa.
 const LOWEST_PA: f64 = -0.9 * ATMOSPHERE_PA;
 const HIGHEST_PA: f64 = 60e6;
-/// Temperatures between which the gas may begin, over ambient temperature.
-const COLDEST: f64 = 0.5;
-const HOTTEST: f64 = 2.0;
 /// Smallest share of both gas volumes that the second gas has.
 const LEAST_SHARE: f64 = 0.01;
 
@@ -34,7 +31,6 @@ impl Network {
     /// may ask for it.
     pub fn in_motion(&self, displacement_m: f64, ambient_k: f64, begins: &InMotion) -> State {
         let possible = |pa: f64| Gauge(pa.clamp(LOWEST_PA, HIGHEST_PA));
-        let warm = |temperature_k: f64| temperature_k.clamp(COLDEST * ambient_k, HOTTEST * ambient_k);
         let chamber = possible(begins.chamber_pa);
         let gas_pa = begins.gas_pa.map(|pa| possible(pa).absolute());
         let gas = |i: usize, temperature_k: f64| {
@@ -42,7 +38,7 @@ impl Network {
             let temperature_k = if gas.is_isothermal() {
                 ambient_k
             } else {
-                warm(temperature_k)
+                gas.possible_k(temperature_k)
             };
             GasState {
                 volume_m3: gas.warm_volume_at(gas_pa[i], temperature_k),

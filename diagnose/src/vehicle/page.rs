@@ -35,8 +35,9 @@ pub fn page(campaign: &VehicleCampaign, diagnosis: &VehicleDiagnosis, command: &
         page.outcome(effects_table(diagnosis));
     }
     page.text(
-        "The noise ratio is the RMS of recording minus simulation, divided by the noise of the sensor together with the rounding of \
-         the bus; a ratio of 1 means that only these are left. A held-out noise ratio is computed on stretches that were not used in \
+        "The noise ratio is the RMS of recording minus simulation, divided by the noise of each sample: that of the sensor, the rounding \
+         of the bus, and what the readings leave unknown of the motion and of the edges of the valves. A ratio of 1 means that only these \
+         are left. A held-out noise ratio is computed on stretches that were not used in \
          the fit. Each strut is simulated with its displacement and the commands to its valves; it receives no measured pressure. No \
          force is recorded in a vehicle, so that friction of the main seal and contact at the end stops cannot be seen.",
     );

@@ -22,6 +22,18 @@ fn path(path: &Path) -> &str {
     path.to_str().expect("a path in UTF-8")
 }
 
+/// A case whose logs begin at rest and whose commands act at once.
+fn case(seed: u64, concealed: Vec<Concealed>) -> Case {
+    Case {
+        seed,
+        concealed,
+        drives: drives(seed, DURATION_S),
+        first_edition: false,
+        command_acts_late: false,
+        begins_s: 0.0,
+    }
+}
+
 fn diagnosed(case: &Case) -> (tempfile::TempDir, Value) {
     let folder = tempfile::tempdir().expect("a folder");
     write(case, folder.path());
@@ -44,12 +56,8 @@ fn effects(report: &Value) -> Vec<String> {
 fn one_altered_strut_is_named_with_its_corner() {
     let concealed = Concealed::new(EffectId::GasChargeError, 1, 0.1, vec![Corner::RearLeft]);
     let case = Case {
-        seed: 3,
-        concealed: vec![concealed],
-        drives: drives(3, DURATION_S),
         first_edition: true,
-        command_acts_late: false,
-        begins_s: 0.0,
+        ..case(3, vec![concealed])
     };
     let (folder, report) = diagnosed(&case);
     assert_eq!(
@@ -100,12 +108,8 @@ fn one_altered_strut_is_named_with_its_corner() {
 #[test]
 fn commands_that_act_a_tick_late_are_not_taken_for_missing_physics() {
     let case = Case {
-        seed: 5,
-        concealed: vec![],
-        drives: drives(5, DURATION_S),
-        first_edition: false,
         command_acts_late: true,
-        begins_s: 0.0,
+        ..case(5, vec![])
     };
     let (_folder, report) = diagnosed(&case);
     assert_eq!(report["verdict"], "consistent", "{:#}", report["effects"]);
@@ -127,12 +131,8 @@ fn logs_that_begin_in_motion_are_diagnosed_and_their_files_say_so_again() {
     // What all corners lack outweighs by far what a tick makes of the valves' edges.
     let concealed = Concealed::new(EffectId::OilCompressibility, 0, 1.0 / 1.4e9, Corner::ALL.to_vec());
     let case = Case {
-        seed: 6,
-        concealed: vec![concealed],
-        drives: drives(6, DURATION_S),
-        first_edition: false,
-        command_acts_late: false,
         begins_s: 2.5,
+        ..case(6, vec![concealed])
     };
     let (folder, report) = diagnosed(&case);
     assert_eq!(
@@ -164,14 +164,7 @@ fn logs_that_begin_in_motion_are_diagnosed_and_their_files_say_so_again() {
 fn what_three_corners_show_of_the_oil_is_the_vehicles() {
     // At 44 GPa all corners show it alone, at 46 GPa one.
     let concealed = Concealed::new(EffectId::OilCompressibility, 0, 1.0 / 45e9, Corner::ALL.to_vec());
-    let case = Case {
-        seed: 8,
-        concealed: vec![concealed],
-        drives: drives(8, DURATION_S),
-        first_edition: false,
-        command_acts_late: false,
-        begins_s: 0.0,
-    };
+    let case = case(8, vec![concealed]);
     let (folder, report) = diagnosed(&case);
     assert_eq!(effects(&report), ["oil_compressibility@vehicle/main-chamber"]);
     let effect = &report["effects"][0];

@@ -1,20 +1,15 @@
 //! Effects that all four corners have with one value.
 //!
 //! The oil and the gas of a vehicle are filled from the same source, and its four struts are of one design. An effect of these is
-//! one effect of the vehicle if all corners have it and their estimates do not contradict each other: Cochran's *Q*, the sum of
-//! the squared departures from the weighted mean over their variances, is then a chi-square with three degrees of freedom
-//! (Cochran, Biometrics 10(1), 1954). A leak, a friction, a charge or an instrument belongs to its corner whatever its value.
+//! one effect of the vehicle if all corners have it and their estimates do not contradict each other (`pooling`). A leak, a friction, a charge or an instrument belongs to its corner whatever its value.
 
 use oleo_interface::{Corner, Corners};
 
+use super::pooling::Pooled;
 use crate::diagnosis::{Effect, Estimate};
 use crate::estimation::interval::HALF_INTERVAL;
 use crate::vocabulary::EffectId;
 
-/// Upper 0.1 % point of chi-square with three degrees of freedom.
-const LARGEST_Q: f64 = 16.27;
-/// Degrees of freedom of four estimates about their mean.
-const FREEDOM: f64 = 3.0;
 /// No confidence is higher than this.
 const MOST_CONFIDENT: f64 = 0.99;
 
@@ -82,26 +77,11 @@ fn pooled(estimates: &[&Estimate; 4]) -> Option<Estimate> {
     let positive = estimates.iter().all(|e| e.value > 0.0 && e.ci95[0] > 0.0);
     let to = |v: f64| if positive { libm::log(v) } else { v };
     let from = |v: f64| if positive { libm::exp(v) } else { v };
-    let (mut sum, mut weights) = (0.0, 0.0);
-    let weighed: Vec<(f64, f64)> = (estimates.iter())
-        .map(|e| {
-            let deviation = (to(e.ci95[1]) - to(e.ci95[0])) / (2.0 * HALF_INTERVAL);
-            let weight = 1.0 / (deviation * deviation);
-            (to(e.value), if weight.is_finite() { weight } else { 0.0 })
-        })
-        .collect();
-    for (value, weight) in &weighed {
-        sum += value * weight;
-        weights += weight;
-    }
-    if weights <= 0.0 {
-        return None;
-    }
-    let mean = sum / weights;
-    let q: f64 = weighed.iter().map(|(v, w)| w * (v - mean) * (v - mean)).sum();
-    // Estimates that scatter more than their intervals say make the common interval wider (Birge, Phys. Rev. 40, 1932).
-    let deviation = (q / FREEDOM).max(1.0).sqrt() / weights.sqrt();
-    (q <= LARGEST_Q).then(|| Estimate {
+    let weighed = estimates.iter().map(|e| {
+        let deviation = (to(e.ci95[1]) - to(e.ci95[0])) / (2.0 * HALF_INTERVAL);
+        (to(e.value), deviation)
+    });
+    Pooled::of(weighed).map(|Pooled { mean, deviation }| Estimate {
         key: estimates[0].key.clone(),
         value: from(mean),
         ci95: [-1.0, 1.0].map(|side| from(mean + side * HALF_INTERVAL * deviation)),

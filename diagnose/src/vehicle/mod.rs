@@ -26,6 +26,7 @@
 //! | `campaign` | model and drives put together |
 //! | `sharing` | effects that some corners show, tried at the others |
 //! | `common` | effects that all four corners have with one value |
+//! | `pooling` | the common value of several estimates |
 //! | `diagnosis` | the diagnosis of the vehicle |
 //! | `report` | `report.json` |
 //! | `page` | `report.html` |
@@ -39,6 +40,7 @@ mod diagnosis;
 mod drive;
 mod model;
 mod page;
+mod pooling;
 mod report;
 mod sharing;
 mod stretch;

@@ -10,15 +10,13 @@ use oleo_interface::{Corner, Corners};
 
 use super::campaign::VehicleCampaign;
 use super::common::{common, is_shared};
+use super::pooling::Pooled;
 use crate::diagnosis::Diagnosis;
 use crate::effect::Candidate;
 use crate::error::DiagnoseError;
 use crate::estimation::{LeastSquares, interval};
 use crate::parameter::Parameter;
 use crate::search::with_shared;
-
-/// Upper 0.1 % points of chi-square: how far the estimates of two corners, and of three, may contradict each other (Cochran's *Q*).
-const LARGEST_Q: [f64; 2] = [10.83, 13.82];
 
 /// The diagnoses of the corners, with what all of them share.
 ///
@@ -116,19 +114,13 @@ fn estimated(strut: &LeastSquares<'_>, diagnosis: &Diagnosis, position: usize) -
 
 /// The mean of what the corners show, as coordinates of parameters; `None` if they contradict each other.
 fn pooled(estimates: &[Vec<[f64; 2]>], parameters: &[Parameter]) -> Option<Vec<f64>> {
-    let largest_q = LARGEST_Q.get(estimates.len().checked_sub(2)?)?;
     (parameters.iter().enumerate())
         .map(|(k, parameter)| {
-            let weighed = estimates.iter().map(|numbers| {
+            let of_corners = estimates.iter().map(|numbers| {
                 let [z, one_away] = numbers.get(k).map_or([f64::NAN; 2], |v| v.map(|v| parameter.z(v)));
-                let deviation = one_away - z;
-                (z, 1.0 / (deviation * deviation))
+                (z, one_away - z)
             });
-            let known: Vec<(f64, f64)> = weighed.filter(|(z, w)| z.is_finite() && w.is_normal()).collect();
-            let weights: f64 = known.iter().map(|(_, w)| w).sum();
-            let mean = known.iter().map(|(z, w)| z * w).sum::<f64>() / weights;
-            let q: f64 = known.iter().map(|(z, w)| w * (z - mean) * (z - mean)).sum();
-            (weights > 0.0 && q <= *largest_q).then_some(mean)
+            Some(Pooled::of(of_corners)?.mean)
         })
         .collect()
 }

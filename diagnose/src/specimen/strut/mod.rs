@@ -6,6 +6,7 @@ mod candidates;
 mod channels;
 mod drawing;
 mod floor;
+mod in_vehicle;
 mod relations;
 mod rod_memory;
 mod unknown_motion;
@@ -15,7 +16,7 @@ use std::sync::OnceLock;
 
 use oleo_interface::{StrutValves, Valve};
 use oleo_plant_sim::model_file::InvalidValue;
-use oleo_plant_sim::strut::{Beginning, COLUMNS, Inputs, Prediction, StrutModel, record_column, smooth_free_motion};
+use oleo_plant_sim::strut::{Beginning, COLUMNS, Inputs, Prediction, StrutModel, record_column};
 use rayon::prelude::*;
 
 use calibration::Calibration;
@@ -24,7 +25,7 @@ pub use channels::{CHANNELS, columns};
 use channels::{FORCE, Layout, P1, P2, P3, P4};
 use relations::Measured;
 use rod_memory::{RodMemory, Wanted};
-use unknown_motion::{Counted, Unknown, UnknownMotion};
+use unknown_motion::UnknownMotion;
 
 use super::channel::{Channel, Series, StateSeries};
 use super::contract::{BelievedModel, Specimen};
@@ -178,135 +179,6 @@ impl TwoStageStrut {
         })
     }
 
-    /// A strut in a vehicle, whose recordings hold no force: displacement, p1 to p4, and the three switching signals. A pressure
-    /// that was not received is NaN and does not count.
-    ///
-    /// Between two samples of 5 ms a wheel moves in a way that is not recorded, and the dampers turn what is not known of its speed
-    /// into pressure. This is noise of p1 and p3 as the sensor's is, and is added to it: its size is the difference that
-    /// motions make which the readings cannot tell apart. A displacement or a switching signal that was not received is NaN, and what it leaves unknown counts in the
-    /// same way.
-    ///
-    /// A recording that does not begin at rest begins with the pressures that were read first; volume and temperature of the gas are then part of
-    /// every fit, and the readings of the first tenth of a second do not count.
-    ///
-    /// # Errors
-    /// As [`Self::new`].
-    pub fn in_vehicle(model: StrutModel, mut recordings: Vec<Recording>, starts_at_rest: bool) -> Result<Self, String> {
-        let mut begins = vec![Beginning::AtRest; recordings.len()];
-        if !starts_at_rest {
-            for (begins, recording) in begins.iter_mut().zip(&mut recordings) {
-                beginning::from_first_complete_sample(recording, Layout::VEHICLE);
-                *begins = beginning::as_read(recording, Layout::VEHICLE).unwrap_or_default();
-                beginning::without_first_readings(recording, Layout::VEHICLE);
-            }
-        }
-        let (mut inputs, mut unread) = (Vec::new(), Vec::new());
-        for r in &mut recordings {
-            let signals = unread::fill_signals(r, Layout::VEHICLE);
-            let motion = smooth_free_motion(&r.columns[0], r.interval_s(), displacement_noise(&model));
-            let best = Inputs {
-                time_s: r.time_s.clone(),
-                motion: motion.best,
-                signals: Layout::VEHICLE.signals(r),
-            };
-            unread::fill_displacement(&mut r.columns[0], &best);
-            unread.push(Unread {
-                motions: (motion.possible.into_iter())
-                    .map(|motion| Inputs { motion, ..best.clone() })
-                    .collect(),
-                signals: (signals.into_iter().flatten())
-                    .map(|signals| Inputs {
-                        signals,
-                        ..best.clone()
-                    })
-                    .collect(),
-            });
-            inputs.push(best);
-        }
-        let as_stated = Examined::default();
-        let mut strut = Self::with_layout(model, recordings, inputs, begins, Layout::VEHICLE, as_stated)?;
-        strut.count_what_is_unread(unread);
-        Ok(strut)
-    }
-
-    /// Adds to the noise of each sample what the readings leave unknown: how far the pressures of other motions and other switching signals are from
-    /// those of the best ones. What the motion makes is measured by the second difference of the residuals, in which a model that lacks something shows
-    /// next to nothing, because that changes slowly.
-    fn count_what_is_unread(&mut self, unread: Vec<Unread>) {
-        let sensors = std::iter::once(displacement_noise(&self.model)).chain(self.channels.iter().map(|c| c.noise));
-        self.instruments = Examined::as_stated(sensors.collect(), self.recordings.len());
-        let believed = self.as_given();
-        let mut seen = vec![Unknown::default(); self.channels.len()];
-        let mut of_motions: Vec<Vec<Series>> = Vec::with_capacity(unread.len());
-        for (r, unread) in unread.iter().enumerate() {
-            let differences = self.differences_from_best(r, &unread.motions);
-            if let Ok(simulated) = self.simulate(&believed, r) {
-                for (c, seen) in seen.iter_mut().enumerate() {
-                    differences.iter().for_each(|series| seen.add_difference(&series[c]));
-                    seen.add_residual(self.measured(r, c), &simulated[c]);
-                }
-            }
-            for (c, deviations) in self.deviations(&self.differences_from_best(r, &unread.signals)) {
-                self.instruments.add_noise(r, 1 + c, &deviations);
-            }
-            of_motions.push(differences);
-        }
-        let shares: Vec<f64> = (seen.iter().zip(&self.channels))
-            .map(|(seen, channel)| seen.share(channel.noise * channel.noise))
-            .collect();
-        for (r, differences) in of_motions.iter().enumerate() {
-            for (c, mut deviations) in self.deviations(differences) {
-                deviations.iter_mut().for_each(|v| *v *= shares[c].sqrt());
-                self.instruments.add_noise(r, 1 + c, &deviations);
-            }
-        }
-        let firsts: Vec<Option<&Series>> = of_motions.iter().map(|series| series.first()).collect();
-        let counted = (shares.into_iter().enumerate())
-            .map(|(c, share)| Counted {
-                estimated: self.mean_square(c, &firsts),
-                share,
-            })
-            .collect();
-        let possible = unread
-            .into_iter()
-            .filter_map(|unread| unread.motions.into_iter().next());
-        self.unknown_motion = Some(UnknownMotion::new(possible.collect(), counted));
-    }
-
-    /// What other inputs of a recording make different, with the believed model.
-    fn differences_from_best(&self, recording: usize, others: &[Inputs]) -> Vec<Series> {
-        let pairs: Vec<[&Inputs; 2]> = others.iter().map(|other| [&self.inputs[recording], other]).collect();
-        (floor::differences_of_all(&self.model, &pairs, &self.begins[recording], self.layout).into_iter())
-            .flatten()
-            .collect()
-    }
-
-    /// Root mean square of differences around each sample, every channel; nothing without differences.
-    fn deviations(&self, differences: &[Series]) -> Vec<(usize, Vec<f64>)> {
-        let channels = if differences.is_empty() { 0 } else { self.channels.len() };
-        (0..channels)
-            .map(|c| {
-                let of_channel: Vec<&[f64]> = differences.iter().map(|series| series[c].as_slice()).collect();
-                (c, floor::local_deviation_of_all(&of_channel))
-            })
-            .collect()
-    }
-
-    /// Mean square of differences of a channel, one for each recording, in units of the noise of the samples.
-    fn mean_square(&self, channel: usize, differences: &[Option<&Series>]) -> f64 {
-        let (mut sum, mut count) = (0.0, 0_usize);
-        for (r, series) in differences.iter().enumerate() {
-            let Some(series) = series else { continue };
-            let relative = self.relative_noise(r, channel);
-            for (k, d) in series[channel].iter().enumerate() {
-                let in_units = d / (self.channels[channel].noise * relative.map_or(1.0, |relative| relative[k]));
-                sum += in_units * in_units;
-            }
-            count += series[channel].len();
-        }
-        sum / count.max(1) as f64
-    }
-
     fn with_layout(
         model: StrutModel,
         recordings: Vec<Recording>,
@@ -417,22 +289,6 @@ impl TwoStageStrut {
             }
         }
         model
-    }
-
-    /// The floor of a strut in a vehicle. What the motion leaves unknown is part of the channels' noise, as far as the believed model turns it into
-    /// pressure; another model, such as one with an oil column that swings, may turn it into more.
-    fn floor_of_unknown_motion(&self, motion: &UnknownMotion, hypothesis: &Hypothesis) -> f64 {
-        let model = self.applied(hypothesis);
-        let differences: Vec<Option<Series>> = (0..self.inputs.len())
-            .into_par_iter()
-            .map(|r| {
-                let pair = [&self.inputs[r], motion.possible(r)];
-                floor::differences(&model, pair, &self.beginning(hypothesis, &model, r), self.layout)
-            })
-            .collect();
-        let differences: Vec<Option<&Series>> = differences.iter().map(Option::as_ref).collect();
-        let beyond = (0..self.channels.len()).map(|c| motion.beyond(c, self.mean_square(c, &differences)));
-        (1.0 + beyond.sum::<f64>() / self.channels.len() as f64).sqrt()
     }
 
     /// How a recording begins under a hypothesis, whose model with its instruments is given.
@@ -660,14 +516,6 @@ impl Specimen for TwoStageStrut {
         }
         states
     }
-}
-
-/// Inputs of a recording that its readings allow beside the best ones.
-struct Unread {
-    /// With other motions.
-    motions: Vec<Inputs>,
-    /// With other samples at which valves were switched.
-    signals: Vec<Inputs>,
 }
 
 /// The inputs of a recording, its displacement smoothed by what is known of its noise.

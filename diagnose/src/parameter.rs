@@ -3,6 +3,8 @@
 //! Fits work in a coordinate `z` of order one, so that steps, damping and convergence need no knowledge of units. For a
 //! calibration value `z` is the deviation over its prior standard deviation, half of the stated tolerance.
 
+use crate::vocabulary::EffectId;
+
 /// How `z` maps to the value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Scale {
@@ -41,6 +43,10 @@ pub struct Parameter {
     pub prior: bool,
     /// Changes only what an instrument shows, so the physics need not be simulated again.
     pub instrument_only: bool,
+    /// The only recording in which it matters, by its index; `None` if it may matter in all.
+    pub only_in: Option<usize>,
+    /// The effect beside which alone it matters; `None` if it matters without any.
+    pub only_beside: Option<EffectId>,
     /// The size of the effect: zero is "not there", and every larger value is more of it.
     pub is_size: bool,
     /// Reported as this key, and inverted: a compliance is fitted (zero is "not there"), a stiffness is what people know.
@@ -63,6 +69,8 @@ impl Parameter {
             tolerated: None,
             prior: true,
             instrument_only: false,
+            only_in: None,
+            only_beside: None,
             is_size: false,
             inverse_of: None,
         }
@@ -101,6 +109,8 @@ impl Parameter {
             tolerated: None,
             prior: false,
             instrument_only: false,
+            only_in: None,
+            only_beside: None,
             is_size: false,
             inverse_of: None,
         }

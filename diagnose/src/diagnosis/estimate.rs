@@ -60,11 +60,13 @@ pub(super) fn estimates(problem: &LeastSquares<'_>, fit: &Fit) -> Result<Vec<Est
         .collect())
 }
 
-/// The values of the calibration, which come first among the estimates.
+/// The values of the calibration that matter, which come first among the estimates.
 pub(super) fn calibration(problem: &LeastSquares<'_>, fit: &Fit, estimates: &[Estimate]) -> Vec<CalibratedValue> {
-    (estimates.iter().zip(&fit.point.z))
-        .take(problem.specimen().calibration().len())
-        .map(|(estimate, z)| CalibratedValue {
+    let specimen = problem.specimen();
+    (estimates.iter().zip(&fit.point.z).enumerate())
+        .take(specimen.calibration().len())
+        .filter(|(k, _)| fit.point.matters(specimen, *k))
+        .map(|(_, (estimate, z))| CalibratedValue {
             estimate: estimate.clone(),
             // A coordinate of 1 is half of the tolerance.
             tolerance_used: 0.5 * z.abs(),

@@ -168,17 +168,24 @@ impl<'a> Evaluation<'a> {
         let moved: Vec<Moved> = coordinates.iter().map(|&k| self.moved(point, k)).collect();
         // All (recording, coordinate) pairs at once keep every core busy; collect restores their order. Of a recording, its place among those that
         // are simulated.
+        let matters = |place: usize, moved: &Moved| moved.matters_in(self.recordings[place]);
         let pairs: Vec<(usize, &Moved)> = (0..truths.len())
             .flat_map(|r| moved.iter().map(move |moved| (r, moved)))
+            .filter(|&(r, moved)| matters(r, moved))
             .collect();
         let derivatives: Vec<Vec<Series>> = (pairs.par_chunks(self.at_once(pairs.len())))
             .map(|pairs| self.derivatives(pairs, truths, &shown))
             .collect::<Result<_, _>>()?;
         let mut derivatives = derivatives.into_iter().flatten();
-        Ok((self.residuals(&shown).into_iter())
-            .map(|residual| Sensitivity {
-                residual,
-                columns: derivatives.by_ref().take(coordinates.len()).collect(),
+        Ok((self.residuals(&shown).into_iter().enumerate())
+            .map(|(r, residual)| {
+                let unchanged = || residual.iter().map(|series| vec![0.0; series.len()]).collect();
+                let of = |moved| if matters(r, moved) { derivatives.next() } else { None };
+                let columns = moved.iter().map(of).map(|column| column.unwrap_or_else(unchanged));
+                Sensitivity {
+                    columns: columns.collect(),
+                    residual,
+                }
             })
             .collect())
     }
@@ -194,6 +201,8 @@ impl<'a> Evaluation<'a> {
             hypothesis: there.hypothesis(self.specimen),
             step,
             instrument_only: parameter.instrument_only,
+            matters: point.matters(self.specimen, coordinate),
+            only_in: parameter.only_in,
         }
     }
 
@@ -292,4 +301,13 @@ struct Moved {
     hypothesis: Hypothesis,
     step: f64,
     instrument_only: bool,
+    matters: bool,
+    only_in: Option<usize>,
+}
+
+impl Moved {
+    /// Whether a recording changes along the coordinate.
+    fn matters_in(&self, recording: usize) -> bool {
+        self.matters && self.only_in.is_none_or(|only| only == recording)
+    }
 }

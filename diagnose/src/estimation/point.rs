@@ -38,6 +38,14 @@ impl Point {
             .collect()
     }
 
+    /// Whether a coordinate matters beside the effects of this model.
+    #[must_use]
+    pub fn matters(&self, specimen: &dyn Specimen, coordinate: usize) -> bool {
+        let candidates = specimen.candidates();
+        (self.parameters(specimen)[coordinate].only_beside)
+            .is_none_or(|id| self.effects.iter().any(|&effect| candidates[effect].id == id))
+    }
+
     /// Range of every coordinate. A calibration value of which an effect takes over a part is freed from its tolerance.
     #[must_use]
     pub fn ranges(&self, specimen: &dyn Specimen) -> Vec<(f64, f64)> {

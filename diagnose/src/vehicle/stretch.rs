@@ -23,6 +23,10 @@ const BEGINNING: usize = 20;
 const SAME_REST: (f64, f64) = (1e-3, 0.02);
 /// Largest difference of two pressures at rest, Pa, beside the one with which the first drive begins.
 const EQUAL_PA: f64 = 1e4;
+/// Gauge pressures that a sensor with an error of its zero shows near vacuum, Pa. One of the wrong sign shows far less.
+const NEAR_VACUUM_PA: std::ops::Range<f64> = -3e5..-5e4;
+/// Column of p1 in the recording of a strut.
+const P1: usize = 1;
 
 /// A drive whose gaps are bridged.
 pub struct BridgedDrive {
@@ -152,16 +156,19 @@ pub fn choose(drives: &[BridgedDrive], starts_at_rest: &Corners<bool>) -> Chosen
                 ));
                 continue;
             }
-            match &drive.struts[corner] {
-                Some(strut) if strut.displacement_m.len() >= from + MIN_SAMPLES => {
-                    recordings[corner].push(recording(drive, strut, *from, *share));
+            let long_enough =
+                (drive.struts[corner].as_ref()).filter(|strut| strut.displacement_m.len() >= from + MIN_SAMPLES);
+            let recorded = long_enough.map(|strut| recording(drive, strut, *from, *share));
+            let useless = match recorded {
+                Some(recording) if !is_empty(&recording.columns[P1]) => {
+                    recordings[corner].push(recording);
+                    None
                 }
-                _ => notes.push(format!(
-                    "{}: not used for the {} strut, whose readings are missing.",
-                    drive.name,
-                    corner.name()
-                )),
-            }
+                Some(_) => Some("whose main chamber is empty: p1 is near vacuum for most of the time"),
+                None => Some("whose readings are missing"),
+            };
+            notes
+                .extend(useless.map(|why| format!("{}: not used for the {} strut, {why}.", drive.name, corner.name())));
             notes.extend(
                 drive.struts[corner]
                     .as_ref()
@@ -170,6 +177,13 @@ pub fn choose(drives: &[BridgedDrive], starts_at_rest: &Corners<bool>) -> Chosen
         }
     }
     Chosen { recordings, notes }
+}
+
+/// Whether the main chamber of a strut is empty of oil for most of the time, so that nothing tells how much is left.
+fn is_empty(chamber_pa: &[f64]) -> bool {
+    let read = chamber_pa.iter().filter(|pa| pa.is_finite());
+    let near_vacuum = read.clone().filter(|pa| NEAR_VACUUM_PA.contains(pa)).count();
+    2 * near_vacuum > read.count()
 }
 
 /// What was missing at a corner, and what became of it.
@@ -349,6 +363,22 @@ mod tests {
             "{:?}",
             chosen.notes
         );
+    }
+
+    #[test]
+    fn a_strut_without_oil_in_its_chamber_is_not_used_and_a_sensor_of_the_wrong_sign_is() {
+        let with = |pa: f64| {
+            let mut drive = drive("a", true, 4000, 200, 0.02);
+            if let Some(strut) = &mut drive.struts[Corner::RearRight] {
+                strut.pressure_pa[0].fill(pa);
+            }
+            let chosen = choose(&[drive], &AT_REST);
+            let note = chosen.notes.iter().any(|note| note.contains("main chamber is empty"));
+            (chosen.recordings[Corner::RearRight].len(), note)
+        };
+        assert_eq!(with(2e6), (1, false));
+        assert_eq!(with(-1.4e5), (0, true));
+        assert_eq!(with(-2e6), (1, false));
     }
 
     #[test]

@@ -12,9 +12,10 @@ pub enum Beginning {
 
 /// What is known or assumed of a strut in the middle of a drive. Its valves have settled, and nothing flows yet: what flows follows from the
 /// pressures within milliseconds. As long as no oil is lost, the displacement says what volume both gases have together; that of the first follows from
-/// its pressure and temperature, and the second has the rest, from which its temperature follows. Gas that is believed to stay at ambient temperature
+/// its pressure and temperature, and the second has the rest, from which its temperature follows. Where oil has been lost, so that the gas would be hotter or
+/// colder than it can be, its pressures say what volume it has. Gas that is believed to stay at ambient temperature
 /// has the volume that follows from its pressure.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct InMotion {
     /// Gauge pressure of the main chamber, Pa.
     pub chamber_pa: f64,
@@ -22,7 +23,11 @@ pub struct InMotion {
     pub gas_pa: [f64; 2],
     /// Temperature of the gas in accumulator 1 beyond that which both would have if they were equally warm, K.
     pub first_beyond_k: f64,
-    /// Volume of both gases together beyond what the displacement says, relative. The recordings' equation does not conserve oil: what the dampers
+    /// Volume of both gases together beyond what displacement and pressures say, relative. The recordings' equation does not conserve oil: what the dampers
     /// have turned into heat, divided by the bulk modulus, is lost.
     pub volume_beyond: f64,
+    /// What the dampers of paths 1 and 2 have turned into heat before, W, and for how long, s. It matters where dampers fade.
+    pub heating_w: [f64; 2],
+    /// Time for which they have, s.
+    pub heated_s: f64,
 }

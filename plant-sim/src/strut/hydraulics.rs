@@ -21,7 +21,7 @@ const LEAST_CATCH_UP_S: f64 = 1e-4;
 pub(super) struct Hydraulics<N: Number = f64> {
     pub network: Network<N>,
     mount: Mount<N>,
-    cooling: Option<PackCooling<N>>,
+    pub cooling: Option<PackCooling<N>>,
 }
 
 /// What of it is carried from one step to the next.

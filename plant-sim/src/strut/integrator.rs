@@ -188,10 +188,13 @@ impl Strut {
         let effects = &model.effects;
         let hydraulics = Hydraulics::of(model);
         let (network, ambient_k) = (&hydraulics.network, model.gas.temperature_k);
-        let state = match begins {
+        let mut state = match begins {
             Beginning::AtRest => network.at_rest(displacement_m, ambient_k),
             Beginning::InMotion(begins) => network.in_motion(displacement_m, ambient_k, begins),
         };
+        if let (Some(cooling), Beginning::InMotion(begins)) = (&hydraulics.cooling, begins) {
+            state.heat_j = begins.heating_w.map(|power_w| cooling.held_j(power_w, begins.heated_s));
+        }
         let mut pressure_pa = [state.p1_pa; 4];
         if let Beginning::InMotion(begins) = begins {
             [pressure_pa[1], pressure_pa[3]] = begins.gas_pa;

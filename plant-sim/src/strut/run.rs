@@ -186,7 +186,7 @@ mod tests {
     use crate::strut::beginning::InMotion;
     use crate::strut::gas::GasState;
     use crate::strut::replay::replay;
-    use crate::strut::terms::{Effects, OilCompressibility, OilCount};
+    use crate::strut::terms::{DampingFade, Effects, OilCompressibility, OilCount};
 
     /// Samples of a motion with all valves open, from one on.
     fn inputs(from: usize, to: usize) -> Inputs {
@@ -221,8 +221,7 @@ mod tests {
         let mut begins = InMotion {
             chamber_pa: output.pressure_pa[0],
             gas_pa: [output.pressure_pa[1], output.pressure_pa[3]],
-            first_beyond_k: 0.0,
-            volume_beyond: 0.0,
+            ..InMotion::default()
         };
         let equally_warm = begun_gas(model, first, begins)[0].temperature_k;
         begins.first_beyond_k = run.strut.flowing.state.gas[0].temperature_k - equally_warm;
@@ -297,6 +296,33 @@ mod tests {
     }
 
     #[test]
+    fn dampers_that_fade_begin_as_warm_as_they_have_been_made() {
+        let mut model = StrutModel::defender110(6000.0);
+        let begins = InMotion {
+            chamber_pa: 5e6,
+            gas_pa: [4e6, 3e6],
+            heating_w: [200.0, 50.0],
+            heated_s: 40.0,
+            ..InMotion::default()
+        };
+        let some = inputs(7, 8);
+        let heat_j = |model: &StrutModel, begins| Run::begin(model, &some, &begins).unwrap().strut.flowing.state.heat_j;
+        assert_eq!(heat_j(&model, Beginning::InMotion(begins)), [0.0; 2]);
+        model.effects.damping_fade = Some(DampingFade {
+            fade_1_per_j: 1e-5,
+            fade_2_per_j: 0.0,
+            cooling_time_s: 1e6,
+        });
+        // As good as nothing has cooled away.
+        let [first, second] = heat_j(&model, Beginning::InMotion(begins));
+        assert!(
+            (first - 8000.0).abs() < 1.0 && (second - 2000.0).abs() < 1.0,
+            "{first} {second}"
+        );
+        assert_eq!(heat_j(&model, Beginning::AtRest), [0.0; 2]);
+    }
+
+    #[test]
     fn gas_that_stays_at_ambient_temperature_begins_at_the_pressure_that_was_read() {
         let mut model = StrutModel::defender110(6000.0);
         model.effects.gas_heat_transfer = None;
@@ -305,6 +331,7 @@ mod tests {
             gas_pa: [4e6, 3e6],
             first_beyond_k: 40.0,
             volume_beyond: -0.2,
+            ..InMotion::default()
         };
         let some = inputs(7, 8);
         let run = Run::begin(&model, &some, &Beginning::InMotion(begins)).unwrap();

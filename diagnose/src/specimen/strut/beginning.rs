@@ -1,24 +1,33 @@
 //! Recordings that begin in the middle of a drive: what is not known of the strut then, and is fitted.
 //!
 //! Volume and temperature of the gas in both accumulators are unknown. Fitted are the pressures, which are nearly what was read, and do not change with
-//! an error of the charge, as volumes would; the volume of both together, which the displacement says as long as no oil is lost; and one temperature.
+//! an error of the charge, as volumes would; the volume of both together, which the displacement says as long as no oil is lost; and one temperature. Where the
+//! dampers fade, it is unknown too for how long they have been heated.
 
-use oleo_plant_sim::strut::{ATMOSPHERE_PA, Beginning, Effects, InMotion, true_first_value};
+use oleo_plant_sim::strut::{ATMOSPHERE_PA, Beginning, Effects, InMotion, StrutModel, true_first_value};
 
 use super::channels::{CHANNELS, Layout, P1, P2, P3, P4};
-use crate::parameter::Parameter;
+use super::heating;
+use crate::median::median;
+use crate::parameter::{Parameter, Scale};
 use crate::recording::Recording;
-use crate::vocabulary::Branch;
+use crate::vocabulary::{Branch, EffectId};
 
 /// Readings of this time do not count, s: a valve may be moving when the recording begins, which takes 90 ms at most.
 const UNCOUNTED_S: f64 = 0.1;
+/// Part of its median that the absolute pressure of the chamber has at least where a recording begins.
+const FILLED: f64 = 0.5;
 /// How far the gas pressure is usually from what was read first, relative: twice its standard deviation. And how far it may be.
 const PRESSURE_WITHIN: (f64, f64) = (0.03, 0.06);
 /// The same of the volume of both gases together and what the displacement says of it, relative. A strut that has turned 20 kJ into heat, which takes a
 /// minute at 350 W, has lost 1.4e-5 m3 of oil by the recordings' equation: 3 % of its gas.
 const VOLUME_WITHIN: (f64, f64) = (0.06, 0.3);
 /// The same of the temperature of gas 1 and that which both have if they are equally warm, K.
-const TEMPERATURE_WITHIN_K: (f64, f64) = (40.0, 90.0);
+const TEMPERATURE_WITHIN_K: (f64, f64) = (40.0, 250.0);
+/// The time for which dampers have been heated, s: usually; the factor that is its standard deviation, as a logarithm; and how short and long it may be.
+const HEATED_USUALLY_S: f64 = 60.0;
+const HEATED_FACTOR: f64 = 1.5;
+const HEATED_WITHIN_S: (f64, f64) = (0.1, 36e3);
 
 /// Something that is not known of the beginning of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -35,36 +44,54 @@ enum Quantity {
     Volume,
     /// Temperature of gas 1 beyond that which both have if they are equally warm, K.
     Temperature,
+    /// Time for which dampers have been heated as they are in the recording, s.
+    Heated,
 }
 
 impl Quantity {
-    const ALL: [Self; 4] = [
+    const ALL: [Self; 5] = [
         Self::Pressure(Branch::First),
         Self::Pressure(Branch::Second),
         Self::Volume,
         Self::Temperature,
+        Self::Heated,
     ];
 
-    /// Name with unit, how far the quantity is usually from nothing, and how far it may be.
-    const fn parameter(self) -> (&'static str, (f64, f64)) {
+    /// Its parameter in a recording of this name.
+    fn parameter(self, recording: &str) -> Parameter {
+        let key = |key: &str| format!("{key} at the beginning of {recording}");
+        let beside_nothing = |name: &str, (usual, most): (f64, f64)| Parameter {
+            lower: -most,
+            upper: most,
+            ..Parameter::calibration(key(name), usual)
+        };
         match self {
-            Self::Pressure(Branch::First) => ("gas_pressure_1", PRESSURE_WITHIN),
-            Self::Pressure(Branch::Second) => ("gas_pressure_2", PRESSURE_WITHIN),
-            Self::Volume => ("gas_volume", VOLUME_WITHIN),
-            Self::Temperature => ("gas_temperature_1_K", TEMPERATURE_WITHIN_K),
+            Self::Pressure(Branch::First) => beside_nothing("gas_pressure_1", PRESSURE_WITHIN),
+            Self::Pressure(Branch::Second) => beside_nothing("gas_pressure_2", PRESSURE_WITHIN),
+            Self::Volume => beside_nothing("gas_volume", VOLUME_WITHIN),
+            Self::Temperature => beside_nothing("gas_temperature_1_K", TEMPERATURE_WITHIN_K),
+            Self::Heated => Parameter {
+                scale: Scale::Log(HEATED_FACTOR),
+                prior: true,
+                ..Parameter::log(key("dampers_heated_s"), HEATED_USUALLY_S, HEATED_WITHIN_S)
+            },
         }
     }
 }
 
-/// Lets a recording begin at the first sample that holds the pressures of the chamber and of both accumulators: a pressure that was read a sample later
-/// may be a tenth of itself away.
+/// Lets a recording begin at the first sample that holds the displacement and the pressures of the chamber and of both accumulators: a pressure that was
+/// read a sample later may be a tenth of itself away. Near vacuum, where an error of the pressure is a large volume of bubbles, it does not begin.
 pub fn from_first_complete_sample(recording: &mut Recording, layout: Layout) {
+    let chamber_pa = &recording.columns[layout.column(P1)];
+    let read_pa: Vec<f64> = chamber_pa.iter().copied().filter(|pa| pa.is_finite()).collect();
+    let usual_pa = median(read_pa) + ATMOSPHERE_PA;
     let has_all = |k: usize| {
-        [P1, P2, P4]
-            .iter()
-            .all(|&c| recording.columns[layout.column(c)][k].is_finite())
+        let read = |column: usize| recording.columns[column][k].is_finite();
+        read(0) && [P1, P2, P4].iter().all(|&c| read(layout.column(c)))
     };
-    let Some(first) = (0..recording.len()).find(|&k| has_all(k)) else {
+    let is_filled = |k: usize| chamber_pa[k] + ATMOSPHERE_PA > FILLED * usual_pa;
+    let mut complete = (0..recording.len()).filter(|&k| has_all(k));
+    let Some(first) = complete.clone().find(|&k| is_filled(k)).or_else(|| complete.next()) else {
         return;
     };
     recording.time_s.drain(..first);
@@ -75,7 +102,8 @@ pub fn from_first_complete_sample(recording: &mut Recording, layout: Layout) {
 }
 
 /// What the first readings say: the oil has the pressures that were read, and both gases are equally warm. `None` where no sample is complete.
-pub fn as_read(recording: &Recording, layout: Layout) -> Option<Beginning> {
+/// The dampers have been heated as they are in the recording.
+pub fn as_read(recording: &Recording, layout: Layout, model: &StrutModel) -> Option<Beginning> {
     let first = |channel: usize| {
         let reading = recording.columns[layout.column(channel)].first().copied();
         reading.filter(|v| v.is_finite())
@@ -83,8 +111,9 @@ pub fn as_read(recording: &Recording, layout: Layout) -> Option<Beginning> {
     Some(Beginning::InMotion(InMotion {
         chamber_pa: first(P1)?,
         gas_pa: [first(P2)?, first(P4)?],
-        first_beyond_k: 0.0,
-        volume_beyond: 0.0,
+        heating_w: heating::of_dampers_w(recording, layout, model),
+        heated_s: HEATED_USUALLY_S,
+        ..InMotion::default()
     }))
 }
 
@@ -118,14 +147,14 @@ pub fn without_first_readings(recording: &mut Recording, layout: Layout) {
 }
 
 /// What is not known of these recordings, with its parameters.
-pub fn unknowns(recordings: &[Recording]) -> (Vec<Unknown>, Vec<Parameter>) {
+pub fn unknowns(recordings: &[Recording], model: &StrutModel) -> (Vec<Unknown>, Vec<Parameter>) {
+    let is_sought = model.effects.damping_fade.is_none();
     let of = |(recording, named): (usize, &Recording)| {
         Quantity::ALL.map(|quantity| {
-            let (key, (usual, most)) = quantity.parameter();
             let parameter = Parameter {
-                lower: -most,
-                upper: most,
-                ..Parameter::calibration(format!("{key} at the beginning of {}", named.name), usual)
+                only_in: Some(recording),
+                only_beside: (quantity == Quantity::Heated && is_sought).then_some(EffectId::DampingFade),
+                ..quantity.parameter(&named.name)
             };
             (Unknown { recording, quantity }, parameter)
         })
@@ -146,6 +175,7 @@ impl Unknown {
                 }
                 Quantity::Volume => in_motion.volume_beyond += value,
                 Quantity::Temperature => in_motion.first_beyond_k += value,
+                Quantity::Heated => in_motion.heated_s = value,
             }
         }
     }
@@ -156,6 +186,10 @@ mod tests {
     use super::*;
 
     const NONE: f64 = f64::NAN;
+
+    fn model() -> StrutModel {
+        StrutModel::defender110(6000.0)
+    }
 
     /// Displacement, p1 to p4 and three signals, every 50 ms.
     fn recording() -> Recording {
@@ -181,7 +215,7 @@ mod tests {
             (recording.time_s[0], recording.columns[0][0], recording.len()),
             (0.05, 0.01, 4)
         );
-        let Some(Beginning::InMotion(read)) = as_read(&recording, Layout::VEHICLE) else {
+        let Some(Beginning::InMotion(read)) = as_read(&recording, Layout::VEHICLE, &model()) else {
             panic!("it begins in motion");
         };
         assert_eq!((read.chamber_pa, read.gas_pa), (2e6, [2.1e6, 2.3e6]));
@@ -194,14 +228,26 @@ mod tests {
     }
 
     #[test]
+    fn a_recording_begins_where_the_chamber_is_filled_if_it_ever_is_and_the_displacement_is_read() {
+        let begins_s = |change: fn(&mut Recording)| {
+            let mut recording = recording();
+            change(&mut recording);
+            from_first_complete_sample(&mut recording, Layout::VEHICLE);
+            recording.time_s[0]
+        };
+        assert_eq!(begins_s(|r| r.columns[1][1] = -8e4), 0.1);
+        assert_eq!(begins_s(|r| r.columns[0][1] = NONE), 0.1);
+        assert_eq!(begins_s(|r| r.columns[1][1..].fill(-1.2e5)), 0.05);
+    }
+
+    #[test]
     fn a_pressure_is_that_behind_the_instrument_of_the_hypothesis() {
-        let read = as_read(&recording(), Layout::VEHICLE);
+        let read = as_read(&recording(), Layout::VEHICLE, &model());
         assert_eq!(read, None);
         let begins = Beginning::InMotion(InMotion {
             chamber_pa: 4e6,
             gas_pa: [4e6, 4e6],
-            first_beyond_k: 0.0,
-            volume_beyond: 0.0,
+            ..InMotion::default()
         });
         let mut effects = Effects::default();
         effects.sensor_gain.get_or_insert_default().insert("p2_Pa".into(), -0.2);
@@ -218,19 +264,18 @@ mod tests {
 
     #[test]
     fn a_deviation_is_of_one_recording_and_one_quantity() {
-        let (unknowns, parameters) = unknowns(&[recording(), recording()]);
-        assert_eq!((unknowns.len(), parameters.len()), (8, 8));
+        let (unknowns, parameters) = unknowns(&[recording(), recording()], &model());
+        assert_eq!((unknowns.len(), parameters.len()), (10, 10));
         assert_eq!(parameters[1].key, "gas_pressure_2 at the beginning of a");
         let mut begins = Beginning::InMotion(InMotion {
             chamber_pa: 4e6,
             gas_pa: [4e6, 4e6],
-            first_beyond_k: 0.0,
-            volume_beyond: 0.0,
+            ..InMotion::default()
         });
         let before = begins;
-        unknowns[4].apply(0, &mut begins, 0.01);
+        unknowns[5].apply(0, &mut begins, 0.01);
         assert_eq!(begins, before);
-        for unknown in &unknowns[..4] {
+        for unknown in &unknowns[..5] {
             unknown.apply(0, &mut begins, 0.01);
         }
         let pa = 4e6 + 0.01 * (4e6 + ATMOSPHERE_PA);
@@ -239,6 +284,8 @@ mod tests {
             gas_pa: [pa, pa],
             first_beyond_k: 0.01,
             volume_beyond: 0.01,
+            heated_s: 0.01,
+            ..InMotion::default()
         };
         assert_eq!(begins, Beginning::InMotion(moved));
     }

@@ -31,7 +31,7 @@ impl TwoStageStrut {
         if !starts_at_rest {
             for (begins, recording) in begins.iter_mut().zip(&mut recordings) {
                 beginning::from_first_complete_sample(recording, Layout::VEHICLE);
-                *begins = beginning::as_read(recording, Layout::VEHICLE).unwrap_or_default();
+                *begins = beginning::as_read(recording, Layout::VEHICLE, &model).unwrap_or_default();
                 beginning::without_first_readings(recording, Layout::VEHICLE);
             }
         }

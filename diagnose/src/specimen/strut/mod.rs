@@ -6,6 +6,7 @@ mod candidates;
 mod channels;
 mod drawing;
 mod floor;
+mod heating;
 mod in_vehicle;
 mod relations;
 mod rod_memory;
@@ -158,7 +159,7 @@ impl TwoStageStrut {
     /// The model as it is given.
     fn as_given(&self) -> Hypothesis {
         Hypothesis {
-            calibration: vec![0.0; self.parameters.len()],
+            calibration: self.parameters.iter().map(|p| p.start).collect(),
             effects: vec![],
         }
     }
@@ -200,7 +201,7 @@ impl TwoStageStrut {
         let (calibration, mut parameters) = calibration::of(&model, layout);
         let mut unknown_beginnings = Vec::new();
         if begins.iter().any(|begins| *begins != Beginning::AtRest) {
-            let (unknowns, their_parameters) = beginning::unknowns(&recordings);
+            let (unknowns, their_parameters) = beginning::unknowns(&recordings, &model);
             unknown_beginnings = unknowns;
             parameters.extend(their_parameters);
         }

@@ -15,6 +15,8 @@ const LOWEST_PA: f64 = -0.9 * ATMOSPHERE_PA;
 const HIGHEST_PA: f64 = 60e6;
 /// Smallest share of both gas volumes that the second gas has.
 const LEAST_SHARE: f64 = 0.01;
+/// Both gases together have at most so many times the volume that they have at ambient temperature, or this part of it. Fast compression warms them by less.
+const MOST_OF_AMBIENT: f64 = 1.3;
 
 impl Network {
     /// The state at rest: ambient temperature (K), valves open for long, no flow. Both accumulators are connected.
@@ -51,8 +53,10 @@ impl Network {
             .taken_up::<true>(&rest, chamber.pa(), displacement_m)
             .volume_m3;
         let pushed_in = self.chamber.area_m2 * displacement_m - taken_up;
-        let together = (1.0 + begins.volume_beyond) * (rest.gas[0].volume_m3 + rest.gas[1].volume_m3 - pushed_in);
+        let by_displacement = rest.gas[0].volume_m3 + rest.gas[1].volume_m3 - pushed_in;
         let at_ambient: f64 = (0..2).map(|i| self.paths[i].gas.volume_at(gas_pa[i])).sum();
+        let likely = by_displacement.clamp(at_ambient / MOST_OF_AMBIENT, at_ambient * MOST_OF_AMBIENT);
+        let together = (1.0 + begins.volume_beyond) * likely;
         let first = gas(0, ambient_k * together / at_ambient + begins.first_beyond_k);
         // What is left is never nothing, whatever a fit asks for.
         let left = (together - first.volume_m3).max(LEAST_SHARE * together);

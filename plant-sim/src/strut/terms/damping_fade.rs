@@ -69,6 +69,14 @@ impl<N: Number> PackCooling<N> {
     }
 }
 
+impl PackCooling {
+    /// The energy held, J, by a pack that was cold and was heated by a constant power (W) for a while (s): `P tau (1 - exp(-t / tau))`.
+    #[must_use]
+    pub fn held_j(&self, power_w: f64, duration_s: f64) -> f64 {
+        -power_w * self.time_s * libm::expm1(-duration_s / self.time_s)
+    }
+}
+
 /// The fade of one pack; none by default.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PackFade<N = f64> {
@@ -112,16 +120,17 @@ mod tests {
 
     #[test]
     fn energy_settles_where_cooling_is_the_power() {
-        // dE/dt = P - E / tau: E = P tau (1 - exp(-t / tau)).
         let pack = FADE.pack(FlowPath::One);
         let mut energy = 0.0;
         for _ in 0..60_000 {
             energy = FADE.cooling().cooled(pack.heated(energy, 1e-3, 1e6, 1e-4), 1e-3);
         }
         assert!(
-            (energy / (100.0 * 60.0 * (1.0 - libm::exp(-1.0))) - 1.0).abs() < 1e-4,
+            (energy / FADE.cooling().held_j(100.0, 60.0) - 1.0).abs() < 1e-4,
             "{energy}"
         );
+        // Much later it cools as fast as it is heated.
+        assert!((FADE.cooling().held_j(100.0, 6000.0) / 6000.0 - 1.0).abs() < 1e-12);
         assert!((pack.weakening(energy) - (1.0 + 1e-4 * energy)).abs() < 1e-15);
     }
 

@@ -22,7 +22,7 @@ pub struct Estimate {
 /// A value of the calibration.
 #[derive(Debug, Clone)]
 pub struct CalibratedValue {
-    /// Estimated deviation from the nominal value.
+    /// Estimated deviation from the nominal value; the value itself where it is known to an order of magnitude only.
     pub estimate: Estimate,
     /// Fraction of its tolerance that was used; a little more than 1 is possible.
     pub tolerance_used: f64,

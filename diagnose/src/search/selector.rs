@@ -1,6 +1,8 @@
 //! What all steps of the search share: fits that are made once, candidates that may be added, and judgement on held-out
 //! blocks.
 
+use std::ops::Range;
+
 use super::evidence::HeldOutGain;
 use super::fits::{Fits, if_simulated};
 use super::screen::Screen;
@@ -8,6 +10,7 @@ use super::screenings::Screenings;
 use crate::criteria::Criteria;
 use crate::effect::Candidate;
 use crate::error::DiagnoseError;
+use crate::estimation::gauss_newton::{Start, fit_from};
 use crate::estimation::{Fit, LeastSquares, Point, cost_of_whole_recordings, held_out};
 use crate::specimen::{Folding, Specimen};
 
@@ -74,6 +77,13 @@ impl<'p, 'a> Selector<'p, 'a> {
     /// The same where the start can be simulated; `None` where it cannot, which is no candidate and no failure.
     pub fn fitted_if_simulated(&mut self, start: Point) -> Result<Option<Fit>, DiagnoseError> {
         if_simulated(self.fitted(start))
+    }
+
+    /// A model fitted from a start of which some coordinates are held; `None` where it cannot be simulated.
+    pub fn fitted_holding(&self, start: Point, held: Range<usize>) -> Result<Option<Fit>, DiagnoseError> {
+        let start = Start::at(self.problem, start);
+        let effort = self.criteria().fitting.converged;
+        if_simulated(start.and_then(|start| fit_from(self.problem, start.holding(held), effort)))
     }
 
     /// Costs of the blocks, each held out.

@@ -6,9 +6,7 @@
 use super::selection::Selection;
 use super::selector::{Open, Selector};
 use crate::error::DiagnoseError;
-use crate::estimation::gauss_newton::{Start, fit_from};
 use crate::estimation::{Fit, LeastSquares, Point};
-use crate::search::fits::if_simulated;
 
 /// What a search found, with an effect that others have with these coordinates; `None` if the recordings meet the model worse with it.
 ///
@@ -73,9 +71,7 @@ impl Selector<'_, '_> {
     /// A model fitted with the numbers of its last effect held; `None` where it cannot be simulated.
     fn with_last_held(&self, point: Point) -> Result<Option<Fit>, DiagnoseError> {
         let held = point.coordinates_of(self.specimen(), point.effects.len() - 1);
-        let start = Start::at(self.problem, point);
-        let effort = self.criteria().fitting.converged;
-        if_simulated(start.and_then(|at| fit_from(self.problem, at.holding(held), effort)))
+        self.fitted_holding(point, held)
     }
 
     /// The model without the effect before the last that gains least, if it gains less than an effect must.

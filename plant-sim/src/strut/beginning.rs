@@ -26,8 +26,8 @@ pub struct InMotion {
     /// Volume of both gases together beyond what displacement and pressures say, relative. The recordings' equation does not conserve oil: what the dampers
     /// have turned into heat, divided by the bulk modulus, is lost.
     pub volume_beyond: f64,
-    /// What the dampers of paths 1 and 2 have turned into heat before, W, and for how long, s. It matters where dampers fade.
+    /// Mean power that the dampers of paths 1 and 2 turned into heat before, W. It matters where they fade.
     pub heating_w: [f64; 2],
-    /// Time for which they have, s.
+    /// Time for which they did, s.
     pub heated_s: f64,
 }

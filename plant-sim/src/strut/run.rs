@@ -323,6 +323,24 @@ mod tests {
     }
 
     #[test]
+    fn a_beginning_that_is_not_a_number_or_far_from_any_is_no_panic() {
+        let model = StrutModel::defender110(6000.0);
+        let some = inputs(7, 8);
+        for pa in [f64::NAN, f64::NEG_INFINITY, f64::INFINITY] {
+            let begins = InMotion {
+                chamber_pa: pa,
+                gas_pa: [pa; 2],
+                volume_beyond: pa,
+                first_beyond_k: pa,
+                heating_w: [pa; 2],
+                heated_s: pa,
+            };
+            // Whatever it gives, it returns.
+            assert!(Run::begin(&model, &some, &Beginning::InMotion(begins)).is_ok());
+        }
+    }
+
+    #[test]
     fn gas_that_stays_at_ambient_temperature_begins_at_the_pressure_that_was_read() {
         let mut model = StrutModel::defender110(6000.0);
         model.effects.gas_heat_transfer = None;

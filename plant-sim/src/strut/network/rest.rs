@@ -55,7 +55,10 @@ impl Network {
         let pushed_in = self.chamber.area_m2 * displacement_m - taken_up;
         let by_displacement = rest.gas[0].volume_m3 + rest.gas[1].volume_m3 - pushed_in;
         let at_ambient: f64 = (0..2).map(|i| self.paths[i].gas.volume_at(gas_pa[i])).sum();
-        let likely = by_displacement.clamp(at_ambient / MOST_OF_AMBIENT, at_ambient * MOST_OF_AMBIENT);
+        // Not `clamp`, which panics where a law of the gas that a fit tries has no volume at these pressures.
+        let likely = by_displacement
+            .max(at_ambient / MOST_OF_AMBIENT)
+            .min(at_ambient * MOST_OF_AMBIENT);
         let together = (1.0 + begins.volume_beyond) * likely;
         let first = gas(0, ambient_k * together / at_ambient + begins.first_beyond_k);
         // What is left is never nothing, whatever a fit asks for.

@@ -160,7 +160,16 @@ class Server(http.server.SimpleHTTPRequestHandler):
 
 
 def judged(chromium, page, theme):
-    """What is wrong with a page, and how many charts it shows, by width."""
+    """What is wrong with a page, and how many charts it shows, by width. A browser that a signal ends has judged nothing: it is asked once more."""
+    answer, status = asked(chromium, page, theme)
+    if status is not None and status < 0:
+        print(f"{page.parent.name}: Chromium was ended by signal {-status} and is asked once more")
+        answer, _ = asked(chromium, page, theme)
+    return answer
+
+
+def asked(chromium, page, theme):
+    """What a browser says of a page, by width, and its status if it ended without an answer."""
     # The browser's children may still write when it has ended.
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as name:
         folder = pathlib.Path(name)
@@ -186,12 +195,12 @@ def judged(chromium, page, theme):
             try:
                 for _ in range(ANSWER_S):
                     try:
-                        return answers.get(timeout=1)
+                        return answers.get(timeout=1), None
                     except queue.Empty:
                         if browser.poll() is not None:
                             break
-                end = said.read_text(errors="replace").strip()[-300:]
-                return {0: {"found": [f"Chromium gave no answer (status {browser.poll()}): {end}"], "charts": 0}}
+                end, status = said.read_text(errors="replace").strip()[-300:], browser.poll()
+                return {0: {"found": [f"Chromium gave no answer (status {status}): {end}"], "charts": 0}}, status
             finally:
                 browser.terminate()
                 browser.wait()

@@ -109,6 +109,18 @@ impl Analytic {
         (candidate.id, candidate.place, candidate.one_of_several) = (EffectId::Unlisted, site.into(), true);
     }
 
+    /// Makes a candidate a number of the model that is other than believed.
+    pub fn become_number(&mut self, candidate: usize) {
+        let candidate = &mut self.candidates[candidate];
+        (candidate.id, candidate.one_of_several) = (EffectId::Unlisted, false);
+        candidate.is_believed_number = true;
+    }
+
+    /// Puts a candidate in the place of a calibration value.
+    pub fn replace(&mut self, candidate: usize, calibration: &'static str) {
+        self.candidates[candidate].replaces = Some(calibration);
+    }
+
     /// Gives a candidate's first parameter another key.
     pub fn take_key(&mut self, candidate: usize, key: &str) {
         key.clone_into(&mut self.candidates[candidate].parameters[0].key);
@@ -250,8 +262,10 @@ fn candidate(index: usize) -> Candidate {
         },
         starts: vec![],
         takes_from: None,
+        replaces: None,
         becomes: None,
         one_of_several: id == EffectId::Unlisted,
+        is_believed_number: false,
         oscillates: index == SWING,
         untestable: None,
         id,

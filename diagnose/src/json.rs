@@ -137,8 +137,9 @@ pub fn rejected(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> Vec<Value> {
 /// The sizes from which the recordings would have shown an effect, by their keys.
 fn shown_from(candidate: &Candidate, least_sizes: &[LeastSize]) -> Value {
     let sizes = least_sizes.iter().map(|least| {
-        let (key, value) = candidate.parameters[least.parameter].as_reported(least.value);
-        (key.to_owned(), json!(value))
+        let number = &candidate.parameters[least.parameter];
+        let value = least.value.map(|value| number.reported(value));
+        (number.reported_key().to_owned(), json!(value))
     });
     Value::Object(sizes.collect())
 }

@@ -49,8 +49,19 @@ pub struct Parameter {
     pub only_beside: Option<EffectId>,
     /// The size of the effect: zero is "not there", and every larger value is more of it.
     pub is_size: bool,
-    /// Reported as this key, and inverted: a compliance is fitted (zero is "not there"), a stiffness is what people know.
-    pub inverse_of: Option<&'static str>,
+    /// How the number is reported.
+    pub shown: Shown,
+}
+
+/// How a fitted number is reported.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shown {
+    /// As it was fitted.
+    AsFitted,
+    /// As this key, and inverted: a compliance is fitted (zero is "not there"), a stiffness is what people know.
+    AsInverse(&'static str),
+    /// As the number of the model that was believed to be this one: the relative departure from it is fitted (zero is "as believed").
+    AsNumberBelievedToBe(f64),
 }
 
 /// Calibration may use a little more than the stated tolerance before it is no longer called calibration.
@@ -72,7 +83,7 @@ impl Parameter {
             only_in: None,
             only_beside: None,
             is_size: false,
-            inverse_of: None,
+            shown: Shown::AsFitted,
         }
     }
 
@@ -112,7 +123,7 @@ impl Parameter {
             only_in: None,
             only_beside: None,
             is_size: false,
-            inverse_of: None,
+            shown: Shown::AsFitted,
         }
     }
 
@@ -145,7 +156,16 @@ impl Parameter {
     #[must_use]
     pub fn shown_as_inverse(self, key: &'static str) -> Self {
         Self {
-            inverse_of: Some(key),
+            shown: Shown::AsInverse(key),
+            ..self
+        }
+    }
+
+    /// The same relative departure, reported as the number that departs from this one.
+    #[must_use]
+    pub fn shown_as_number(self, believed: f64) -> Self {
+        Self {
+            shown: Shown::AsNumberBelievedToBe(believed),
             ..self
         }
     }
@@ -169,12 +189,30 @@ impl Parameter {
         .clamp(self.lower, self.upper)
     }
 
-    /// Key and value as reported: those of the inverse, for a number that is shown as such.
+    /// The key under which the number is reported.
     #[must_use]
-    pub fn as_reported(&self, value: Option<f64>) -> (&str, Option<f64>) {
-        match self.inverse_of {
-            Some(key) => (key, value.map(|v| 1.0 / v)),
-            None => (&self.key, value),
+    pub fn reported_key(&self) -> &str {
+        match self.shown {
+            Shown::AsInverse(key) => key,
+            Shown::AsFitted | Shown::AsNumberBelievedToBe(_) => &self.key,
+        }
+    }
+
+    /// A fitted value as it is reported.
+    ///
+    /// ```
+    /// use oleo_diagnose::parameter::Parameter;
+    /// let flexibility = Parameter::amount("compliance_m_N", 1e-8, 1e-4).shown_as_inverse("stiffness_N_m");
+    /// assert_eq!((flexibility.reported_key(), flexibility.reported(1e-7)), ("stiffness_N_m", 1e7));
+    /// let modulus = Parameter::departure("bulk_modulus_Pa", 0.02, (-0.9, 9.0)).shown_as_number(1.4e9);
+    /// assert!((modulus.reported(0.1) - 1.54e9).abs() < 1.0);
+    /// ```
+    #[must_use]
+    pub fn reported(&self, value: f64) -> f64 {
+        match self.shown {
+            Shown::AsFitted => value,
+            Shown::AsInverse(_) => 1.0 / value,
+            Shown::AsNumberBelievedToBe(believed) => believed * (1.0 + value),
         }
     }
 

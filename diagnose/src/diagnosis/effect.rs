@@ -43,6 +43,14 @@ impl Effect {
     }
 }
 
+impl Effect {
+    /// Whether it is a number of the model that is other than believed, and no law.
+    #[must_use]
+    pub fn is_wrong_number(&self) -> bool {
+        self.id == EffectId::Unlisted && unlisted::is_believed_number(&self.label)
+    }
+}
+
 /// The effects of the improved model, and the remaining misfit if the model is stated to be complete.
 pub(super) fn effects(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Estimate]) -> Vec<Effect> {
     let mut out = modelled(problem, selection, estimates);
@@ -79,7 +87,7 @@ fn modelled(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Esti
             .then(|| specimen.law(selected.candidate, &hypothesis.effects[position].1))
             .flatten();
         let equation = (candidate.is_unlisted())
-            .then(|| unlisted::equation(&candidate.label, &hypothesis.effects[position].1))
+            .then(|| unlisted::equation(candidate, &hypothesis.effects[position].1))
             .flatten();
         let evidence = Evidence {
             gain: (selected.gain.total, selected.gain.standard_error),

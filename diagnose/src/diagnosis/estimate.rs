@@ -44,17 +44,11 @@ pub(super) fn estimates(problem: &LeastSquares<'_>, fit: &Fit) -> Result<Vec<Est
     Ok((parameters.iter().zip(&fit.point.z).zip(deviations.iter()))
         .map(|((p, &z), &sd)| {
             let (low, high) = (p.value(z - HALF_INTERVAL * sd), p.value(z + HALF_INTERVAL * sd));
-            match p.inverse_of {
-                Some(key) => Estimate {
-                    key: key.into(),
-                    value: 1.0 / p.value(z),
-                    ci95: [1.0 / high, 1.0 / low],
-                },
-                None => Estimate {
-                    key: p.key.clone(),
-                    value: p.value(z),
-                    ci95: [low, high],
-                },
+            let (from, to) = (p.reported(low), p.reported(high));
+            Estimate {
+                key: p.reported_key().into(),
+                value: p.reported(p.value(z)),
+                ci95: [from.min(to), from.max(to)],
             }
         })
         .collect())

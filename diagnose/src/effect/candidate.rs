@@ -18,12 +18,16 @@ pub struct Candidate {
     pub starts: Vec<Vec<f64>>,
     /// Key of a calibration value that was identified without the effect and holds a part of it.
     pub takes_from: Option<&'static str>,
+    /// Key of a calibration value that is not fitted beside it: the tolerance of the number that it puts right.
+    pub replaces: Option<&'static str>,
     /// The effect of fewer numbers that this one becomes at an end of its range.
     pub becomes: Option<EffectId>,
     /// Candidates of the same group exclude each other.
     pub group: Option<ExclusionGroup>,
     /// Whether it is a law without a name that excludes others only where their places overlap, so that a model can have two.
     pub one_of_several: bool,
+    /// Whether it is a number of the model that is other than believed, and no law.
+    pub is_believed_number: bool,
     /// Whether it swings in time at a frequency that is looked for in the residual. Its parameters are then amplitude, phase, rad, and
     /// frequency, Hz.
     pub oscillates: bool,
@@ -46,9 +50,11 @@ impl Candidate {
             parameters,
             starts: vec![],
             takes_from: None,
+            replaces: None,
             becomes: None,
             group: None,
             one_of_several: false,
+            is_believed_number: false,
             oscillates: false,
             untestable: None,
         }
@@ -111,6 +117,16 @@ impl Candidate {
         }
     }
 
+    /// The candidate as a number of the model that is other than believed, and the key of the calibration value that is the tolerance of this number.
+    #[must_use]
+    pub fn of_believed_number(self, tolerance: Option<&'static str>) -> Self {
+        Self {
+            is_believed_number: true,
+            replaces: tolerance,
+            ..self
+        }
+    }
+
     /// The candidate as one that swings in time.
     #[must_use]
     pub fn oscillating(self, oscillates: bool) -> Self {
@@ -126,10 +142,16 @@ impl Candidate {
         }
     }
 
-    /// Whether the candidate is a law without a name.
+    /// Whether the vocabulary has no name for the candidate: a law, or a number of the model that is other than believed.
     #[must_use]
     pub fn is_unlisted(&self) -> bool {
         self.id == EffectId::Unlisted
+    }
+
+    /// Whether the candidate is a law without a name.
+    #[must_use]
+    pub fn is_law(&self) -> bool {
+        self.is_unlisted() && !self.is_believed_number
     }
 
     /// Whether the candidate is a sensor fault, which is judged before physics.

@@ -21,6 +21,11 @@ pub trait Effect: Sync {
     /// Meaning of its equation, as a main clause without capital and full stop. It explains the symbols of the equation.
     fn meaning(&self) -> &'static str;
 
+    /// The same in a kind of specimen; `label` distinguishes what has no name.
+    fn meaning_in(&self, _kind: SpecimenKind, _label: &str) -> &'static str {
+        self.meaning()
+    }
+
     /// Symbol in the equation for each reported parameter, by its key. In a key that counts places the number is written `i`:
     /// `time_constant_i_s`. Parameters that only state where an equation begins to hold have no symbol.
     fn symbols(&self) -> &'static [(&'static str, &'static str)];

@@ -42,18 +42,24 @@ impl Point {
     #[must_use]
     pub fn matters(&self, specimen: &dyn Specimen, coordinate: usize) -> bool {
         let candidates = specimen.candidates();
-        (self.parameters(specimen)[coordinate].only_beside)
-            .is_none_or(|id| self.effects.iter().any(|&effect| candidates[effect].id == id))
+        let parameter = self.parameters(specimen)[coordinate];
+        let needs = (parameter.only_beside).is_none_or(|id| self.effects.iter().any(|&e| candidates[e].id == id));
+        let is_replaced = (self.effects.iter()).any(|&e| candidates[e].replaces == Some(&parameter.key));
+        needs && !is_replaced
     }
 
-    /// Range of every coordinate. A calibration value of which an effect takes over a part is freed from its tolerance.
+    /// Range of every coordinate. A calibration value of which an effect takes over a part is freed from its tolerance; one that an effect replaces stays at
+    /// what is believed.
     #[must_use]
     pub fn ranges(&self, specimen: &dyn Specimen) -> Vec<(f64, f64)> {
         let candidates = specimen.candidates();
         let freed = |key: &str| (self.effects.iter()).any(|&e| candidates[e].takes_from == Some(key));
-        (self.parameters(specimen).iter())
-            .map(|p| {
-                if freed(&p.key) {
+        let replaced = |key: &str| (self.effects.iter()).any(|&e| candidates[e].replaces == Some(key));
+        (self.parameters(specimen).iter().enumerate())
+            .map(|(k, p)| {
+                if k < specimen.calibration().len() && replaced(&p.key) {
+                    (0.0, 0.0)
+                } else if freed(&p.key) {
                     p.z_range()
                 } else {
                     p.tolerated_z_range()
@@ -156,5 +162,18 @@ mod tests {
         assert_eq!(less.effects, [CUBIC, FRICTION]);
         assert_eq!(values(&less), [values(&point)[0].clone(), values(&point)[2].clone()]);
         assert_eq!(less.prior(&specimen).as_slice(), [1.0, 1.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn the_tolerance_of_a_number_that_an_effect_puts_right_is_not_fitted() {
+        let mut specimen = Recipe::default().make();
+        let key = specimen.calibration()[1].key.clone();
+        specimen.replace(CUBIC, key.leak());
+        let nominal = Point::nominal(&specimen);
+        let beside = nominal.with_effect(&specimen, CUBIC, &[0.2]);
+        let fitted = |point: &Point| [0, 1].map(|k| (point.matters(&specimen, k), point.ranges(&specimen)[k]));
+        let usual = specimen.calibration()[0].tolerated_z_range();
+        assert_eq!(fitted(&nominal).map(|(matters, _)| matters), [true, true]);
+        assert_eq!(fitted(&beside), [(true, usual), (false, (0.0, 0.0))]);
     }
 }

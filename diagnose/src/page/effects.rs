@@ -8,6 +8,7 @@ use crate::campaign::Campaign;
 use crate::diagnosis::{Diagnosis, Effect};
 use crate::effect::unlisted::is_of_free_table;
 use crate::effect::{Candidate, of};
+use crate::parameter::Shown;
 use crate::search::LeastSize;
 
 pub fn section(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnosis) {
@@ -67,7 +68,7 @@ fn effect(page: &mut Page, campaign: &Campaign, e: &Effect) {
     if let Some(equation) = known.equation_in(kind, &e.label) {
         let meaning = match law(e) {
             Some(law) if is_closed(equation) => symbols_of_a_law(&law),
-            _ => words::sentence(known.meaning()),
+            _ => words::sentence(known.meaning_in(kind, &e.label)),
         };
         (page.equation(equation.text)).text(&format!("{meaning}. Source: {}.", equation.source));
     }
@@ -258,13 +259,12 @@ fn rivals(all: &[Candidate], diagnosis: &Diagnosis) -> Table {
 fn found_from(candidate: &Candidate, least_sizes: &[LeastSize]) -> String {
     let sizes = least_sizes.iter().map(|least| {
         let number = &candidate.parameters[least.parameter];
-        let (key, value) = number.as_reported(least.value);
-        let (name, unit) = words::parameter(key);
+        let value = least.value.map(|value| number.reported(value));
+        let (name, unit) = words::parameter(number.reported_key());
         let unit = unit.replace("relative", "");
-        let bound = if number.inverse_of.is_some() {
-            "at most"
-        } else {
-            "at least"
+        let bound = match number.shown {
+            Shown::AsInverse(_) => "at most",
+            Shown::AsFitted | Shown::AsNumberBelievedToBe(_) => "at least",
         };
         match value {
             Some(value) => format!("{name} of {bound} {} {unit}", significant(value, 2))

@@ -98,9 +98,12 @@ pub fn headline(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> String {
              error of {after} times the sensor noise."
         ),
         Verdict::MissingPhysics => format!(
-            "The model leaves out {}. With {}, the RMS error on held-out recordings is {after} times the sensor noise; without \
+            "{}. With {}, the RMS error on held-out recordings is {after} times the sensor noise; without \
              {}, it is {before} times.",
-            list(&phrases(kind, diagnosis)),
+            words::of_the_model(
+                &list(&phrases(kind, diagnosis, |e| !e.is_wrong_number())),
+                &list(&phrases(kind, diagnosis, Effect::is_wrong_number)),
+            ),
             these(diagnosis, "this effect", "these effects"),
             these(diagnosis, "it", "them"),
         ),
@@ -131,10 +134,11 @@ fn these(diagnosis: &Diagnosis, one: &'static str, several: &'static str) -> &'s
     if found.count() == 1 { one } else { several }
 }
 
-/// Effects as phrases, one for each id, with all its places.
-fn phrases(kind: SpecimenKind, diagnosis: &Diagnosis) -> Vec<String> {
+/// Some of the effects as phrases, one for each id, with all its places.
+fn phrases(kind: SpecimenKind, diagnosis: &Diagnosis, of_these: fn(&Effect) -> bool) -> Vec<String> {
     let mut out: Vec<(String, String)> = Vec::new();
-    for e in diagnosis.effects.iter().filter(|e| e.selected.is_some()) {
+    let found = diagnosis.effects.iter().filter(|e| e.selected.is_some());
+    for e in found.filter(|e| of_these(e)) {
         let mut name = of(e.id).called(kind, &e.label);
         if let Some(equation) = &e.equation {
             name += &format!(", {equation},");
@@ -152,7 +156,7 @@ fn phrases(kind: SpecimenKind, diagnosis: &Diagnosis) -> Vec<String> {
 
 fn list(items: &[String]) -> String {
     match items {
-        [] => "something".into(),
+        [] => String::new(),
         [one] => one.clone(),
         [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
     }

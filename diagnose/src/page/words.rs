@@ -5,6 +5,16 @@ use oleo_interface::Valve;
 use crate::diagnosis::Effect;
 use crate::vocabulary::{Place, Site};
 
+/// What is wrong with a model, as a sentence without its full stop: what it leaves out, and the wrong numbers that it states.
+pub fn of_the_model(left_out: &str, wrong_numbers: &str) -> String {
+    match (left_out, wrong_numbers) {
+        ("", "") => "The model leaves something out".into(),
+        (left_out, "") => format!("The model leaves out {left_out}"),
+        ("", wrong) => format!("The model states {wrong}"),
+        (left_out, wrong) => format!("The model leaves out {left_out}, and states {wrong}"),
+    }
+}
+
 /// The id of an effect in the vocabulary, with the name of its law if it is a law without a name.
 pub fn effect_name(effect: &Effect) -> String {
     if effect.label.is_empty() {

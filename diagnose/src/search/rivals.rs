@@ -6,7 +6,7 @@ use super::simplification::is_form_of;
 use crate::criteria::Criteria;
 use crate::effect::Candidate;
 use crate::error::DiagnoseError;
-use crate::estimation::Fit;
+use crate::estimation::{Fit, Point};
 
 /// The effects of a model with their rivals, and the model in which a rival does better.
 pub struct Comparison {
@@ -28,7 +28,12 @@ impl Selector<'_, '_> {
             let without = self.held_out(&less);
             let gain = self.gain(without, costs);
             let mut rival = None;
-            if let Some((other, full)) = self.strongest_rival(&less, candidate, best, gain.total, open)? {
+            let rivals = self.open(&less.point, open);
+            let numbers = self.numbers_beside(&less.point, &rivals);
+            for (candidates, are_reported) in [(rivals, true), (numbers, false)] {
+                let Some((other, full)) = self.strongest_rival(&less, candidate, best, gain.total, candidates)? else {
+                    continue;
+                };
                 let found = self.rival(other, &full, best, gain.total);
                 let lead = found.lead.total;
                 if self.takes_the_place(&found, &full, candidate, best, gain.total)
@@ -36,7 +41,7 @@ impl Selector<'_, '_> {
                 {
                     better = Some((lead, full));
                 }
-                rival = Some(found);
+                rival = rival.or(Some(found).filter(|_| are_reported));
             }
             effects.push(SelectedEffect {
                 candidate,
@@ -53,6 +58,13 @@ impl Selector<'_, '_> {
         })
     }
 
+    /// Wrong numbers that might be in a model and are not among these rivals. Their tolerances speak against them, so that one that only does as well is no rival.
+    fn numbers_beside(&self, point: &Point, rivals: &[usize]) -> Vec<usize> {
+        let all = self.open(point, Open::Numbers).into_iter();
+        all.filter(|c| self.candidate(*c).is_believed_number && !rivals.contains(c))
+            .collect()
+    }
+
     /// The strongest candidate in the place of an effect: fitted in full where it may catch up, screened where it cannot.
     fn strongest_rival(
         &mut self,
@@ -60,9 +72,8 @@ impl Selector<'_, '_> {
         candidate: usize,
         best: &Fit,
         gain: f64,
-        open: Open,
+        mut candidates: Vec<usize>,
     ) -> Result<Option<(usize, Fit)>, DiagnoseError> {
-        let mut candidates = self.open(&less.point, open);
         candidates.retain(|&c| c != candidate && !includes(self.candidate(c), self.candidate(candidate)));
         let screened = self.screen(less, candidates)?;
         let Some((cost, start)) = ranked(&screened).into_iter().next() else {
@@ -97,8 +108,9 @@ impl Selector<'_, '_> {
     fn takes_the_place(&self, rival: &Rival, full: &Fit, candidate: usize, best: &Fit, gain: f64) -> bool {
         let criteria = self.criteria();
         let named = |fit: &Fit| fit.point.effects.iter().all(|&e| !self.candidate(e).is_unlisted());
-        // A name gives way to a law without one only if the law is clearly better.
-        let least = if named(best) && !named(full) {
+        // A name gives way to a law without one only if the law is clearly better, and to a wrong number only if that is certainly better.
+        let is_number = self.candidate(rival.candidate).is_believed_number;
+        let least = if named(best) && !named(full) && !is_number {
             criteria.rivalry.lead_over_named * gain
         } else {
             0.0
@@ -109,7 +121,8 @@ impl Selector<'_, '_> {
         let simpler = other.id == effect.id
             && other.parameters.len() < effect.parameters.len()
             && !self.accepts(&rival.lead, 0.0);
-        (clearly || simpler) && !self.predicts_recordings_worse(best, full)
+        let certainly = !is_number || self.improves(best, full, 0.0);
+        ((clearly && certainly) || simpler) && !self.predicts_recordings_worse(best, full)
     }
 }
 
@@ -159,6 +172,24 @@ mod tests {
 
     /// A vibration `a sin(w t)` is orthogonal to all else in the model, so that leaving it out costs the sum of its squares
     /// over the noise: `n a^2 / (2 s^2)`.
+    #[test]
+    fn a_wrong_number_takes_the_place_of_a_name_only_if_it_is_certainly_better_and_is_no_rival_otherwise() {
+        let compared = |name: usize, truth: usize, size: f64| {
+            let mut specimen = specimen(&[(truth, &[size])], &[name, CUBIC]);
+            specimen.become_number(CUBIC);
+            let problem = LeastSquares::new(&specimen, &RUN);
+            let mut selector = Selector::new(&problem);
+            let start = Point::nominal(&specimen).with_effect(&specimen, name, &[0.1]);
+            let best = selector.fitted(start).expect("a fit");
+            let comparison = selector.compare_with_rivals(&best, Open::Names).expect("a comparison");
+            assert!(comparison.effects[0].rival.is_none());
+            comparison.better.map(|fit| fit.point.effects)
+        };
+        assert_eq!(compared(FRICTION, CUBIC, 0.4), Some(vec![CUBIC]));
+        assert_eq!(compared(NEARLY_CUBIC, NEARLY_CUBIC, 0.4), None);
+        assert_eq!(compared(NEARLY_CUBIC, CUBIC, 0.4), None);
+    }
+
     #[test]
     fn the_gain_of_an_effect_is_the_sum_of_its_squares_over_the_noise() {
         let truth: [(usize, &[f64]); 2] = [(VIBRATION, &[0.1, 2.3]), (CUBIC, &[0.05])];

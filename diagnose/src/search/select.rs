@@ -37,6 +37,10 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
         grown.law_pairs = grown.law_pairs.max(first.law_pairs);
         best = reduced(&mut selector, grown.best.clone(), progress)?;
     }
+    if let Some(other) = with_numbers_in_place_of_faults(&mut selector, &calibrated, &best, progress)? {
+        best = other;
+        grown.open = Open::Laws;
+    }
     if let Some(anew) = grown_with_laws_first(&mut selector, &calibrated, &best, &grown, progress)? {
         let first = grown;
         (grown, best) = anew;
@@ -158,6 +162,54 @@ fn grown_with_laws_first(
     Ok((better || as_good_with_fewer).then_some((anew, other)))
 }
 
+/// Faults of instruments from which on a wrong number of the model is asked whether it is behind them: another bore looks like two gains.
+const FAULTS_OF_ONE_NUMBER: usize = 2;
+
+/// A complete model with wrong numbers in the place of faults of instruments; `None` if it does not take fewer effects.
+fn with_numbers_in_place_of_faults(
+    selector: &mut Selector<'_, '_>,
+    calibrated: &Fit,
+    best: &Fit,
+    progress: Progress<'_>,
+) -> Result<Option<Fit>, DiagnoseError> {
+    let effects = &best.point.effects;
+    let faults = effects.iter().filter(|&&e| selector.candidate(e).is_instrument_fault());
+    if faults.count() < FAULTS_OF_ONE_NUMBER || !selector.can_have_wrong_numbers() {
+        return Ok(None);
+    }
+    let other = completed_by_numbers(selector, calibrated, progress)?;
+    Ok(other.filter(|other| {
+        let fewer = other.point.effects.len() < effects.len();
+        fewer && !selector.improves(other, best, selector.criteria().acceptance.least_fraction)
+    }))
+}
+
+/// A model that wrong numbers complete, with names beside them; `None` if none does. A wrong number is as rigid as a name, and so are few of them: they are
+/// asked before laws, which bend to more, and are the answer only where nothing is left.
+fn completed_by_numbers(
+    selector: &mut Selector<'_, '_>,
+    from: &Fit,
+    progress: Progress<'_>,
+) -> Result<Option<Fit>, DiagnoseError> {
+    progress("trying other numbers of the model", done::FITTING_AFTER_SCREENING);
+    let most = selector.criteria().acceptance.most_effects;
+    let mut grown = from.clone();
+    while grown.point.effects.len() < most {
+        let screened = selector.screen_in_passing(&grown, selector.open(&grown.point, Open::Numbers))?;
+        match selector.strongest(&screened, &grown)? {
+            Some(next) => grown = next,
+            None => break,
+        }
+    }
+    let complete =
+        |selector: &Selector<'_, '_>, fit: &Fit| selector.held_out_ratio(fit) <= selector.complete_up_to(fit);
+    if !complete(selector, &grown) {
+        return Ok(None);
+    }
+    let reduced = reduced(selector, grown, progress)?;
+    Ok(complete(selector, &reduced).then_some(reduced))
+}
+
 /// A model without what its other effects explain, each effect in its simplest form.
 fn reduced(selector: &mut Selector<'_, '_>, grown: Fit, progress: Progress<'_>) -> Result<Fit, DiagnoseError> {
     progress("dropping what the others explain", done::ELIMINATION);
@@ -204,7 +256,7 @@ fn grow(
         let next = match open {
             _ if full => None,
             Open::Laws if laws_first => selector.strongest_name_or_law(&screened, &best)?,
-            Open::Names | Open::Laws => selector.strongest(&screened, &best)?,
+            Open::Names | Open::Numbers | Open::Laws => selector.strongest(&screened, &best)?,
             Open::TwoLaws => selector.strongest_name_or_law(&screened, &best)?,
         };
         if let Some(next) = next {
@@ -243,8 +295,20 @@ fn grow(
             selector.held_out_ratio(&best) <= limit
         };
         let laws = selector.laws_of(&best.point);
+        let lacks_more = !full && !reaches_noise();
+        if open == Open::Names && lacks_more && selector.can_have_wrong_numbers() {
+            let beside_names = completed_by_numbers(selector, &best, progress)?;
+            let completed = match beside_names {
+                None if !best.point.effects.is_empty() => completed_by_numbers(selector, calibrated, progress)?,
+                other => other,
+            };
+            if let Some(completed) = completed {
+                (best, open) = (completed, Open::Laws);
+                continue;
+            }
+        }
         let next = match open {
-            Open::Names if !full && !reaches_noise() => Some(Open::Laws),
+            Open::Names if lacks_more => Some(Open::Laws),
             Open::Laws if !full && incomplete && selector.can_have_two_laws() => Some(Open::TwoLaws),
             _ => None,
         };
@@ -356,6 +420,49 @@ mod tests {
         };
         assert_eq!(anew(Open::Laws), Some(vec![CUBIC]));
         assert_eq!(anew(Open::Names), None);
+    }
+
+    #[test]
+    fn a_wrong_number_is_asked_before_laws_and_is_the_answer_only_if_nothing_is_left() {
+        let with = |truth: Vec<(usize, Vec<f64>)>| {
+            let mut specimen = Recipe {
+                truth,
+                candidates: vec![CUBIC, FRICTION, VIBRATION],
+                ..Recipe::default()
+            }
+            .make();
+            specimen.become_number(FRICTION);
+            specimen.take_name(CUBIC, Site::Mount);
+            found(&select(&LeastSquares::new(&specimen, &RUN), &|_, _| {}).expect("a selection"))
+        };
+        let (law, number, name) = ((CUBIC, vec![0.4]), (FRICTION, vec![0.1]), (VIBRATION, vec![0.1, 1.03]));
+        assert_eq!(with(vec![number.clone()]), [FRICTION]);
+        assert_eq!(with(vec![number.clone(), name]), [FRICTION, VIBRATION]);
+        // The number explains a part of what the law does.
+        assert_eq!(with(vec![law.clone()]), [CUBIC]);
+        assert_eq!(with(vec![law, number]), [CUBIC, FRICTION]);
+        assert_eq!(with(vec![]), [] as [usize; 0]);
+    }
+
+    #[test]
+    fn a_wrong_number_takes_the_place_of_faults_only_where_it_needs_fewer_effects() {
+        let mut specimen = Recipe {
+            truth: vec![(CUBIC, vec![0.4])],
+            candidates: vec![CUBIC, GAIN, FRICTION],
+            ..Recipe::default()
+        }
+        .make();
+        specimen.become_number(CUBIC);
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut selector = Selector::new(&problem);
+        let calibrated = selector.fitted(Point::nominal(&specimen)).expect("a fit");
+        let mut asked = |faults: usize| {
+            let point = (0..faults).fold(Point::nominal(&specimen), |p, _| p.with_effect(&specimen, GAIN, &[0.0]));
+            let best = selector.fitted(point).expect("a fit");
+            let other = with_numbers_in_place_of_faults(&mut selector, &calibrated, &best, &|_, _| {});
+            other.expect("fits").map(|fit| fit.point.effects)
+        };
+        assert_eq!((asked(1), asked(2)), (None, Some(vec![CUBIC])));
     }
 
     #[test]

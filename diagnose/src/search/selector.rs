@@ -19,6 +19,8 @@ use crate::specimen::{Folding, Specimen};
 pub enum Open {
     /// Effects of the vocabulary.
     Names,
+    /// Numbers of the model that may be other than believed, too.
+    Numbers,
     /// Laws without a name too. Of those that exclude each other at their place only, a model has one.
     Laws,
     /// The same, and a model has two of them.
@@ -139,6 +141,7 @@ impl<'p, 'a> Selector<'p, 'a> {
             let candidate = self.candidate(c);
             let closed = match open {
                 Open::Names => candidate.is_unlisted(),
+                Open::Numbers => candidate.is_law(),
                 Open::Laws => candidate.one_of_several && laws >= 1,
                 Open::TwoLaws => candidate.one_of_several && laws >= 2,
             };
@@ -157,6 +160,11 @@ impl<'p, 'a> Selector<'p, 'a> {
     /// Whether there are laws without a name of which a model can have two.
     pub fn can_have_two_laws(&self) -> bool {
         self.testable.iter().any(|&c| self.candidate(c).one_of_several)
+    }
+
+    /// Whether there are numbers of the model that may be other than believed.
+    pub fn can_have_wrong_numbers(&self) -> bool {
+        self.testable.iter().any(|&c| self.candidate(c).is_believed_number)
     }
 
     /// Screens candidates beside a fitted model, each once.
@@ -180,7 +188,7 @@ impl<'p, 'a> Selector<'p, 'a> {
         let acceptance = &self.criteria().acceptance;
         let candidate = self.candidate(candidate);
         let stays_incomplete = fraction > acceptance.least_fraction;
-        if candidate.is_unlisted() || (candidate.is_instrument_fault() && stays_incomplete) {
+        if candidate.is_law() || (candidate.is_instrument_fault() && stays_incomplete) {
             fraction.max(acceptance.least_fraction_incomplete)
         } else {
             fraction

@@ -8,7 +8,7 @@ use oleo_plant_sim::model_file::names::suggestion;
 use super::draw::Draw;
 use super::flaw::Flaw;
 use crate::effect::in_struts;
-use crate::effect::unlisted::{pairs_of_variants, periodic_variants};
+use crate::effect::unlisted::{pairs_of_variants, periodic_variants, variants_of_believed_numbers};
 use crate::vocabulary::EffectId;
 
 /// Sizes asked for, in units of noise (RMS over all channels and samples, after recalibration).
@@ -39,6 +39,11 @@ pub const TWO_LAWS: &str = "two_laws";
 const TWO_LAWS_SIZES: [f64; 3] = [3.0, 10.0, 30.0];
 /// Campaigns with two laws in a round.
 const TWO_LAWS_PER_ROUND: usize = 6;
+
+/// Name of a campaign in which a number of the model is another than believed.
+pub const WRONG_NUMBER: &str = "wrong_number";
+/// Its sizes.
+const WRONG_NUMBER_SIZES: [f64; 3] = [1.0, 5.0, 30.0];
 
 /// What a self-test is to do.
 #[derive(Debug, Clone)]
@@ -85,6 +90,8 @@ pub enum Subject {
     Periodic,
     /// Two laws without a name at different places.
     TwoLaws,
+    /// A number of the model that is another than believed.
+    WrongNumber,
 }
 
 /// A text that names no subject of a self-test.
@@ -95,7 +102,9 @@ pub struct UnknownTerm(String);
 /// The terms, and which was probably meant.
 fn suggested(text: &str) -> String {
     let effects = in_struts().into_iter().map(EffectId::as_str);
-    let known: Vec<&str> = effects.chain([COMPLETE, PAIR, TRIPLE, PERIODIC, TWO_LAWS]).collect();
+    let known: Vec<&str> = effects
+        .chain([COMPLETE, PAIR, TRIPLE, PERIODIC, TWO_LAWS, WRONG_NUMBER])
+        .collect();
     suggestion(text, &known, "terms")
 }
 
@@ -109,6 +118,7 @@ impl FromStr for Subject {
             TRIPLE => Ok(Self::Triple),
             PERIODIC => Ok(Self::Periodic),
             TWO_LAWS => Ok(Self::TwoLaws),
+            WRONG_NUMBER => Ok(Self::WrongNumber),
             _ => (in_struts().into_iter().find(|term| term.as_str() == text))
                 .map(Self::Effect)
                 .ok_or_else(|| UnknownTerm(text.to_owned())),
@@ -174,6 +184,9 @@ impl Plan {
         if self.subjects.contains(&Subject::Periodic) {
             self.periodic(round, cases);
         }
+        if self.subjects.contains(&Subject::WrongNumber) {
+            self.wrong_number(round, cases);
+        }
         if self.subjects.contains(&Subject::TwoLaws) {
             self.two_laws(round, cases);
         }
@@ -198,6 +211,20 @@ impl Plan {
                     flaw: None,
                 });
             }
+        }
+    }
+
+    /// Every number of the model that may be another than believed. They are concealed only where they are asked for.
+    fn wrong_number(&self, round: usize, cases: &mut Vec<Case>) {
+        for (k, variant) in variants_of_believed_numbers().enumerate() {
+            let size = WRONG_NUMBER_SIZES[(round + k) % WRONG_NUMBER_SIZES.len()];
+            cases.push(Case {
+                name: format!("{}:{WRONG_NUMBER}:{round}:{variant}:{size}", self.seed),
+                hidden: vec![(EffectId::Unlisted, size)],
+                variants: vec![variant],
+                left_out: None,
+                flaw: None,
+            });
         }
     }
 

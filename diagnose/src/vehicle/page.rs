@@ -88,13 +88,15 @@ pub fn headline(diagnosis: &VehicleDiagnosis) -> String {
              stretches with RMS errors of at most {after} times the noise."
         ),
         Verdict::MissingPhysics => {
-            let found: Vec<String> = (diagnosis.effects.iter())
-                .filter(|e| e.effect.selected.is_some())
-                .map(phrase)
-                .collect();
+            let found = |wrong_number: bool| -> Vec<String> {
+                let found = diagnosis.effects.iter().filter(|e| e.effect.selected.is_some());
+                (found.filter(|e| e.effect.is_wrong_number() == wrong_number))
+                    .map(phrase)
+                    .collect()
+            };
             format!(
-                "The model leaves out {}. At the worst corner the held-out RMS error falls from {} to {after} times the noise.",
-                found.join("; "),
+                "{}. At the worst corner the held-out RMS error falls from {} to {after} times the noise.",
+                words::of_the_model(&found(false).join("; "), &found(true).join("; ")),
                 ratios(|d| d.selection.calibrated_ratio),
             )
         }

@@ -42,9 +42,9 @@ pub struct Args {
     )]
     seed: u64,
     /// Conceal only these, separated by commas: ids of effects, none (the model is complete), pair (two effects), triple (three
-    /// effects), periodic (a law without a name that swings in time, in six places and three sizes) or two_laws (two laws
-    /// without a name at different places) [default: all but the last three, which would change what the first N campaigns of
-    /// a seed are]
+    /// effects), periodic (a law without a name that swings in time, in six places and three sizes), two_laws (two laws
+    /// without a name at different places) or wrong_number (a number of the model that is another than believed) [default: all
+    /// but the last four, which would change what the first N campaigns of a seed are]
     #[arg(
         long,
         value_name = "A,B",
@@ -138,7 +138,7 @@ impl Args {
         };
         if plan.without_names && plan.subjects.iter().any(|s| !matches!(s, Subject::Effect(_))) {
             return Err(Failure::new(
-                "--terms: none, pair, triple, periodic and two_laws cannot be combined with --without-names; give ids of effects",
+                "--terms: none, pair, triple, periodic, two_laws and wrong_number cannot be combined with --without-names; give ids of effects",
             ));
         }
         let cases = plan.cases();

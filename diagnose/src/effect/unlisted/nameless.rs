@@ -3,7 +3,9 @@
 use oleo_plant_sim::strut::{Equation, StrutModel, TermId};
 
 use super::words::NamelessLaw;
-use super::{co_simulation_laws, cylinder_laws, gas_spring_laws, mechanism_laws, strut_laws, textbook};
+use super::{
+    believed_numbers, co_simulation_laws, cylinder_laws, gas_spring_laws, mechanism_laws, strut_laws, textbook,
+};
 use crate::effect::candidate::Candidate;
 use crate::effect::contract::{
     ActsOn, CoSimulation, Concealed, Cylinder, Effect, Experiment, GasSpring, Mechanism, Strut, StrutEffect,
@@ -28,6 +30,14 @@ impl Effect for Unlisted {
         "the law is a table that was fitted to the recordings"
     }
 
+    fn meaning_in(&self, kind: SpecimenKind, label: &str) -> &'static str {
+        let of_number = match kind {
+            SpecimenKind::TwoStageStrut => believed_numbers::meaning(label),
+            _ => None,
+        };
+        of_number.unwrap_or(self.meaning())
+    }
+
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
         &[]
     }
@@ -48,17 +58,19 @@ impl Effect for Unlisted {
     fn equation_in(&self, kind: SpecimenKind, label: &str) -> Option<Equation> {
         let tabulated = TermId::Unlisted.equation();
         Some(match kind {
-            SpecimenKind::TwoStageStrut => strut_laws::closed(label).map_or(tabulated, |closed| Equation {
-                text: closed.equation,
-                source: tabulated.source,
-            }),
+            SpecimenKind::TwoStageStrut if words(kind, label).is_none() => {
+                strut_laws::closed(label).map_or(tabulated, |closed| Equation {
+                    text: closed.equation,
+                    source: tabulated.source,
+                })
+            }
             _ => words(kind, label).map_or(tabulated, |law| law.equation),
         })
     }
 
     fn symbol_in(&self, kind: SpecimenKind, label: &str, key: &str) -> Option<&'static str> {
         match kind {
-            SpecimenKind::TwoStageStrut => strut_laws::symbol(label, key),
+            SpecimenKind::TwoStageStrut => believed_numbers::symbol(label).or_else(|| strut_laws::symbol(label, key)),
             _ => self.symbol(key),
         }
     }
@@ -84,10 +96,11 @@ impl Effect for Unlisted {
     }
 }
 
-/// Words of a law of one number; `None` for a table, which the laws of struts and of somebody else's models are.
+/// Words of a law of one number or of a wrong number; `None` for a table, which the laws of struts and of somebody else's models are.
 fn words(kind: SpecimenKind, label: &str) -> Option<NamelessLaw> {
     match kind {
-        SpecimenKind::TwoStageStrut | SpecimenKind::CoSimulation => None,
+        SpecimenKind::TwoStageStrut => believed_numbers::words(label),
+        SpecimenKind::CoSimulation => None,
         SpecimenKind::GasSpring => gas_spring_laws::words(label),
         SpecimenKind::Cylinder => cylinder_laws::words(label),
         SpecimenKind::Damper | SpecimenKind::Drive => mechanism_laws::words(label),
@@ -99,15 +112,16 @@ impl ActsOn<Strut> for Unlisted {
         TermId::Unlisted.equation()
     }
 
-    fn candidates(&self, _model: &StrutModel, excitation: &excitation::Strut) -> Vec<Candidate> {
-        strut_laws::candidates(excitation.duration_s)
+    fn candidates(&self, model: &StrutModel, excitation: &excitation::Strut) -> Vec<Candidate> {
+        let laws = strut_laws::candidates(excitation.duration_s);
+        believed_numbers::candidates(model).chain(laws).collect()
     }
 
     fn put(&self, model: &mut StrutModel, candidate: &Candidate, values: &[f64]) {
-        model
-            .effects
-            .unlisted
-            .extend(strut_laws::table(&candidate.label, values));
+        if !believed_numbers::put(model, &candidate.label, values) {
+            let law = strut_laws::table(&candidate.label, values);
+            model.effects.unlisted.extend(law);
+        }
     }
 
     fn experiment(&self) -> Experiment {
@@ -128,8 +142,10 @@ impl Concealed for Unlisted {
     }
 
     fn put_true(&self, model: &mut StrutModel, drawn: &Drawn, amount: f64) -> Vec<TrueNumber> {
-        let (law, numbers) = textbook::law(drawn, amount);
-        model.effects.unlisted.push(law);
-        numbers
+        believed_numbers::put_true(model, drawn, amount).unwrap_or_else(|| {
+            let (law, numbers) = textbook::law(drawn, amount);
+            model.effects.unlisted.push(law);
+            numbers
+        })
     }
 }

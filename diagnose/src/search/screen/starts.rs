@@ -119,7 +119,7 @@ impl Screen<'_, '_> {
         let own: Vec<f64> = description.parameters.iter().map(|p| p.start).collect();
         let starts: Vec<&Vec<f64>> = std::iter::once(&own).chain(&description.starts).collect();
         let look = self.first_look(candidate);
-        if description.is_unlisted() && description.absent_at(&own) {
+        if description.is_law() && description.absent_at(&own) {
             return self.begin_law(look, candidate, &starts).map(Begun::of);
         }
         let mut best: Option<ScreenedCandidate> = None;
@@ -128,7 +128,7 @@ impl Screen<'_, '_> {
             self.begin_at(look, candidate, start, known, &mut best)?;
         }
         let mut begun = Begun::of(best);
-        if description.is_unlisted() || description.is_instrument_fault() || !is_gross(self.problem, self.fit) {
+        if description.is_law() || description.is_instrument_fault() || !is_gross(self.problem, self.fit) {
             return Ok(begun);
         }
         for start in starts {

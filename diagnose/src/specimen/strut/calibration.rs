@@ -143,3 +143,29 @@ pub fn of(model: &StrutModel, layout: Layout) -> (Vec<Calibration>, Vec<Paramete
     }
     out.into_iter().unzip()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::excitation;
+    use crate::specimen::strut::candidates::candidates;
+
+    #[test]
+    fn what_replaces_a_tolerance_replaces_one_that_the_model_can_state() {
+        let mut model = StrutModel::defender110(8000.0);
+        let keys =
+            "static_gas_volume static_pressure flow_coefficient oil_volume bulk_modulus time_constant temperature_K";
+        model.tolerance = keys.split(' ').map(|key| (key.to_owned(), 0.01)).collect();
+        let (_, parameters) = of(&model, Layout::RIG);
+        let all = candidates(&model, &excitation::Strut::of_everything(), Layout::RIG);
+        let mut replaced: Vec<&str> = all.iter().filter_map(|c| c.replaces).collect();
+        assert!(
+            replaced.iter().all(|key| parameters.iter().any(|p| p.key == *key)),
+            "{replaced:?}"
+        );
+        // The gas volumes are left: their error has a name.
+        replaced.sort_unstable();
+        replaced.dedup();
+        assert_eq!(replaced.len() + 2, parameters.len());
+    }
+}

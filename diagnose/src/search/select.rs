@@ -184,6 +184,21 @@ fn with_numbers_in_place_of_faults(
     }))
 }
 
+/// The first of these models that wrong numbers complete: one with names, which may have a part each of what one number explains, or the one without any.
+fn completed_by_numbers_from(
+    selector: &mut Selector<'_, '_>,
+    [with_names, calibrated]: [&Fit; 2],
+    progress: Progress<'_>,
+) -> Result<Option<Fit>, DiagnoseError> {
+    if !selector.can_have_wrong_numbers() {
+        return Ok(None);
+    }
+    match completed_by_numbers(selector, with_names, progress)? {
+        None if !with_names.point.effects.is_empty() => completed_by_numbers(selector, calibrated, progress),
+        other => Ok(other),
+    }
+}
+
 /// A model that wrong numbers complete, with names beside them; `None` if none does. A wrong number is as rigid as a name, and so are few of them: they are
 /// asked before laws, which bend to more, and are the answer only where nothing is left.
 fn completed_by_numbers(
@@ -201,13 +216,21 @@ fn completed_by_numbers(
             None => break,
         }
     }
-    let complete =
-        |selector: &Selector<'_, '_>, fit: &Fit| selector.held_out_ratio(fit) <= selector.complete_up_to(fit);
-    if !complete(selector, &grown) {
+    let is_answer = |selector: &Selector<'_, '_>, fit: &Fit| {
+        let has_number = (fit.point.effects.iter()).any(|&e| selector.candidate(e).is_believed_number);
+        has_number && reaches_noise(selector, fit)
+    };
+    if !is_answer(selector, &grown) {
         return Ok(None);
     }
     let reduced = reduced(selector, grown, progress)?;
-    Ok(complete(selector, &reduced).then_some(reduced))
+    Ok(is_answer(selector, &reduced).then_some(reduced))
+}
+
+/// Whether a model leaves so little that no law without a name is looked for.
+fn reaches_noise(selector: &Selector<'_, '_>, fit: &Fit) -> bool {
+    let limit = (selector.criteria().completeness.law_noise_ratio).max(selector.floor(fit));
+    selector.held_out_ratio(fit) <= limit
 }
 
 /// A model without what its other effects explain, each effect in its simplest form.
@@ -275,6 +298,13 @@ fn grow(
                 continue;
             }
         }
+        let lacks_more = !full && !reaches_noise(selector, &best);
+        if let (Open::Names, true) = (open, lacks_more)
+            && let Some(completed) = completed_by_numbers_from(selector, [&best, calibrated], progress)?
+        {
+            (best, open) = (completed, Open::Numbers);
+            continue;
+        }
         if !full && open == Open::Names && selector.is_far_from_complete(&best, calibrated) {
             progress("trying combinations", screening + done::FITTING_AFTER_SCREENING);
             let end = Screening {
@@ -290,23 +320,7 @@ fn grow(
                 continue;
             }
         }
-        let reaches_noise = || {
-            let limit = criteria.completeness.law_noise_ratio.max(selector.floor(&best));
-            selector.held_out_ratio(&best) <= limit
-        };
         let laws = selector.laws_of(&best.point);
-        let lacks_more = !full && !reaches_noise();
-        if open == Open::Names && lacks_more && selector.can_have_wrong_numbers() {
-            let beside_names = completed_by_numbers(selector, &best, progress)?;
-            let completed = match beside_names {
-                None if !best.point.effects.is_empty() => completed_by_numbers(selector, calibrated, progress)?,
-                other => other,
-            };
-            if let Some(completed) = completed {
-                (best, open) = (completed, Open::Laws);
-                continue;
-            }
-        }
         let next = match open {
             Open::Names if lacks_more => Some(Open::Laws),
             Open::Laws if !full && incomplete && selector.can_have_two_laws() => Some(Open::TwoLaws),
@@ -333,11 +347,12 @@ fn grow(
             best,
             screened,
             scores,
-            // A second law takes no effect's place.
-            open: if open == Open::TwoLaws && laws < 2 {
-                Open::Laws
-            } else {
-                open
+            open: match open {
+                // A second law takes no effect's place.
+                Open::TwoLaws if laws < 2 => Open::Laws,
+                // A law may be what looks like a wrong number.
+                Open::Numbers => Open::Laws,
+                open => open,
             },
             law_pairs,
         });

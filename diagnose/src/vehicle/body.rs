@@ -8,8 +8,8 @@ use super::model::VehicleModel;
 use crate::body::{Believed, BodyDrive, BodyEffect, BodyEffectId, BodyFindings, find};
 
 /// What a payload means for what is said of the struts, which know nothing of the balance.
-const STRUTS_UNDER_A_LOAD: &str = "What is said of the struts holds only if their files state the static pressure under this load \
-                                   (static_pressure_Pa is p1 at rest); otherwise it is the load, under other names.";
+const STRUTS_UNDER_A_LOAD: &str = "Wrong static pressures of the struts are this load. What else is said of the struts is sure only if \
+                                   their files state the static pressure under the load (static_pressure_Pa is p1 at rest).";
 
 /// A believed body with drives that have an inertial unit.
 pub struct BodyCampaign {

@@ -6,6 +6,9 @@ mod support;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use oleo_plant_sim::strut::StrutModel;
+use serde_json::Value;
+
 fn oleo(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_oleo"))
         .args(arguments)
@@ -97,6 +100,49 @@ fn a_saved_campaign_is_one_like_any_other() {
         ],
     );
     assert!(predicted.status.success(), "{}", text(&predicted.stderr));
+}
+
+#[test]
+fn a_wrong_number_is_named_and_the_improved_model_states_the_true_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let conceal = "diagnose --self-test --terms wrong_number --seed 41 --campaigns 2 --save --out saved";
+    let saved = oleo(folder.path(), &conceal.split(' ').collect::<Vec<_>>());
+    assert!(saved.status.success(), "{}", text(&saved.stderr));
+    // The second one is a bore, which looks like the gains of two sensors.
+    let campaign = folder.path().join("saved/41_wrong_number_0_19_5");
+    let campaign = campaign.to_string_lossy();
+    let ran = oleo(folder.path(), &["diagnose", &campaign, "--out", "found"]);
+    assert!(ran.status.success(), "{}", text(&ran.stderr));
+    let json = |path: &str| -> Value {
+        let text = std::fs::read_to_string(folder.path().join(path)).expect("a file");
+        serde_json::from_str(&text).expect("JSON")
+    };
+    let report = json("found/report.json");
+    let effects = report["effects"].as_array().expect("a list");
+    assert_eq!(effects.len(), 1, "{effects:?}");
+    let (effect, bore) = (&effects[0], &effects[0]["parameters"]["bore_m"]);
+    assert_eq!(
+        (&effect["id"], &effect["place"]),
+        (&"unlisted".into(), &"main-chamber".into())
+    );
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let bore_of = |path: String| {
+        let text = std::fs::read_to_string(folder.path().join(&path)).expect("a model");
+        StrutModel::from_toml(&text, &path).expect("a strut").cylinder.bore_m
+    };
+    let (believed, found) = (
+        bore_of(format!("{campaign}/model.toml")),
+        bore_of("found/model.toml".into()),
+    );
+    let truth = number(&json(&format!("{campaign}/answer.json"))["truth"][0]["value"]);
+    let ends = [0, 1].map(|end| number(&bore["ci95"][end]));
+    assert!(ends[0] <= truth && truth <= ends[1] && (believed - truth).abs() > 3.0 * (ends[1] - ends[0]));
+    assert!((found - number(&bore["value"])).abs() < 1e-9);
+    let equation = effect["equation"].as_str().expect("a text");
+    assert!(
+        equation.starts_with("bore_m = ") && equation.contains("believed to be"),
+        "{equation}"
+    );
 }
 
 #[test]

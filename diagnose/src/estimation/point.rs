@@ -44,8 +44,15 @@ impl Point {
         let candidates = specimen.candidates();
         let parameter = self.parameters(specimen)[coordinate];
         let needs = (parameter.only_beside).is_none_or(|id| self.effects.iter().any(|&e| candidates[e].id == id));
-        let is_replaced = (self.effects.iter()).any(|&e| candidates[e].replaces == Some(&parameter.key));
-        needs && !is_replaced
+        needs && !self.is_replaced(specimen, coordinate)
+    }
+
+    /// Whether a coordinate is a calibration value in whose place an effect of this model stands.
+    fn is_replaced(&self, specimen: &dyn Specimen, coordinate: usize) -> bool {
+        let candidates = specimen.candidates();
+        // A number of an effect may have the key of the calibration value that it replaces.
+        (specimen.calibration().get(coordinate))
+            .is_some_and(|p| self.effects.iter().any(|&e| candidates[e].replaces == Some(&p.key)))
     }
 
     /// Range of every coordinate. A calibration value of which an effect takes over a part is freed from its tolerance; one that an effect replaces stays at
@@ -54,10 +61,9 @@ impl Point {
     pub fn ranges(&self, specimen: &dyn Specimen) -> Vec<(f64, f64)> {
         let candidates = specimen.candidates();
         let freed = |key: &str| (self.effects.iter()).any(|&e| candidates[e].takes_from == Some(key));
-        let replaced = |key: &str| (self.effects.iter()).any(|&e| candidates[e].replaces == Some(key));
         (self.parameters(specimen).iter().enumerate())
             .map(|(k, p)| {
-                if k < specimen.calibration().len() && replaced(&p.key) {
+                if self.is_replaced(specimen, k) {
                     (0.0, 0.0)
                 } else if freed(&p.key) {
                     p.z_range()
@@ -168,6 +174,8 @@ mod tests {
     fn the_tolerance_of_a_number_that_an_effect_puts_right_is_not_fitted() {
         let mut specimen = Recipe::default().make();
         let key = specimen.calibration()[1].key.clone();
+        // The effect's own number has the same key, and is fitted.
+        specimen.take_key(CUBIC, &key);
         specimen.replace(CUBIC, key.leak());
         let nominal = Point::nominal(&specimen);
         let beside = nominal.with_effect(&specimen, CUBIC, &[0.2]);
@@ -175,5 +183,7 @@ mod tests {
         let usual = specimen.calibration()[0].tolerated_z_range();
         assert_eq!(fitted(&nominal).map(|(matters, _)| matters), [true, true]);
         assert_eq!(fitted(&beside), [(true, usual), (false, (0.0, 0.0))]);
+        let own = beside.coordinates_of(&specimen, 0).start;
+        assert!(beside.matters(&specimen, own) && beside.ranges(&specimen)[own] != (0.0, 0.0));
     }
 }

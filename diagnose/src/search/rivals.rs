@@ -75,6 +75,9 @@ impl Selector<'_, '_> {
         mut candidates: Vec<usize>,
     ) -> Result<Option<(usize, Fit)>, DiagnoseError> {
         candidates.retain(|&c| c != candidate && !includes(self.candidate(c), self.candidate(candidate)));
+        if candidates.is_empty() {
+            return Ok(None);
+        }
         let screened = self.screen(less, candidates)?;
         let Some((cost, start)) = ranked(&screened).into_iter().next() else {
             return Ok(None);

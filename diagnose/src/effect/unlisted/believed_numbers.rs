@@ -1,6 +1,6 @@
 //! Numbers of a strut's model that are other than believed, by more than their tolerance.
 //!
-//! A model of which one number is wrong lacks no law, and yet what it predicts is off: a pack that was rebuilt, an oil of another bulk modulus, a valve with
+//! A model of which one number is wrong lacks no law, and yet what it predicts is off: a damper that was rebuilt, an oil of another bulk modulus, a valve with
 //! another orifice. Each row is a number of the model file, or several that go together, and the one relative departure that is fitted. The gas volumes are not
 //! among them, since they have a name: the gas charge error.
 

@@ -9,6 +9,17 @@ use crate::estimation::{Fit, Point, covariance};
 const NEXT_TO_NOTHING: f64 = 1e-3;
 
 impl Selector<'_, '_> {
+    /// A model without what its other effects explain, each effect in its simplest form.
+    pub fn reduced(&mut self, grown: Fit) -> Result<Fit, DiagnoseError> {
+        let mut fraction = self.criteria().acceptance.least_fraction;
+        let mut best = self.eliminate(grown, fraction)?;
+        if self.held_out_ratio(&best) > self.complete_up_to(&best) {
+            fraction = self.fraction_of_incomplete();
+            best = self.eliminate(best, fraction)?;
+        }
+        self.simplify(best, fraction)
+    }
+
     /// Drops effects, one at a time and the weakest first, until each that is left is accepted beside the others.
     pub fn eliminate(&mut self, mut best: Fit, fraction: f64) -> Result<Fit, DiagnoseError> {
         while let Some(less) = self.without_weakest(&best, fraction)? {

@@ -23,6 +23,7 @@ mod elimination;
 pub mod evidence;
 mod fits;
 mod forward;
+mod numbers;
 mod oscillation;
 mod power;
 mod restart;

@@ -37,7 +37,7 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
         grown.law_pairs = grown.law_pairs.max(first.law_pairs);
         best = reduced(&mut selector, grown.best.clone(), progress)?;
     }
-    if let Some(other) = with_numbers_in_place_of_faults(&mut selector, &calibrated, &best, progress)? {
+    if let Some(other) = selector.with_numbers_in_place_of_faults(&calibrated, &best)? {
         best = other;
         grown.open = Open::Laws;
     }
@@ -155,94 +155,17 @@ fn grown_with_laws_first(
     }
     let anew = grow(selector, calibrated, calibrated.clone(), Open::Laws, progress)?;
     let other = reduced(selector, anew.best.clone(), progress)?;
-    let fraction = fraction_of_incomplete(selector.problem);
+    let fraction = selector.fraction_of_incomplete();
     let better = selector.improves(best, &other, fraction);
     let as_good_with_fewer =
         other.point.effects.len() < best.point.effects.len() && !selector.improves(&other, best, fraction);
     Ok((better || as_good_with_fewer).then_some((anew, other)))
 }
 
-/// Faults of instruments from which on a wrong number of the model is asked whether it is behind them: another bore looks like two gains.
-const FAULTS_OF_ONE_NUMBER: usize = 2;
-
-/// A complete model with wrong numbers in the place of faults of instruments; `None` if it does not take fewer effects.
-fn with_numbers_in_place_of_faults(
-    selector: &mut Selector<'_, '_>,
-    calibrated: &Fit,
-    best: &Fit,
-    progress: Progress<'_>,
-) -> Result<Option<Fit>, DiagnoseError> {
-    let effects = &best.point.effects;
-    let faults = effects.iter().filter(|&&e| selector.candidate(e).is_instrument_fault());
-    if faults.count() < FAULTS_OF_ONE_NUMBER || !selector.can_have_wrong_numbers() {
-        return Ok(None);
-    }
-    let other = completed_by_numbers(selector, calibrated, progress)?;
-    Ok(other.filter(|other| {
-        let fewer = other.point.effects.len() < effects.len();
-        fewer && !selector.improves(other, best, selector.criteria().acceptance.least_fraction)
-    }))
-}
-
-/// The first of these models that wrong numbers complete: one with names, which may have a part each of what one number explains, or the one without any.
-fn completed_by_numbers_from(
-    selector: &mut Selector<'_, '_>,
-    [with_names, calibrated]: [&Fit; 2],
-    progress: Progress<'_>,
-) -> Result<Option<Fit>, DiagnoseError> {
-    if !selector.can_have_wrong_numbers() {
-        return Ok(None);
-    }
-    match completed_by_numbers(selector, with_names, progress)? {
-        None if !with_names.point.effects.is_empty() => completed_by_numbers(selector, calibrated, progress),
-        other => Ok(other),
-    }
-}
-
-/// A model that wrong numbers complete, with names beside them; `None` if none does. A wrong number is as rigid as a name, and so are few of them: they are
-/// asked before laws, which bend to more, and are the answer only where nothing is left.
-fn completed_by_numbers(
-    selector: &mut Selector<'_, '_>,
-    from: &Fit,
-    progress: Progress<'_>,
-) -> Result<Option<Fit>, DiagnoseError> {
-    progress("trying other numbers of the model", done::FITTING_AFTER_SCREENING);
-    let most = selector.criteria().acceptance.most_effects;
-    let mut grown = from.clone();
-    while grown.point.effects.len() < most {
-        let screened = selector.screen_in_passing(&grown, selector.open(&grown.point, Open::Numbers))?;
-        match selector.strongest(&screened, &grown)? {
-            Some(next) => grown = next,
-            None => break,
-        }
-    }
-    let is_answer = |selector: &Selector<'_, '_>, fit: &Fit| {
-        let has_number = (fit.point.effects.iter()).any(|&e| selector.candidate(e).is_believed_number);
-        has_number && reaches_noise(selector, fit)
-    };
-    if !is_answer(selector, &grown) {
-        return Ok(None);
-    }
-    let reduced = reduced(selector, grown, progress)?;
-    Ok(is_answer(selector, &reduced).then_some(reduced))
-}
-
-/// Whether a model leaves so little that no law without a name is looked for.
-fn reaches_noise(selector: &Selector<'_, '_>, fit: &Fit) -> bool {
-    let limit = (selector.criteria().completeness.law_noise_ratio).max(selector.floor(fit));
-    selector.held_out_ratio(fit) <= limit
-}
-
 /// A model without what its other effects explain, each effect in its simplest form.
 fn reduced(selector: &mut Selector<'_, '_>, grown: Fit, progress: Progress<'_>) -> Result<Fit, DiagnoseError> {
     progress("dropping what the others explain", done::ELIMINATION);
-    let mut fraction = selector.criteria().acceptance.least_fraction;
-    let mut best = selector.eliminate(grown, fraction)?;
-    if selector.held_out_ratio(&best) > selector.complete_up_to(&best) {
-        fraction = fraction_of_incomplete(selector.problem);
-        best = selector.eliminate(best, fraction)?;
-    }
-    selector.simplify(best, fraction)
+    selector.reduced(grown)
 }
 
 /// Adds effects to a model until none is accepted. Laws without a name are tried when no name is left and the noise is not reached; a second one, beside
@@ -298,12 +221,16 @@ fn grow(
                 continue;
             }
         }
-        let lacks_more = !full && !reaches_noise(selector, &best);
-        if let (Open::Names, true) = (open, lacks_more)
-            && let Some(completed) = completed_by_numbers_from(selector, [&best, calibrated], progress)?
-        {
-            (best, open) = (completed, Open::Numbers);
-            continue;
+        let lacks_more = !full && !selector.reaches_noise(&best);
+        if open == Open::Names && lacks_more {
+            progress(
+                "trying other numbers of the model",
+                screening + done::FITTING_AFTER_SCREENING,
+            );
+            if let Some(completed) = selector.completed_by_numbers([&best, calibrated])? {
+                (best, open) = (completed, Open::Numbers);
+                continue;
+            }
         }
         if !full && open == Open::Names && selector.is_far_from_complete(&best, calibrated) {
             progress("trying combinations", screening + done::FITTING_AFTER_SCREENING);
@@ -356,17 +283,6 @@ fn grow(
             },
             law_pairs,
         });
-    }
-}
-
-/// Fraction of the unexplained cost that each effect of an incomplete model must explain.
-fn fraction_of_incomplete(problem: &LeastSquares<'_>) -> f64 {
-    let several_conditions =
-        problem.specimen().recordings().len() > 1 && problem.specimen().simulates_in_milliseconds();
-    if several_conditions {
-        problem.criteria.acceptance.least_fraction_conditions
-    } else {
-        problem.criteria.acceptance.least_fraction_incomplete
     }
 }
 
@@ -457,27 +373,6 @@ mod tests {
         assert_eq!(with(vec![law.clone()]), [CUBIC]);
         assert_eq!(with(vec![law, number]), [CUBIC, FRICTION]);
         assert_eq!(with(vec![]), [] as [usize; 0]);
-    }
-
-    #[test]
-    fn a_wrong_number_takes_the_place_of_faults_only_where_it_needs_fewer_effects() {
-        let mut specimen = Recipe {
-            truth: vec![(CUBIC, vec![0.4])],
-            candidates: vec![CUBIC, GAIN, FRICTION],
-            ..Recipe::default()
-        }
-        .make();
-        specimen.become_number(CUBIC);
-        let problem = LeastSquares::new(&specimen, &RUN);
-        let mut selector = Selector::new(&problem);
-        let calibrated = selector.fitted(Point::nominal(&specimen)).expect("a fit");
-        let mut asked = |faults: usize| {
-            let point = (0..faults).fold(Point::nominal(&specimen), |p, _| p.with_effect(&specimen, GAIN, &[0.0]));
-            let best = selector.fitted(point).expect("a fit");
-            let other = with_numbers_in_place_of_faults(&mut selector, &calibrated, &best, &|_, _| {});
-            other.expect("fits").map(|fit| fit.point.effects)
-        };
-        assert_eq!((asked(1), asked(2)), (None, Some(vec![CUBIC])));
     }
 
     #[test]

@@ -162,11 +162,6 @@ impl<'p, 'a> Selector<'p, 'a> {
         self.testable.iter().any(|&c| self.candidate(c).one_of_several)
     }
 
-    /// Whether there are numbers of the model that may be other than believed.
-    pub fn can_have_wrong_numbers(&self) -> bool {
-        self.testable.iter().any(|&c| self.candidate(c).is_believed_number)
-    }
-
     /// Screens candidates beside a fitted model, each once.
     pub fn screen(&mut self, fit: &Fit, candidates: Vec<usize>) -> Result<Vec<Screened>, DiagnoseError> {
         let fits = self.screenings.screen(self.problem, fit, &candidates)?;
@@ -193,6 +188,23 @@ impl<'p, 'a> Selector<'p, 'a> {
         } else {
             fraction
         }
+    }
+
+    /// Fraction of the unexplained cost that each effect of an incomplete model must explain.
+    pub fn fraction_of_incomplete(&self) -> f64 {
+        let (specimen, acceptance) = (self.specimen(), &self.criteria().acceptance);
+        let several_conditions = specimen.recordings().len() > 1 && specimen.simulates_in_milliseconds();
+        if several_conditions {
+            acceptance.least_fraction_conditions
+        } else {
+            acceptance.least_fraction_incomplete
+        }
+    }
+
+    /// Whether a model leaves so little that no law without a name is looked for.
+    pub fn reaches_noise(&self, fit: &Fit) -> bool {
+        let limit = (self.criteria().completeness.law_noise_ratio).max(self.floor(fit));
+        self.held_out_ratio(fit) <= limit
     }
 
     /// Noise ratio that a fitted model would reach if it were complete.

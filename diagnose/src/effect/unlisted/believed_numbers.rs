@@ -51,7 +51,8 @@ enum Reported {
     Factor,
 }
 
-const fn number(
+const fn row(
+    shown: Reported,
     label: &'static str,
     key: &'static str,
     site: Site,
@@ -64,26 +65,7 @@ const fn number(
         site,
         of,
         tolerance,
-        shown: Reported::Number,
-        below: f64::INFINITY,
-    }
-}
-
-/// Numbers that are a table or a polynomial.
-const fn numbers(
-    label: &'static str,
-    key: &'static str,
-    site: Site,
-    tolerance: Option<&'static str>,
-    of: fn(&mut StrutModel) -> Vec<&mut f64>,
-) -> BelievedNumber {
-    BelievedNumber {
-        label,
-        key,
-        site,
-        of,
-        tolerance,
-        shown: Reported::Factor,
+        shown,
         below: f64::INFINITY,
     }
 }
@@ -92,80 +74,96 @@ const fn numbers(
 const IN_EVERY_STRUT: usize = 14;
 
 static NUMBERS: [BelievedNumber; 19] = [
-    number(
+    row(
+        Reported::Number,
         "a wrong static pressure",
         "static_pressure_Pa",
         Site::MainChamber,
         Some("static_pressure"),
         |m| vec![&mut m.cylinder.static_pressure_pa],
     ),
-    number("a wrong bore", "bore_m", Site::MainChamber, None, |m| {
-        vec![&mut m.cylinder.bore_m]
-    }),
-    number(
+    row(
+        Reported::Number,
+        "a wrong bore",
+        "bore_m",
+        Site::MainChamber,
+        None,
+        |m| vec![&mut m.cylinder.bore_m],
+    ),
+    row(
+        Reported::Number,
         "a wrong oil volume",
         "oil_volume_m3",
         Site::MainChamber,
         Some("oil_volume"),
         |m| vec![&mut m.cylinder.oil_volume_m3],
     ),
-    number(
+    row(
+        Reported::Number,
         "a wrong bulk modulus of the oil",
         "bulk_modulus_Pa",
         Site::MainChamber,
         Some("bulk_modulus"),
         |m| (m.effects.oil_compressibility.iter_mut().map(|t| &mut t.bulk_modulus_pa)).collect(),
     ),
-    number(
+    row(
+        Reported::Number,
         "a wrong thermal time constant of accumulator 1",
         "time_constant_1_s",
         Site::Accumulator(Branch::First),
         Some("time_constant_1"),
         |m| (m.effects.gas_heat_transfer.iter_mut().map(|t| &mut t.time_constant_1_s)).collect(),
     ),
-    number(
+    row(
+        Reported::Number,
         "a wrong thermal time constant of accumulator 2",
         "time_constant_2_s",
         Site::Accumulator(Branch::Second),
         Some("time_constant_2"),
         |m| (m.effects.gas_heat_transfer.iter_mut().map(|t| &mut t.time_constant_2_s)).collect(),
     ),
-    numbers(
+    row(
+        Reported::Factor,
         "a wrong strength of damper 1",
         "pressure_drop_factor",
         Site::Path(Branch::First),
         None,
         |m| m.damper[0].pressure_drop_pa.iter_mut().collect(),
     ),
-    numbers(
+    row(
+        Reported::Factor,
         "a wrong strength of damper 2",
         "pressure_drop_factor",
         Site::Path(Branch::Second),
         None,
         |m| m.damper[1].pressure_drop_pa.iter_mut().collect(),
     ),
-    number(
+    row(
+        Reported::Number,
         "a wrong flow coefficient of valve 1",
         "flow_coefficient",
         Site::Valve(Bypass1),
         Some("flow_coefficient_1"),
         |m| vec![&mut m.valve[0].flow_coefficient],
     ),
-    number(
+    row(
+        Reported::Number,
         "a wrong flow coefficient of valve 2",
         "flow_coefficient",
         Site::Valve(Bypass2),
         Some("flow_coefficient_2"),
         |m| vec![&mut m.valve[1].flow_coefficient],
     ),
-    number(
+    row(
+        Reported::Number,
         "a wrong flow coefficient of valve 3",
         "flow_coefficient",
         Site::Valve(Spring),
         Some("flow_coefficient_3"),
         |m| vec![&mut m.valve[2].flow_coefficient],
     ),
-    numbers(
+    row(
+        Reported::Factor,
         "a wrong response time of the valves",
         "response_time_factor",
         Site::Valves,
@@ -181,7 +179,8 @@ static NUMBERS: [BelievedNumber; 19] = [
         shown: Reported::Number,
         below: 1.0,
     },
-    number(
+    row(
+        Reported::Number,
         "a wrong friction of the seal",
         "coulomb_force_N",
         Site::MainSeal,
@@ -193,14 +192,16 @@ static NUMBERS: [BelievedNumber; 19] = [
                 .collect()
         },
     ),
-    number(
+    row(
+        Reported::Number,
         "a wrong volume of entrained air",
         "volume_fraction",
         Site::MainChamber,
         None,
         |m| (m.effects.entrained_air.iter_mut().map(|t| &mut t.volume_fraction)).collect(),
     ),
-    number(
+    row(
+        Reported::Number,
         "a wrong temperature of the gas",
         "temperature_K",
         Site::Accumulators,
@@ -211,14 +212,16 @@ static NUMBERS: [BelievedNumber; 19] = [
             None => vec![],
         },
     ),
-    number(
+    row(
+        Reported::Number,
         "a wrong friction under side load",
         "coefficient",
         Site::MainSeal,
         None,
         |m| (m.effects.side_load_friction.iter_mut().map(|t| &mut t.coefficient)).collect(),
     ),
-    number(
+    row(
+        Reported::Number,
         "a wrong stiffness of the end stop",
         "stiffness_N_m",
         Site::EndStop,
@@ -229,7 +232,8 @@ static NUMBERS: [BelievedNumber; 19] = [
                 .collect()
         },
     ),
-    number(
+    row(
+        Reported::Number,
         "a wrong stiffness of the mount",
         "stiffness_N_m",
         Site::Mount,

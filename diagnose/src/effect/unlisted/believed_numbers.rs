@@ -7,6 +7,7 @@
 use std::ops::Range;
 
 use oleo_interface::Valve::{Bypass1, Bypass2, Spring};
+use oleo_plant_sim::model_file::Checked;
 use oleo_plant_sim::strut::{Equation, StrutModel};
 use oleo_report::significant;
 
@@ -20,8 +21,10 @@ use crate::vocabulary::{Branch, EffectId, Site};
 
 /// A relative departure that would be visible.
 const VISIBLE: f64 = 0.02;
-/// Smallest and largest relative departure: a tenth of the number to ten times.
+/// Smallest and largest relative departure, where the model file allows as much: a tenth of the number to ten times.
 const DEPARTURE: (f64, f64) = (-0.9, 9.0);
+/// Halvings that find the largest departure that the model file allows, to one part in a million.
+const HALVINGS: usize = 24;
 /// The largest amount that a self-test conceals: at an amount of one a number is 1.6 times, or 1/1.6 of, what is believed.
 const MOST: f64 = 0.6;
 
@@ -41,8 +44,6 @@ struct BelievedNumber {
     tolerance: Option<&'static str>,
     /// What is reported: the first of the numbers, or the factor of them all.
     shown: Reported,
-    /// The number stays below this.
-    below: f64,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -66,7 +67,6 @@ const fn row(
         of,
         tolerance,
         shown,
-        below: f64::INFINITY,
     }
 }
 
@@ -170,15 +170,14 @@ static NUMBERS: [BelievedNumber; 19] = [
         None,
         |m| m.valve_timing.response_polynomial_s.iter_mut().collect(),
     ),
-    BelievedNumber {
-        label: "a wrong delay before the valves move",
-        key: "initial_delay_fraction",
-        site: Site::Valves,
-        of: |m| vec![&mut m.valve_timing.initial_delay_fraction],
-        tolerance: None,
-        shown: Reported::Number,
-        below: 1.0,
-    },
+    row(
+        Reported::Number,
+        "a wrong delay before the valves move",
+        "initial_delay_fraction",
+        Site::Valves,
+        None,
+        |m| vec![&mut m.valve_timing.initial_delay_fraction],
+    ),
     row(
         Reported::Number,
         "a wrong friction of the seal",
@@ -260,10 +259,27 @@ impl BelievedNumber {
         }
     }
 
+    /// The departure up to this one with which a model is still one that its file may state.
+    fn farthest(&self, model: &StrutModel, end: f64) -> f64 {
+        let allowed = |departure: f64| {
+            let mut model = model.clone();
+            self.multiply(&mut model, 1.0 + departure);
+            model.check().is_ok()
+        };
+        if allowed(end) {
+            return end;
+        }
+        let halved = |(inside, outside): (f64, f64), _| match 0.5 * (inside + outside) {
+            middle if allowed(middle) => (middle, outside),
+            middle => (inside, middle),
+        };
+        (0..HALVINGS).fold((0.0, end), halved).0
+    }
+
     fn candidate(&self, model: &StrutModel) -> Option<Candidate> {
         let believed = self.believed(model)?;
-        let most = DEPARTURE.1.min(self.below / believed - 1.0);
-        let departure = Parameter::departure(self.key, VISIBLE, (DEPARTURE.0, most)).shown_as_number(believed);
+        let range = (self.farthest(model, DEPARTURE.0), self.farthest(model, DEPARTURE.1));
+        let departure = Parameter::departure(self.key, VISIBLE, range).shown_as_number(believed);
         Some(
             Candidate::new(EffectId::Unlisted, self.site.clone(), vec![departure])
                 .labelled(self.label)
@@ -361,6 +377,8 @@ pub fn put_true(model: &mut StrutModel, drawn: &Drawn, amount: f64) -> Option<Ve
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeMap;
+
     use super::*;
     use crate::selftest::{Draw, nominal};
 
@@ -397,10 +415,21 @@ mod tests {
     }
 
     #[test]
-    fn a_number_that_is_a_part_stays_below_one() {
-        let candidate = candidates(&strut()).find(|c| c.parameters[0].key == "initial_delay_fraction");
-        let parameter = &candidate.expect("a candidate").parameters[0];
-        assert!((parameter.reported(parameter.upper) - 1.0).abs() < 1e-12);
+    fn a_number_stays_where_the_model_file_allows_it() {
+        let model = strut();
+        let mut ends = BTreeMap::new();
+        for candidate in candidates(&model) {
+            let parameter = &candidate.parameters[0];
+            for departure in [parameter.lower, parameter.upper] {
+                let mut changed = model.clone();
+                assert!(put(&mut changed, &candidate.label, &[departure]));
+                assert_eq!(changed.check(), Ok(()), "{}", candidate.label);
+            }
+            ends.insert(parameter.key.clone(), parameter.reported(parameter.upper));
+        }
+        for (key, most) in [("temperature_K", 1000.0), ("initial_delay_fraction", 1.0)] {
+            assert!((ends[key] / most - 1.0).abs() < 1e-5, "{key}: {}", ends[key]);
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
-//! Cases in which everything is drawn: effects, corners, sizes, roads, speeds, strategies, and when commands act.
+//! Cases in which everything is drawn: effects or wrong numbers, corners, sizes, roads, speeds, strategies, and when commands act.
 
 use oleo_controller::Strategy;
+use oleo_diagnose::effect::unlisted::variants_of_believed_numbers;
 use oleo_diagnose::effect::{StrutEffect, of};
 use oleo_diagnose::selftest::Draw;
 use oleo_diagnose::vocabulary::EffectId;
@@ -8,6 +9,7 @@ use oleo_hil::Scenario;
 use oleo_interface::Corner;
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::ManoeuvreKind;
+use oleo_plant_sim::strut::StrutModel;
 
 use crate::vehicle_campaign::{Case, Concealed, drives};
 
@@ -43,9 +45,45 @@ const SLOWEST_M_S: f64 = 6.0;
 /// Times after the start at which a log may begin that does not begin at rest, s.
 const MOTION_S: (f64, f64) = (2.0, 60.0);
 
+/// Numbers that are not made wrong: the friction of the seal acts on the force alone, and the simulated vehicle charges its struts for the load that they carry,
+/// so that a wrong static pressure is none and with a wrong bore both are.
+const NOT_MADE_WRONG: [&str; 3] = ["coulomb_force_N", "static_pressure_Pa", "bore_m"];
+/// Smallest amount of a wrong number; at the largest, 1, it is 1.6 times, or 1/1.6 of, what is believed.
+const LEAST_WRONG: f64 = 0.03;
+
 /// The case of a seed, whose logs begin in motion or at rest.
 pub fn case(seed: u64, in_motion: bool) -> Case {
     let mut draw = Draw::named(&format!("drawn vehicle {seed}"));
+    let concealed = effects(&mut draw);
+    driven(seed, concealed, in_motion, &mut draw)
+}
+
+/// The case of a seed in which one number of one strut's model is another than believed.
+pub fn wrong_number(seed: u64, in_motion: bool) -> Case {
+    let mut draw = Draw::named(&format!("wrong number of a vehicle {seed}"));
+    let variants = variants_of_believed_numbers();
+    let concealed = loop {
+        let concealed = Concealed {
+            id: EffectId::Unlisted,
+            variant: variants.start + draw.index(variants.len()),
+            amount: libm::pow(LEAST_WRONG, draw.uniform()),
+            sign: sign(&mut draw),
+            shape: [0.5; 4],
+            corners: vec![Corner::ALL[draw.index(4)]],
+        };
+        let truth = concealed.put(&mut StrutModel::defender110(8000.0));
+        if truth
+            .iter()
+            .all(|number| !NOT_MADE_WRONG.contains(&number.key.as_str()))
+        {
+            break concealed;
+        }
+    };
+    driven(seed, vec![concealed], in_motion, &mut draw)
+}
+
+/// None, one or two effects.
+fn effects(draw: &mut Draw) -> Vec<Concealed> {
     let number = match draw.uniform() {
         u if u < 0.1 => 0,
         u if u < 0.6 => 1,
@@ -53,7 +91,7 @@ pub fn case(seed: u64, in_motion: bool) -> Case {
     };
     let mut concealed: Vec<Concealed> = Vec::new();
     while concealed.len() < number {
-        let drawn = effect(&mut draw);
+        let drawn = effect(draw);
         let column = |c: &Concealed| of(c.id).in_strut().and_then(|e| e.faulty_column(c.variant));
         let clash = |other: &Concealed| {
             other.corners.iter().any(|corner| drawn.corners.contains(corner))
@@ -63,13 +101,17 @@ pub fn case(seed: u64, in_motion: bool) -> Case {
             concealed.push(drawn);
         }
     }
+    concealed
+}
+
+fn driven(seed: u64, concealed: Vec<Concealed>, in_motion: bool, draw: &mut Draw) -> Case {
     let begins_s = if in_motion {
         draw.between(MOTION_S.0, MOTION_S.1)
     } else {
         0.0
     };
     let drives = (drives(seed, DURATION_S.0).into_iter())
-        .map(|(name, scenario)| (name, varied(scenario, begins_s, &mut draw)))
+        .map(|(name, scenario)| (name, varied(scenario, begins_s, draw)))
         .collect();
     Case {
         seed,
@@ -102,10 +144,14 @@ fn effect(draw: &mut Draw) -> Concealed {
         id,
         variant,
         amount,
-        sign: if draw.uniform() < 0.5 { -1.0 } else { 1.0 },
+        sign: sign(draw),
         shape: std::array::from_fn(|_| draw.uniform()),
         corners,
     }
+}
+
+fn sign(draw: &mut Draw) -> f64 {
+    if draw.uniform() < 0.5 { -1.0 } else { 1.0 }
 }
 
 /// A variant that is not of the load cell, which no vehicle has.

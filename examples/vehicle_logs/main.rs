@@ -3,11 +3,11 @@
 //!
 //! ```text
 //! cargo build --release && cargo run --release --example vehicle_logs -- DIR [--seeds N] [--first SEED] [CASE...]
-//! cargo build --release && cargo run --release --example vehicle_logs -- DIR --drawn N [--in-motion] [--first SEED]
+//! cargo build --release && cargo run --release --example vehicle_logs -- DIR --drawn N [--wrong-numbers] [--in-motion] [--first SEED]
 //! ```
 //!
-//! The first form runs listed cases of one effect each, the second N campaigns in which effects, corners, sizes and drives are drawn, with logs that
-//! begin at rest or in the middle of a drive. DIR gets a folder for each campaign, with its answer and the results of the diagnosis.
+//! The first form runs listed cases of one effect each, the second N campaigns in which effects, corners, sizes and drives are drawn, or
+//! one wrong number of one strut's model, with logs that begin at rest or in the middle of a drive. DIR gets a folder for each campaign, with its answer and the results of the diagnosis.
 
 #[path = "../../tests/support/vehicle_campaign.rs"]
 mod vehicle_campaign;
@@ -20,11 +20,10 @@ use std::process::Command;
 use std::time::Instant;
 
 use oleo_diagnose::effect::TrueNumber;
-use oleo_diagnose::selftest::{Draw, nominal};
 use oleo_diagnose::vocabulary::EffectId;
 use oleo_interface::Corner;
 use oleo_report::{Column, Table};
-use vehicle_campaign::{Case, write};
+use vehicle_campaign::{Case, TrueAtCorner, write};
 
 /// Effects that act on the force alone, which no log of a vehicle holds: nothing is the right answer.
 const ON_FORCE_ALONE: [EffectId; 3] = [EffectId::SealFriction, EffectId::SideLoadFriction, EffectId::BumpStop];
@@ -32,12 +31,13 @@ const ON_FORCE_ALONE: [EffectId; 3] = [EffectId::SealFriction, EffectId::SideLoa
 fn main() {
     let mut words = std::env::args().skip(1);
     let (mut folder, mut seeds, mut drawn, mut first, mut wanted) = (None, 1, 0, 1, Vec::new());
-    let mut in_motion = false;
+    let (mut wrong_numbers, mut in_motion) = (false, false);
     while let Some(word) = words.next() {
         let number = |next: Option<String>| next.and_then(|n| n.parse().ok()).expect("a whole number follows");
         match word.as_str() {
             "--seeds" => seeds = number(words.next()),
             "--drawn" => drawn = number(words.next()),
+            "--wrong-numbers" => wrong_numbers = true,
             "--in-motion" => in_motion = true,
             "--first" => first = number(words.next()),
             _ if folder.is_none() => folder = Some(PathBuf::from(word)),
@@ -47,7 +47,12 @@ fn main() {
     let folder = folder.expect("a folder for the campaigns");
     let cases: Vec<(String, Case)> = if drawn > 0 {
         let all = first..first + drawn;
-        all.map(|seed| (format!("drawn-{seed}"), drawn::case(seed, in_motion)))
+        let case = if wrong_numbers {
+            drawn::wrong_number
+        } else {
+            drawn::case
+        };
+        all.map(|seed| (format!("drawn-{seed}"), case(seed, in_motion)))
             .collect()
     } else {
         (first..first + seeds)
@@ -67,8 +72,7 @@ fn main() {
     for (name, case) in &cases {
         let campaign = folder.join(name);
         std::fs::create_dir_all(&campaign).expect("a folder for a campaign");
-        write(case, &campaign);
-        let truth = answer(case);
+        let truth = answer(case, write(case, &campaign));
         let text = serde_json::to_string_pretty(&truth.iter().map(Answer::to_json).collect::<Vec<_>>());
         std::fs::write(campaign.join("answer.json"), text.expect("an answer in JSON")).expect("a written answer");
         let begun = Instant::now();
@@ -159,25 +163,28 @@ impl std::fmt::Display for Total {
     }
 }
 
-/// What is concealed and can be seen, in the order of its id and place.
-fn answer(case: &Case) -> Vec<Answer> {
-    let mut all = Vec::new();
-    for concealed in case.concealed.iter().filter(|c| !ON_FORCE_ALONE.contains(&c.id)) {
-        // The struts of the campaign: what a delay of the valves grows to depends on theirs.
-        let mut model = nominal("strut", &mut Draw::named(&format!("vehicle {}", case.seed)));
-        let part = if concealed.corners.len() == Corner::ALL.len() {
-            "vehicle"
-        } else {
-            concealed.corners[0].name()
-        };
-        all.extend(concealed.put(&mut model).into_iter().map(|number| {
+/// What is concealed and can be seen, in the order of its id and place. What all corners have is told by the first of them.
+fn answer(case: &Case, all: Vec<TrueAtCorner>) -> Vec<Answer> {
+    let mut answers: Vec<Answer> = (all.into_iter())
+        .filter(|truth| !ON_FORCE_ALONE.contains(&truth.id))
+        .filter_map(|TrueAtCorner { corner, id, number }| {
+            let corners = &case
+                .concealed
+                .iter()
+                .find(|c| c.id == id && c.corners.contains(&corner))?
+                .corners;
+            let part = if corners.len() == Corner::ALL.len() {
+                "vehicle"
+            } else {
+                corner.name()
+            };
             let site = number.site.to_string().replace("accumulators", "both accumulators");
-            let effect = format!("{}@{part}/{site}", concealed.id);
-            Answer { effect, number }
-        }));
-    }
-    all.sort_by(|a, b| a.effect.cmp(&b.effect));
-    all
+            let effect = format!("{id}@{part}/{site}");
+            (corner == corners[0]).then_some(Answer { effect, number })
+        })
+        .collect();
+    answers.sort_by(|a, b| a.effect.cmp(&b.effect));
+    answers
 }
 
 /// The 95 % interval that a report states for a number; `None` if it does not have the effect or the number.

@@ -150,8 +150,16 @@ fn within_tolerance(given: &StrutModel, draw: &mut Draw) -> StrutModel {
     model
 }
 
-/// Writes `model.toml`, the four strut files and one log for each drive into a folder.
-pub fn write(case: &Case, folder: &Path) {
+/// A number that is concealed at a corner.
+pub struct TrueAtCorner {
+    pub corner: Corner,
+    /// The effect that it belongs to.
+    pub id: EffectId,
+    pub number: TrueNumber,
+}
+
+/// Writes `model.toml`, the four strut files and one log for each drive into a folder, and returns what they conceal.
+pub fn write(case: &Case, folder: &Path) -> Vec<TrueAtCorner> {
     let mut draw = Draw::named(&format!("vehicle {}", case.seed));
     let load_n = VehicleParameters::defender110().static_strut_load_n();
     // The struts are of one design.
@@ -160,6 +168,7 @@ pub fn write(case: &Case, folder: &Path) {
         "[specimen]\nname = \"vehicle-{}\"\nkind = \"vehicle\"\n[strut]\n",
         case.seed
     );
+    let mut all = Vec::new();
     let truth = Corner::ALL.map(|corner| {
         let mut given = design.clone();
         given.specimen.name = format!("{} strut", corner.name());
@@ -174,7 +183,9 @@ pub fn write(case: &Case, folder: &Path) {
         complete.cylinder.static_pressure_pa = static_pa;
         let mut model = within_tolerance(&complete, &mut draw);
         for concealed in own {
-            concealed.put(&mut model);
+            let id = concealed.id;
+            let numbers = concealed.put(&mut model).into_iter();
+            all.extend(numbers.map(|number| TrueAtCorner { corner, id, number }));
         }
         let _ = writeln!(index, "{} = \"{}.toml\"", corner.key(), corner.name());
         let beginning = if case.begins_s > 0.0 {
@@ -194,6 +205,7 @@ pub fn write(case: &Case, folder: &Path) {
         lines.retain(|line| line.0 >= begins_us);
         std::fs::write(folder.join(format!("{name}.log")), damaged(lines, &mut draw)).expect("a log");
     }
+    all
 }
 
 /// A frame with the time of its line.

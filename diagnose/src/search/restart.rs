@@ -2,6 +2,7 @@
 
 use nalgebra::DVector;
 
+use super::fits::if_simulated;
 use super::selector::Selector;
 use super::sizes::starting_sizes;
 use crate::effect::Candidate;
@@ -40,16 +41,14 @@ impl Selector<'_, '_> {
         for position in 0..best.point.effects.len() {
             let mut begun = Vec::new();
             for start in self.other_starts(best, position)? {
-                let quick = fit(self.problem, start, self.criteria().fitting.quick)?;
-                if !self.same_shape(&quick.point, &best.point, position) {
-                    begun.push(quick);
-                }
+                let quick = if_simulated(fit(self.problem, start, self.criteria().fitting.quick))?;
+                begun.extend(quick.filter(|quick| !self.same_shape(&quick.point, &best.point, position)));
             }
             begun.sort_by(|a, b| a.cost.total_cmp(&b.cost));
             for quick in begun.into_iter().take(self.criteria().screening.sizes_refined) {
-                let again = fit(self.problem, quick.point, continued)?;
-                if again.cost < best.cost - least {
-                    return self.fitted(again.point).map(Some);
+                let again = if_simulated(fit(self.problem, quick.point, continued))?;
+                if let Some(lower) = again.filter(|again| again.cost < best.cost - least) {
+                    return self.fitted_if_simulated(lower.point);
                 }
             }
         }

@@ -85,11 +85,11 @@ impl Selector<'_, '_> {
         let rival = start.point.effects.last().copied().unwrap_or(candidate);
         let total: f64 = self.held_out(best).iter().sum();
         let full = if cost - total < self.criteria().rivalry.contender * gain {
-            self.fitted(start.point.clone())?
+            self.fitted_if_simulated(start.point.clone())?
         } else {
-            start.clone()
+            None
         };
-        Ok(Some((rival, full)))
+        Ok(Some((rival, full.unwrap_or_else(|| start.clone()))))
     }
 
     /// How far the model found leads over the one with a rival in the place of an effect.

@@ -1,7 +1,7 @@
 //! Simplification: an effect that has forms of fewer numbers is reported in the simplest that does as well.
 //!
 //! Friction whose level falls with speed holds friction whose level does not. Where the fall gains little, the numbers that
-//! describe it are not determined and mean nothing.
+//! describe it are not determined and mean nothing. A fade of both dampers holds that of one.
 
 use super::selector::Selector;
 use crate::effect::Candidate;
@@ -18,8 +18,11 @@ impl Selector<'_, '_> {
                 let Some(position) = best.point.effects.iter().position(|&e| e == effect) else {
                     break;
                 };
+                // A place more is a finding of its own: it need only gain for certain.
+                let elsewhere = self.candidate(form).place != self.candidate(effect).place;
+                let least = if elsewhere { 0.0 } else { fraction };
                 if let Some(simpler) = self.with_form(&best, position, form)?
-                    && !self.improves(&simpler, &best, fraction)
+                    && !self.improves(&simpler, &best, least)
                 {
                     best = simpler;
                 }
@@ -56,7 +59,10 @@ impl Selector<'_, '_> {
     /// Forms of an effect of a model with fewer numbers, which no other of its effects excludes.
     fn simpler_forms(&self, effect: usize, best: &Fit) -> Vec<usize> {
         let there = self.candidate(effect);
-        let simpler = |form: &Candidate| is_form_of(form, there) && form.parameters.len() < there.parameters.len();
+        let simpler = |form: &Candidate| {
+            let is_form = is_form_of(form, there) || is_in_fewer_places(form, there);
+            is_form && form.parameters.len() < there.parameters.len()
+        };
         let excluded =
             |form: &Candidate| (best.point.effects.iter()).any(|&e| e != effect && self.candidate(e).excludes(form));
         (self.testable().iter().copied())
@@ -73,11 +79,19 @@ pub fn is_form_of(form: &Candidate, other: &Candidate) -> bool {
     named && form.place == other.place && (same_effect || other.becomes == Some(form.id))
 }
 
+/// True if a candidate is the effect of another in a part of its places.
+fn is_in_fewer_places(form: &Candidate, other: &Candidate) -> bool {
+    let named = !form.is_unlisted() && form.id == other.id;
+    named && form.place != other.place && other.place.contains(&form.place)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analytic::{Analytic, FRICTION, FRICTION_OF_BOTH, RUN, Recipe};
+    use crate::analytic::{Analytic, CUBIC, FRICTION, FRICTION_OF_BOTH, RUN, Recipe};
     use crate::estimation::{LeastSquares, Point};
+    use crate::specimen::Specimen;
+    use crate::vocabulary::{Branch, Site};
 
     /// What is left of friction with a number for each output, fitted to this truth.
     fn simplified(truth: (usize, Vec<f64>)) -> Vec<usize> {
@@ -99,5 +113,28 @@ mod tests {
     fn the_simpler_form_is_taken_where_it_does_as_well() {
         assert_eq!(simplified((FRICTION, vec![0.1])), [FRICTION]);
         assert_eq!(simplified((FRICTION_OF_BOTH, vec![0.15, 0.04])), [FRICTION_OF_BOTH]);
+    }
+
+    #[test]
+    fn an_effect_of_two_places_has_a_form_at_each() {
+        let specimen = Recipe::default().make();
+        let at = |candidate: usize, site: Site| Candidate {
+            place: site.into(),
+            ..specimen.candidates()[candidate].clone()
+        };
+        let both = at(FRICTION_OF_BOTH, Site::Accumulators);
+        for branch in [Branch::First, Branch::Second] {
+            assert!(is_in_fewer_places(&at(FRICTION, Site::Accumulator(branch)), &both));
+            assert!(!is_in_fewer_places(&both, &at(FRICTION, Site::Accumulator(branch))));
+            assert!(
+                !is_in_fewer_places(&at(CUBIC, Site::Accumulator(branch)), &both),
+                "another effect"
+            );
+        }
+        assert!(!is_in_fewer_places(&at(FRICTION, Site::MainSeal), &both));
+        assert!(
+            !is_in_fewer_places(&at(FRICTION, Site::Accumulators), &both),
+            "a form at the same place"
+        );
     }
 }

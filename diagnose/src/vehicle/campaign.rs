@@ -49,7 +49,10 @@ impl VehicleCampaign {
                 struts: drive.struts.each_ref().map(|strut| bridge(strut, drive.period_s)),
             })
             .collect();
-        let Chosen { recordings, mut notes } = choose(&bridged, &model.starts_at_rest);
+        let Chosen {
+            mut recordings,
+            mut notes,
+        } = choose(&bridged, &model.starts_at_rest);
         if let Some(corner) = Corner::ALL.into_iter().find(|corner| recordings[*corner].is_empty()) {
             let why = notes.first().map_or_else(String::new, |note| format!(" ({note})"));
             let what = format!(
@@ -60,6 +63,10 @@ impl VehicleCampaign {
         }
         let struts = Corners::from_fn(|corner| as_read(&model.struts[corner], resolution[corner]));
         let at_rest = &model.starts_at_rest;
+        // Before commands are moved, so that both kinds of recordings begin at the same sample.
+        for corner in Corner::ALL.into_iter().filter(|corner| !at_rest[*corner]) {
+            (recordings[corner].iter_mut()).for_each(TwoStageStrut::let_begin_in_motion);
+        }
         let at_once = specimens(&struts, &recordings, at_rest)?;
         let a_tick_later = specimens(
             &struts,

@@ -13,8 +13,10 @@ use crate::parameter::{Parameter, Scale};
 use crate::recording::Recording;
 use crate::vocabulary::{Branch, EffectId};
 
-/// Readings of this time do not count, s: a valve may be moving when the recording begins, which takes 90 ms at most.
-const UNCOUNTED_S: f64 = 0.1;
+/// A valve has moved after this time, s: it takes 90 ms at most.
+const MOVED_S: f64 = 0.1;
+/// So long a recording may wait until its valves stand still, s.
+const WAITS_S: f64 = 3.0;
 /// Part of its median that the absolute pressure of the chamber has at least where a recording begins.
 const FILLED: f64 = 0.5;
 /// How far the gas pressure is usually from what was read first, relative: twice its standard deviation. And how far it may be.
@@ -80,7 +82,8 @@ impl Quantity {
 }
 
 /// Lets a recording begin at the first sample that holds the displacement and the pressures of the chamber and of both accumulators: a pressure that was
-/// read a sample later may be a tenth of itself away. Near vacuum, where an error of the pressure is a large volume of bubbles, it does not begin.
+/// read a sample later may be a tenth of itself away. Near vacuum, where an error of the pressure is a large volume of bubbles, it does not begin; and if it
+/// can wait, it does not while a valve may be moving, because which accumulator takes the oil is unknown then.
 pub fn from_first_complete_sample(recording: &mut Recording, layout: Layout) {
     let chamber_pa = &recording.columns[layout.column(P1)];
     let read_pa: Vec<f64> = chamber_pa.iter().copied().filter(|pa| pa.is_finite()).collect();
@@ -90,8 +93,19 @@ pub fn from_first_complete_sample(recording: &mut Recording, layout: Layout) {
         read(0) && [P1, P2, P4].iter().all(|&c| read(layout.column(c)))
     };
     let is_filled = |k: usize| chamber_pa[k] + ATMOSPHERE_PA > FILLED * usual_pa;
-    let mut complete = (0..recording.len()).filter(|&k| has_all(k));
-    let Some(first) = complete.clone().find(|&k| is_filled(k)).or_else(|| complete.next()) else {
+    let steps = |time_s: f64| (time_s / recording.interval_s()).ceil() as usize;
+    let (moved, waits) = (steps(MOVED_S), steps(WAITS_S));
+    let stand_still = |k: &usize| {
+        let mut signals = recording.columns[layout.valves()..].iter();
+        *k >= moved && signals.all(|signal| is_constant(&signal[k - moved..=*k]))
+    };
+    let complete = (0..recording.len()).filter(|&k| has_all(k));
+    let filled = complete.clone().filter(|&k| is_filled(k));
+    let settled = filled.clone().take_while(|&k| k <= waits).find(stand_still);
+    let Some(first) = settled
+        .or_else(|| filled.clone().next())
+        .or_else(|| complete.clone().next())
+    else {
         return;
     };
     recording.time_s.drain(..first);
@@ -99,6 +113,13 @@ pub fn from_first_complete_sample(recording: &mut Recording, layout: Layout) {
         .columns
         .iter_mut()
         .for_each(|column| drop(column.drain(..first)));
+}
+
+/// Whether all that was read of a signal is the same.
+fn is_constant(signal: &[f64]) -> bool {
+    let mut read = signal.iter().filter(|v| v.is_finite());
+    let first = read.next();
+    read.all(|v| Some(v) == first)
 }
 
 /// What the first readings say: the oil has the pressures that were read, and both gases are equally warm. `None` where no sample is complete.
@@ -137,7 +158,7 @@ pub fn behind_readings(begins: Beginning, effects: &Effects) -> Beginning {
 /// Takes out the pressures that a moving valve may have changed. The first reading of each accumulator stays: without it only the sum of both
 /// gas volumes could be told.
 pub fn without_first_readings(recording: &mut Recording, layout: Layout) {
-    let uncounted = 1 + (UNCOUNTED_S / recording.interval_s()) as usize;
+    let uncounted = 1 + (MOVED_S / recording.interval_s()) as usize;
     for channel in [P1, P2, P3, P4] {
         let column = &mut recording.columns[layout.column(channel)];
         let end = uncounted.min(column.len());
@@ -210,6 +231,8 @@ mod tests {
     #[test]
     fn a_recording_begins_where_three_pressures_are_read_at_once() {
         let mut recording = recording();
+        let valve = Layout::VEHICLE.valves();
+        recording.columns[valve] = vec![0.0, 1.0, 0.0, 1.0, 0.0];
         from_first_complete_sample(&mut recording, Layout::VEHICLE);
         assert_eq!(
             (recording.time_s[0], recording.columns[0][0], recording.len()),
@@ -228,16 +251,26 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_begins_where_the_chamber_is_filled_if_it_ever_is_and_the_displacement_is_read() {
-        let begins_s = |change: fn(&mut Recording)| {
+    fn a_recording_begins_where_valves_stand_still_the_chamber_is_filled_and_the_displacement_is_read() {
+        let begins_at = |change: &dyn Fn(&mut Recording)| {
             let mut recording = recording();
             change(&mut recording);
             from_first_complete_sample(&mut recording, Layout::VEHICLE);
-            recording.time_s[0]
+            5 - recording.len()
         };
-        assert_eq!(begins_s(|r| r.columns[1][1] = -8e4), 0.1);
-        assert_eq!(begins_s(|r| r.columns[0][1] = NONE), 0.1);
-        assert_eq!(begins_s(|r| r.columns[1][1..].fill(-1.2e5)), 0.05);
+        let valve = Layout::VEHICLE.valves();
+        assert_eq!(begins_at(&|_| {}), 2, "the valves have had a tenth of a second");
+        assert_eq!(begins_at(&|r| r.columns[valve][2] = NONE), 2);
+        assert_eq!(begins_at(&|r| r.columns[valve][0] = 1.0), 3);
+        assert_eq!(begins_at(&|r| r.columns[valve][3] = 1.0), 2);
+        assert_eq!(
+            begins_at(&|r| r.columns[valve] = vec![0.0, 1.0, 0.0, 1.0, 0.0]),
+            1,
+            "they never stand still"
+        );
+        assert_eq!(begins_at(&|r| r.columns[1][2] = -8e4), 3);
+        assert_eq!(begins_at(&|r| r.columns[0][2] = NONE), 3);
+        assert_eq!(begins_at(&|r| r.columns[1][1..].fill(-1.2e5)), 1, "it is never filled");
     }
 
     #[test]

@@ -21,8 +21,8 @@ impl TwoStageStrut {
     /// motions make which the readings cannot tell apart. A displacement or a switching signal that was not received is NaN, and what it leaves unknown counts in the
     /// same way.
     ///
-    /// A recording that does not begin at rest begins with the pressures that were read first; volume and temperature of the gas are then part of
-    /// every fit, and the readings of the first tenth of a second do not count.
+    /// A recording that does not begin at rest begins with the pressures that were read first ([`Self::let_begin_in_motion`] cuts it); volume and temperature of
+    /// the gas are then part of every fit, and the readings of the first tenth of a second do not count.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -30,7 +30,6 @@ impl TwoStageStrut {
         let mut begins = vec![Beginning::AtRest; recordings.len()];
         if !starts_at_rest {
             for (begins, recording) in begins.iter_mut().zip(&mut recordings) {
-                beginning::from_first_complete_sample(recording, Layout::VEHICLE);
                 *begins = beginning::as_read(recording, Layout::VEHICLE, &model).unwrap_or_default();
                 beginning::without_first_readings(recording, Layout::VEHICLE);
             }
@@ -62,6 +61,12 @@ impl TwoStageStrut {
         let mut strut = Self::with_layout(model, recordings, inputs, begins, Layout::VEHICLE, as_stated)?;
         strut.count_what_is_unread(unread);
         Ok(strut)
+    }
+
+    /// Cuts off what a recording that does not begin at rest holds before the sample from which a strut can be simulated: all that must be known of the strut
+    /// was read there, and its valves stand still if they do so within the first seconds.
+    pub fn let_begin_in_motion(recording: &mut Recording) {
+        beginning::from_first_complete_sample(recording, Layout::VEHICLE);
     }
 
     /// Adds to the noise of each sample what the readings leave unknown: how far the pressures of other motions and other switching signals are from

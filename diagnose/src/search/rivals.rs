@@ -132,7 +132,7 @@ impl Selector<'_, '_> {
 /// True if one candidate holds another in itself, so that it is no rival: a law without a name in the same place, or the same
 /// effect there and elsewhere too.
 fn includes(wider: &Candidate, effect: &Candidate) -> bool {
-    let law = !effect.is_unlisted() && wider.is_unlisted() && wider.place == effect.place;
+    let law = !effect.is_unlisted() && wider.is_law() && wider.place == effect.place;
     let more_places = wider.id == effect.id
         && wider.parameters.len() > effect.parameters.len()
         && wider.place.contains(&effect.place);
@@ -293,6 +293,8 @@ mod tests {
             "a law in the same place can take every shape"
         );
         assert!(!includes(&all[CUBIC], &law), "a name is no wider than a law");
+        law.is_believed_number = true;
+        assert!(!includes(&law, &all[CUBIC]), "a number is as rigid as a name");
         assert!(includes(&all[FRICTION_OF_BOTH], &all[FRICTION]) && !includes(&all[FRICTION], &all[FRICTION_OF_BOTH]));
     }
 }

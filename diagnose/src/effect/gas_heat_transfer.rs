@@ -1,6 +1,6 @@
 //! The gas exchanges heat with its wall: it is neither isothermal nor adiabatic.
 
-use oleo_plant_sim::specimen::{GasHeatTransferTerm, GasSpringEffects, GasSpringModel};
+use oleo_plant_sim::specimen::{Convection, GasHeatTransferTerm, GasSpringEffects, GasSpringModel};
 use oleo_plant_sim::strut::{Equation, GasHeatTransfer as Term, StrutModel, TermId};
 
 use super::candidate::Candidate;
@@ -11,6 +11,9 @@ use crate::parameter::Parameter;
 use crate::vocabulary::{Branch, EffectId, Site};
 
 pub struct GasHeatTransfer;
+
+/// Label of the form in which the gas gives its heat to the wall by free convection.
+const FREE_CONVECTION: &str = "free convection";
 
 impl Effect for GasHeatTransfer {
     fn id(&self) -> EffectId {
@@ -26,7 +29,11 @@ impl Effect for GasHeatTransfer {
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {
-        &[("time_constant_i_s", "tau"), ("time_constant_s", "tau")]
+        &[
+            ("time_constant_i_s", "tau"),
+            ("time_constant_s", "tau"),
+            ("time_constant_at_10_K_s", "tau_10"),
+        ]
     }
 
     /// Each accumulator of a strut has a time constant of its own.
@@ -114,18 +121,27 @@ impl ActsOn<GasSpring> for GasHeatTransfer {
         if model.effects.gas_heat_transfer.is_some() {
             return vec![];
         }
-        let time_constant = Parameter::log("time_constant_s", 10.0, (0.02, 3000.0));
-        let candidate = Candidate::new(self.id(), Site::Chamber, vec![time_constant]);
-        vec![
-            candidate
+        let form = |key: &str| {
+            let time_constant = Parameter::log(key, 10.0, (0.02, 3000.0));
+            Candidate::new(self.id(), Site::Chamber, vec![time_constant])
                 .starting_at(vec![vec![1.0], vec![60.0]])
-                .in_place_of(self.id()),
+                .in_place_of(self.id())
+        };
+        vec![
+            form("time_constant_s"),
+            form("time_constant_at_10_K_s").labelled(FREE_CONVECTION),
         ]
     }
 
-    fn put(&self, model: &mut GasSpringModel, _candidate: &Candidate, values: &[f64]) {
+    fn put(&self, model: &mut GasSpringModel, candidate: &Candidate, values: &[f64]) {
+        let is_free = candidate.label == FREE_CONVECTION;
         model.effects.gas_heat_transfer = Some(GasHeatTransferTerm {
             time_constant_s: values[0],
+            convection: if is_free {
+                Convection::Free
+            } else {
+                Convection::Constant
+            },
         });
     }
 

@@ -28,9 +28,13 @@ impl Selector<'_, '_> {
             let without = self.held_out(&less);
             let gain = self.gain(without, costs);
             let mut rival = None;
-            let rivals = self.open(&less.point, open);
-            let numbers = self.numbers_beside(&less.point, &rivals);
-            for (candidates, are_reported) in [(rivals, true), (numbers, false)] {
+            let open = self.open(&less.point, open);
+            let numbers = self.numbers_beside(&less.point, &open);
+            let effect = self.candidate(candidate);
+            // Another form of the effect may take its place, and speaks no less for the effect.
+            let (forms, rivals): (Vec<usize>, Vec<usize>) =
+                (open.into_iter()).partition(|&c| is_equal_form(self.candidate(c), effect));
+            for (candidates, are_reported) in [(rivals, true), (numbers, false), (forms, false)] {
                 let Some((other, full)) = self.strongest_rival(&less, candidate, best, gain.total, candidates)? else {
                     continue;
                 };
@@ -138,6 +142,11 @@ fn includes(wider: &Candidate, effect: &Candidate) -> bool {
         && wider.place.contains(&effect.place);
     let more_numbers = is_form_of(effect, wider) && wider.parameters.len() > effect.parameters.len();
     law || more_places || more_numbers
+}
+
+/// True if a candidate is another form of the same effect with as many numbers.
+fn is_equal_form(other: &Candidate, effect: &Candidate) -> bool {
+    is_form_of(other, effect) && other.id == effect.id && other.parameters.len() == effect.parameters.len()
 }
 
 #[cfg(test)]

@@ -2,7 +2,8 @@
 //!
 //! `V = V_0 - A x`, ideal gas of constant mass. Isothermal, adiabatic, or in between through the energy equation with a
 //! thermal time constant of Els & Grobbelaar (SAE 930265), as in the strut:
-//! `m c_v dT/dt = -p dV/dt - m c_v (T - T_ambient) / tau`.
+//! `m c_v dT/dt = -p dV/dt - m c_v (T - T_ambient) / tau`. The time constant is a number, or that of free convection, which
+//! is the shorter the further the gas is from the temperature of its wall.
 //! Units SI; pressure absolute.
 
 use serde::{Deserialize, Serialize};
@@ -94,12 +95,53 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
+/// How the gas gives its heat to the wall.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Convection {
+    /// In proportion to the difference of their temperatures.
+    #[default]
+    Constant,
+    /// By turbulent free convection, `Nu = C (Gr Pr)^(1/3)` (McAdams, Heat Transmission, 3rd ed., 1954, chapter 7): the heat
+    /// transfer coefficient grows with the third root of the difference and with the density to the power of 2/3. The wall is in
+    /// proportion to the gas volume, as that of a cylinder whose piston moves.
+    Free,
+}
+
+impl Convection {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "the signature serde wants")]
+    fn is_constant(&self) -> bool {
+        *self == Self::Constant
+    }
+}
+
+/// Difference of temperatures at which the time constant of free convection is stated, K.
+const STATED_AT_K: f64 = 10.0;
+
 /// Heat exchanged with the wall.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GasHeatTransferTerm {
-    /// Thermal time constant, s.
+    /// Thermal time constant, s; with free convection that at a difference of 10 K and at the gas volume of displacement zero.
     pub time_constant_s: f64,
+    /// How the gas gives its heat to the wall.
+    #[serde(default, skip_serializing_if = "Convection::is_constant")]
+    pub convection: Convection,
+}
+
+impl GasHeatTransferTerm {
+    /// What is left after a time (s) of a difference of temperatures (K) at a constant volume, relative to that at displacement zero.
+    fn left_k(&self, difference_k: f64, relative_volume: f64, time_s: f64) -> f64 {
+        match self.convection {
+            Convection::Constant => difference_k * libm::exp(-time_s / self.time_constant_s),
+            // d' = -d |d|^(1/3) times a constant has the solution d (1 + r t/3)^-3, where r is the rate at the beginning.
+            Convection::Free => {
+                let times_as_fast = libm::cbrt(difference_k.abs() / STATED_AT_K * relative_volume);
+                let base = 1.0 + times_as_fast * time_s / (3.0 * self.time_constant_s);
+                difference_k / (base * base * base)
+            }
+        }
+    }
 }
 
 impl Checked for GasHeatTransferTerm {
@@ -138,8 +180,8 @@ pub struct GasSpringEffects {
 impl GasSpringEffects {
     /// Heat exchanged with the wall, of an ideal gas with constant heat capacity.
     pub const GAS_HEAT_TRANSFER: Equation = Equation {
-        text: "m c_v dT/dt = -p dV/dt - m c_v (T - T_ambient) / tau",
-        source: "Els & Grobbelaar, SAE 930265, 1993; Otis & Pourmovahed, J. Dyn. Sys. Meas. Control 107, 1985",
+        text: "m c_v dT/dt = -p dV/dt - m c_v (T - T_ambient) / tau; with free convection tau = tau_10 (10 K / |T - T_ambient|)^(1/3) (V_0 / V)^(1/3)",
+        source: "Els & Grobbelaar, SAE 930265, 1993; Otis & Pourmovahed, J. Dyn. Sys. Meas. Control 107, 1985; free convection: McAdams, Heat Transmission, 1954",
     };
 
     /// Equation of [`GasSpringEffects::polytropic_exponent`].
@@ -310,14 +352,15 @@ impl GasSpringModel {
             let dt = time_s[k] - time_s[k - 1];
             let next = volume(displacement_m[k]);
             // Strang splitting: half a step of heat exchange, the adiabatic change of volume, half a step; each exact.
-            let keep = self
-                .effects
-                .gas_heat_transfer
-                .as_ref()
-                .map_or(1.0, |h| libm::exp(-0.5 * dt / h.time_constant_s));
-            temperature = ambient + (temperature - ambient) * keep;
-            temperature *= libm::pow(v / next, exponent);
-            temperature = ambient + (temperature - ambient) * keep;
+            let relaxed = |temperature: f64, volume: f64| {
+                let relative = volume / self.chamber.volume_at_zero_m3;
+                let heat = self.effects.gas_heat_transfer.as_ref();
+                heat.map_or(temperature, |h| {
+                    ambient + h.left_k(temperature - ambient, relative, 0.5 * dt)
+                })
+            };
+            temperature = relaxed(temperature, v) * libm::pow(v / next, exponent);
+            temperature = relaxed(temperature, next);
             mass_r *= libm::exp(-leak * dt);
             v = next;
             pressure.push(mass_r * temperature / v);
@@ -366,7 +409,10 @@ mod tests {
     #[test]
     fn a_held_piston_relaxes_with_the_time_constant_to_the_isotherm() {
         let mut m = model();
-        m.effects.gas_heat_transfer = Some(GasHeatTransferTerm { time_constant_s: 5.0 });
+        m.effects.gas_heat_transfer = Some(GasHeatTransferTerm {
+            time_constant_s: 5.0,
+            convection: Convection::Constant,
+        });
         let t: Vec<f64> = (0..10_001).map(|k| f64::from(k) * 0.01).collect();
         let x: Vec<f64> = t.iter().map(|t| if *t < 0.005 { 0.0 } else { 1.0 }).collect();
         let p = m.pressure_pa(&t, &x, 1e6).unwrap();
@@ -374,6 +420,45 @@ mod tests {
         assert!((p[10_000] / isotherm - 1.0).abs() < 1e-6);
         let ratio = (p[1001] - isotherm) / (p[501] - isotherm);
         assert!((ratio - libm::exp(-1.0)).abs() < 1e-6, "{ratio}");
+    }
+
+    /// Against the equation itself, in steps of a millisecond by Runge and Kutta's method.
+    #[test]
+    fn free_convection_follows_its_equation() {
+        let heat = GasHeatTransferTerm {
+            time_constant_s: 6.0,
+            convection: Convection::Free,
+        };
+        for (begins_k, relative) in [(25.0, 0.7), (-4.0, 1.2)] {
+            let rate = |d: f64| -d * libm::cbrt(d.abs() / 10.0 * relative) / 6.0;
+            let (mut d, step): (f64, f64) = (begins_k, 1e-3);
+            for _ in 0..8000 {
+                let k1 = rate(d);
+                let k2 = rate(d + 0.5 * step * k1);
+                let k3 = rate(d + 0.5 * step * k2);
+                d += step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + rate(d + step * k3));
+            }
+            let left = heat.left_k(begins_k, relative, 8.0);
+            assert!((left / d - 1.0).abs() < 1e-9, "{left} {d}");
+        }
+        assert_eq!(heat.left_k(0.0, 1.0, 1.0), 0.0);
+        // At the difference and the volume at which it is stated, the constant is the inverse rate.
+        let rate = (10.0 - heat.left_k(10.0, 1.0, 1e-6)) / 10.0 / 1e-6;
+        assert!((rate * 6.0 - 1.0).abs() < 1e-4, "{rate}");
+    }
+
+    #[test]
+    fn a_file_says_how_heat_is_exchanged_only_where_it_is_not_constant() {
+        let mut m = model();
+        for convection in [Convection::Constant, Convection::Free] {
+            m.effects.gas_heat_transfer = Some(GasHeatTransferTerm {
+                time_constant_s: 5.0,
+                convection,
+            });
+            let text = m.to_toml().unwrap();
+            assert_eq!(text.contains("convection = \"free\""), convection == Convection::Free);
+            assert_eq!(GasSpringModel::from_toml(&text, "test").unwrap(), m);
+        }
     }
 
     #[test]

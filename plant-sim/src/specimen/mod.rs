@@ -11,7 +11,9 @@ mod name;
 mod smoothed_motion;
 
 pub use cylinder::{CylinderChamber, CylinderEffects, CylinderModel, CylinderSeal};
-pub use gas_spring::{GasHeatTransferTerm, GasProcess, GasSpringEffects, GasSpringGas, GasSpringModel, SpringChamber};
+pub use gas_spring::{
+    Convection, GasHeatTransferTerm, GasProcess, GasSpringEffects, GasSpringGas, GasSpringModel, SpringChamber,
+};
 pub use mechanism::{
     Backlash, CoulombFriction, Damper, DamperModel, Drive, DriveModel, ForceOffset, Inertia, MechanismEffects,
     ParallelGasSpring, PreslidingFriction, SmoothYield, Stiffness, StribeckFriction, UnnamedForces, WINDOW_S,

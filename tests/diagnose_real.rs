@@ -194,6 +194,41 @@ fn gas_springs_of_2021_lack_heat_transfer_and_their_clocks_differ() {
     assert!((delays[0] - delays[1]).abs() < 0.07, "{delays:?}");
 }
 
+/// One column of the ram's recording with the wrong sign is named first, and the rest is what it is without this.
+#[test]
+#[cfg_attr(
+    debug_assertions,
+    ignore = "minutes without optimisation; the recordings step of ./test runs it"
+)]
+fn an_instrument_that_is_connected_the_wrong_way_round_is_asked_first() {
+    let recorded = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(FOLDER).join("ram-2022");
+    let Some(healthy) = report("ram-2022", &[]) else { return };
+    for reversed in ["force_N", "ram_lower_Pa"] {
+        let folder = tempfile::tempdir().expect("a folder");
+        std::fs::copy(recorded.join("model.toml"), folder.path().join("model.toml")).expect("a copy");
+        let text = std::fs::read_to_string(recorded.join("moves.csv")).expect("a recording");
+        let (head, rows) = text.split_once('\n').expect("a head");
+        let column = head
+            .trim()
+            .split(',')
+            .position(|name| name == reversed)
+            .expect("a column");
+        let rows = rows.lines().map(|row| {
+            let mut cells: Vec<String> = row.split(',').map(str::to_owned).collect();
+            let value: f64 = cells[column].trim().parse().expect("a number");
+            cells[column] = (-value).to_string();
+            cells.join(",") + "\n"
+        });
+        let text = format!("{head}\n{}", rows.collect::<String>());
+        std::fs::write(folder.path().join("moves.csv"), text).expect("a recording");
+        let found = report(folder.path().to_str().expect("a path"), &[]).expect("a report");
+        let sign = format!("sensor_sign@sensor:{reversed}");
+        assert!(effects(&found).contains(&sign), "{reversed}: {:?}", effects(&found));
+        let after = |report: &Value| report["fit"]["force_N"]["held_out_after"].as_f64().expect("a ratio");
+        assert!(after(&found) < 1.25 * after(&healthy), "{reversed}: {}", after(&found));
+    }
+}
+
 #[test]
 #[cfg_attr(
     debug_assertions,

@@ -43,6 +43,20 @@ impl Evidence {
     }
 }
 
+/// A model is far off while it leaves this many times the noise ...
+const FAR_OFF: f64 = 30.0;
+/// ... and this part of what the recalibrated model leaves.
+const LARGE_PART: f64 = 0.25;
+/// Most that is said of an effect of a model that is far off: what else is missing may have its part.
+const OF_FAR_OFF: f64 = 0.5;
+
+/// The most that a report is sure of any effect, by the noise ratios of the improved and the recalibrated model.
+#[must_use]
+pub fn most(improved_ratio: f64, recalibrated_ratio: f64) -> f64 {
+    let is_far_off = improved_ratio > FAR_OFF && improved_ratio > LARGE_PART * recalibrated_ratio;
+    if is_far_off { OF_FAR_OFF } else { RANGE.1 }
+}
+
 /// Probability from measures and weights.
 #[must_use]
 pub fn weighed(measures: &[f64], weights: &[f64]) -> f64 {
@@ -53,6 +67,13 @@ pub fn weighed(measures: &[f64], weights: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn nothing_is_sure_in_a_model_that_is_far_off() {
+        assert_eq!(most(228.0, 444.0), OF_FAR_OFF);
+        assert_eq!(most(246.0, 8860.0), RANGE.1, "it explains most of it");
+        assert_eq!(most(10.2, 26.9), RANGE.1, "it is near");
+    }
 
     #[test]
     fn a_clear_lead_is_sure_and_a_tie_is_not() {

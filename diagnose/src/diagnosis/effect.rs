@@ -1,7 +1,7 @@
 //! Effects as they are reported: one entry for each place, with the parameters that belong to it.
 
 use super::estimate::Estimate;
-use crate::confidence::Evidence;
+use crate::confidence::{Evidence, most};
 use crate::effect::{of, unlisted};
 use crate::estimation::LeastSquares;
 use crate::search::{SelectedEffect, Selection};
@@ -76,6 +76,7 @@ fn modelled(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Esti
     let specimen = problem.specimen();
     let point = &selection.best.point;
     let hypothesis = point.hypothesis(specimen);
+    let most = most(selection.improved_ratio, selection.calibrated_ratio);
     let mut out = Vec::new();
     for selected in &selection.effects {
         let Some(position) = point.effects.iter().position(|&e| e == selected.candidate) else {
@@ -99,7 +100,7 @@ fn modelled(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Esti
                 place: candidate.place.with_site(site),
                 label: candidate.label.clone(),
                 selected: Some(selected.clone()),
-                confidence: evidence.confidence(),
+                confidence: evidence.confidence().min(most),
                 parameters: numbers.iter().map(|&k| own[k].clone()).collect(),
                 law: law.clone(),
                 equation: equation.clone(),

@@ -96,6 +96,9 @@ pub struct CylinderEffects {
     /// Time by which a column is late, s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensor_skew: Option<SensorEffect>,
+    /// Columns whose instrument is connected the wrong way round, each -1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensor_sign: Option<SensorEffect>,
     /// Offsets of columns: calibration.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sensor_offset: Option<SensorEffect>,
@@ -143,6 +146,7 @@ impl CylinderEffects {
             TermId::SensorGain => Some(&mut self.sensor_gain),
             TermId::SensorDrift => Some(&mut self.sensor_drift),
             TermId::SensorSkew => Some(&mut self.sensor_skew),
+            TermId::SensorSign => Some(&mut self.sensor_sign),
             _ => None,
         }
     }
@@ -206,6 +210,7 @@ impl Checked for CylinderModel {
             (TermId::SensorGain, &e.sensor_gain),
             (TermId::SensorDrift, &e.sensor_drift),
             (TermId::SensorSkew, &e.sensor_skew),
+            (TermId::SensorSign, &e.sensor_sign),
             (TermId::SensorOffset, &e.sensor_offset),
         ] {
             check_columns(id, fault.as_ref(), &measured).map_err(|invalid| invalid.inside("effects"))?;
@@ -296,7 +301,7 @@ impl CylinderModel {
             .collect()
     }
 
-    /// A measured pressure put right: what the instrument did is undone (offset, gain, drift, skew).
+    /// A measured pressure put right: what the instrument did is undone (sign, offset, gain, drift, skew).
     fn corrected(&self, time_s: &[f64], column: &str, series: &[f64]) -> Vec<f64> {
         let of = |effect: &Option<SensorEffect>| effect.as_ref().and_then(|e| e.get(column).copied()).unwrap_or(0.0);
         let (offset, gain, drift) = (
@@ -305,10 +310,12 @@ impl CylinderModel {
             of(&self.effects.sensor_drift),
         );
         let delay = of(&self.effects.sensor_skew);
+        let reversed = of(&self.effects.sensor_sign) < 0.0;
+        let factor = (1.0 + gain) * if reversed { -1.0 } else { 1.0 };
         let mut series: Vec<f64> = series
             .iter()
             .zip(time_s)
-            .map(|(p, t)| (p - offset - drift * (t - time_s[0])) / (1.0 + gain))
+            .map(|(p, t)| (p - offset - drift * (t - time_s[0])) / factor)
             .collect();
         if delay != 0.0 {
             let early = SensorEffect::from([(column.to_owned(), -delay)]);
@@ -330,6 +337,7 @@ impl CylinderModel {
             sensor_gain: e.sensor_gain.clone(),
             sensor_drift: e.sensor_drift.clone(),
             sensor_skew: e.sensor_skew.clone(),
+            sensor_sign: e.sensor_sign.clone(),
             sensor_offset: e.sensor_offset.clone(),
             ..Effects::default()
         };
@@ -342,6 +350,35 @@ impl CylinderModel {
 mod tests {
     use super::super::smoothed_motion::smooth_motion;
     use super::*;
+
+    /// What the instruments of `record_column` do to a pressure and a force is undone and done.
+    #[test]
+    fn a_reversed_instrument_is_put_right_or_shown() {
+        let mut model = CylinderModel::from_toml(
+            "[specimen]\nname='a'\nkind='cylinder'\n[[chamber]]\ncolumn='p_Pa'\narea_m2=0.001\n\
+             [effects.sensor_sign]\np_Pa=-1.0\n[effects.sensor_gain]\np_Pa=0.1\n[effects.sensor_offset]\np_Pa=2e3\n",
+            "test",
+        )
+        .unwrap();
+        let t: Vec<f64> = (0..50).map(|k| f64::from(k) * 0.01).collect();
+        let truth: Vec<f64> = t.iter().map(|t| 1e6 + 1e5 * t).collect();
+        let mut read = truth.clone();
+        let instruments = Effects {
+            sensor_sign: model.effects.sensor_sign.clone(),
+            sensor_gain: model.effects.sensor_gain.clone(),
+            sensor_offset: model.effects.sensor_offset.clone(),
+            ..Effects::default()
+        };
+        record_column(&instruments, "p_Pa", &t, &mut read);
+        assert!(read[0] < -1e6);
+        let corrected = model.corrected(&t, "p_Pa", &read);
+        let farthest = (corrected.iter().zip(&truth)).map(|(a, b)| (a - b).abs());
+        assert!(farthest.fold(0.0, f64::max) < 1e-3);
+        model.effects.sensor_sign = Some(SensorEffect::from([(FORCE.to_owned(), -1.0)]));
+        assert_eq!(model.shown(&t, vec![7.0; 50]), vec![-7.0; 50]);
+        let wrong = model.to_toml().unwrap().replace("force_N = -1.0", "force_N = 2.0");
+        assert!(CylinderModel::from_toml(&wrong, "test").is_err());
+    }
 
     #[test]
     fn friction_that_grows_with_pressure_widens_the_loop() {

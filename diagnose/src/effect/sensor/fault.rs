@@ -55,8 +55,6 @@ pub enum OfCylinder {
     All,
     /// The load cell only: what the fault does to an input cannot be undone without amplifying its noise.
     LoadCell,
-    /// The fault is not searched for in cylinders.
-    No,
 }
 
 /// What an instrument shows over the recordings.
@@ -131,7 +129,7 @@ impl Effect for Fault {
     }
 
     fn in_cylinder(&self) -> Option<&dyn ActsOn<Cylinder>> {
-        (self.of_cylinder != OfCylinder::No).then_some(self)
+        Some(self)
     }
 
     fn in_mechanism(&self) -> Option<&dyn ActsOn<Mechanism>> {
@@ -249,7 +247,6 @@ impl ActsOn<Cylinder> for Fault {
         let count = match self.of_cylinder {
             OfCylinder::All => usize::MAX,
             OfCylinder::LoadCell => 1,
-            OfCylinder::No => 0,
         };
         let columns = std::iter::once(Column::FORCE).chain(pressures).take(count);
         let of = |(k, column): (usize, Column)| {

@@ -14,8 +14,7 @@ pub static SIGN: Fault = Fault {
     symbols: &[],
     parameter: None,
     limited_by_clocks: |_| None,
-    // A reversed load cell or pressure of a cylinder is not searched for.
-    of_cylinder: OfCylinder::No,
+    of_cylinder: OfCylinder::All,
     amounts: |_| None,
     signed: false,
     with_valves: Experiment {

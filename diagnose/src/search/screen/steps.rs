@@ -53,10 +53,20 @@ impl Screen<'_, '_> {
 
     /// True for a candidate that only changes what instruments show of given quantities.
     pub(super) fn leaves_physics_alone(&self, candidate: usize) -> bool {
-        let candidate = &self.specimen().candidates()[candidate];
+        let specimen = self.specimen();
+        let candidate = &specimen.candidates()[candidate];
+        let sensor = candidate.place.sensor();
+        // A fault without a number, which nothing says this of, is one of the instrument alone where its column is compared and no input.
+        let is_compared = || {
+            specimen
+                .channels()
+                .iter()
+                .any(|channel| sensor == Some(&channel.column))
+        };
         (candidate.is_instrument_fault() || candidate.is_unlisted())
-            && candidate.place.sensor() != Some(&Column::DISPLACEMENT)
+            && sensor != Some(&Column::DISPLACEMENT)
             && candidate.parameters.iter().all(|p| p.instrument_only)
+            && (!candidate.parameters.is_empty() || is_compared())
     }
 
     /// A candidate at a point; its true quantities in the recordings that are looked at may be given where they are known.

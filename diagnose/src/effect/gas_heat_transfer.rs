@@ -8,7 +8,7 @@ use super::contract::{ActsOn, Concealed, Effect, Experiment, GasSpring, Strut, S
 use super::drawn::{Drawn, TrueNumber};
 use crate::excitation;
 use crate::parameter::Parameter;
-use crate::vocabulary::{Branch, EffectId, Site};
+use crate::vocabulary::{Branch, EffectId, Site, SpecimenKind};
 
 pub struct GasHeatTransfer;
 
@@ -26,6 +26,14 @@ impl Effect for GasHeatTransfer {
 
     fn meaning(&self) -> &'static str {
         "compression warms the gas, which cools with the time constant tau"
+    }
+
+    fn meaning_in(&self, _kind: SpecimenKind, label: &str) -> &'static str {
+        if label == FREE_CONVECTION {
+            "compression warms the gas, which cools with the time constant tau = tau_10 (10 K / |T - T_ambient|)^(1/3) (V_0 / V)^(1/3) of free convection"
+        } else {
+            self.meaning()
+        }
     }
 
     fn symbols(&self) -> &'static [(&'static str, &'static str)] {

@@ -180,7 +180,7 @@ pub struct GasSpringEffects {
 impl GasSpringEffects {
     /// Heat exchanged with the wall, of an ideal gas with constant heat capacity.
     pub const GAS_HEAT_TRANSFER: Equation = Equation {
-        text: "m c_v dT/dt = -p dV/dt - m c_v (T - T_ambient) / tau; with free convection tau = tau_10 (10 K / |T - T_ambient|)^(1/3) (V_0 / V)^(1/3)",
+        text: "m c_v dT/dt = -p dV/dt - m c_v (T - T_ambient) / tau",
         source: "Els & Grobbelaar, SAE 930265, 1993; Otis & Pourmovahed, J. Dyn. Sys. Meas. Control 107, 1985; free convection: McAdams, Heat Transmission, 1954",
     };
 

@@ -30,7 +30,7 @@ impl Effect for GasHeatTransfer {
 
     fn meaning_in(&self, _kind: SpecimenKind, label: &str) -> &'static str {
         if label == FREE_CONVECTION {
-            "compression warms the gas, which cools with the time constant tau = tau_10 (10 K / |T - T_ambient|)^(1/3) (V_0 / V)^(1/3) of free convection"
+            "compression warms the gas, which cools by free convection: tau is the time constant at a difference of 10 K and at the gas volume V_0 of displacement zero, and at others (10 K / |T - T_ambient|)^(1/3) (V_0 / V)^(1/3) times that"
         } else {
             self.meaning()
         }
@@ -40,7 +40,7 @@ impl Effect for GasHeatTransfer {
         &[
             ("time_constant_i_s", "tau"),
             ("time_constant_s", "tau"),
-            ("time_constant_at_10_K_s", "tau_10"),
+            ("time_constant_at_10_K_s", "tau"),
         ]
     }
 

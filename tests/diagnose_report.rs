@@ -218,3 +218,59 @@ fn a_complete_model_is_called_complete() {
     let page = text(&folder.path().join("found/report.html"));
     assert!(page.contains("Nothing is missing") && page.contains("verdict good") && !page.contains("box found"));
 }
+
+/// The other form of the same effect, which the page explains with the same equation.
+#[test]
+fn free_convection_is_told_from_a_constant_time_constant() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let heat = "[effects.gas_heat_transfer]\ntime_constant_s = 6.0\nconvection = \"free\"";
+    gas_spring(folder.path(), heat);
+    let report = diagnosed(folder.path());
+    let effects = report["effects"].as_array().expect("effects");
+    assert_eq!(effects.len(), 1, "{effects:?}");
+    assert_eq!(effects[0]["id"], "gas_heat_transfer");
+    // One form is no ambiguity of the other, and says nothing against the effect.
+    assert_eq!(report["ambiguous"].as_array().map(Vec::len), Some(0));
+    assert!(effects[0]["confidence"].as_f64() > Some(0.9), "{effects:?}");
+    let tau = &effects[0]["parameters"]["time_constant_at_10_K_s"]["value"];
+    let tau = tau.as_f64().expect("free convection");
+    assert!((tau / 6.0 - 1.0).abs() < 0.01, "{tau}");
+    // Half of this recording tells less of the gas at its beginning, so that held-out halves are not down to the noise.
+    assert!(report["fit"]["p_Pa"]["noise_ratio_after"].as_f64() < Some(1.02));
+    let found = text(&folder.path().join("found/model.toml"));
+    assert!(found.contains("convection = \"free\""), "{found}");
+    let page = text(&folder.path().join("found/report.html"));
+    assert!(page.contains("cools by free convection"));
+}
+
+/// A pressure is an input of a cylinder's model, so that its sign changes the force that is computed.
+#[test]
+fn a_pressure_that_is_connected_the_wrong_way_round_is_named_and_nothing_else() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    std::fs::create_dir(&campaign).expect("a folder");
+    let model = "[specimen]\nname = \"made here\"\nkind = \"cylinder\"\n\
+        [[chamber]]\ncolumn = \"lower_Pa\"\narea_m2 = 0.001\n[[chamber]]\ncolumn = \"upper_Pa\"\narea_m2 = -0.0008\n\
+        [tolerance]\narea = 0.01\nforce_offset_N = 5.0\n[noise]\ndisplacement_m = 1e-5\nforce_N = 5.0\nlower_Pa = 0.0\nupper_Pa = 0.0\n";
+    std::fs::write(campaign.join("model.toml"), model).expect("written");
+    let mut noise = Noise(20_021_101);
+    let mut rows = String::from("time_s,displacement_m,force_N,lower_Pa,upper_Pa\n");
+    for k in 0..3000 {
+        let t = 0.01 * f64::from(k);
+        let (lower, upper) = (2e6 + 1e6 * libm::sin(1.3 * t), 1.5e6 + 5e5 * libm::cos(2.1 * t));
+        let force = 0.001 * lower - 0.0008 * upper + noise.next(5.0);
+        let displacement = 0.1 * libm::sin(0.9 * t);
+        writeln!(rows, "{t:.2},{displacement:.6},{force:.2},{:.1},{upper:.1}", -lower).expect("text");
+    }
+    std::fs::write(campaign.join("moves.csv"), rows).expect("written");
+    let report = diagnosed(folder.path());
+    let effects = report["effects"].as_array().expect("effects");
+    let named: Vec<(&Value, &Value)> = effects.iter().map(|e| (&e["id"], &e["place"])).collect();
+    assert_eq!(
+        named,
+        [(&"sensor_sign".into(), &"sensor:lower_Pa".into())],
+        "{effects:?}"
+    );
+    let found = text(&folder.path().join("found/model.toml"));
+    assert!(found.contains("lower_Pa = -1.0"), "{found}");
+}

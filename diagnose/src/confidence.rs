@@ -23,6 +23,12 @@ pub const EVIDENCE: [&str; 3] = ["constant", "lead over the rival, standard erro
 const WEIGHTS: [f64; EVIDENCE.len()] = [1.01, 1.82, 1.97];
 /// Nothing is reported as surer than the self-test can show, or as less likely than this.
 const RANGE: (f64, f64) = (0.05, 0.99);
+/// A model is far off while it leaves this many times the noise ...
+const FAR_OFF: f64 = 30.0;
+/// ... and this part of what the recalibrated model leaves.
+const LARGE_PART: f64 = 0.25;
+/// Most that is said of an effect of a model that is far off: what else is missing may have its part.
+const OF_FAR_OFF: f64 = 0.5;
 
 impl Evidence {
     /// The evidence as numbers of order one; standard errors logarithmic beyond one.
@@ -43,16 +49,9 @@ impl Evidence {
     }
 }
 
-/// A model is far off while it leaves this many times the noise ...
-const FAR_OFF: f64 = 30.0;
-/// ... and this part of what the recalibrated model leaves.
-const LARGE_PART: f64 = 0.25;
-/// Most that is said of an effect of a model that is far off: what else is missing may have its part.
-const OF_FAR_OFF: f64 = 0.5;
-
 /// The most that a report is sure of any effect, by the noise ratios of the improved and the recalibrated model.
 #[must_use]
-pub fn most(improved_ratio: f64, recalibrated_ratio: f64) -> f64 {
+pub fn upper_limit(improved_ratio: f64, recalibrated_ratio: f64) -> f64 {
     let is_far_off = improved_ratio > FAR_OFF && improved_ratio > LARGE_PART * recalibrated_ratio;
     if is_far_off { OF_FAR_OFF } else { RANGE.1 }
 }
@@ -70,9 +69,9 @@ mod tests {
 
     #[test]
     fn nothing_is_sure_in_a_model_that_is_far_off() {
-        assert_eq!(most(228.0, 444.0), OF_FAR_OFF);
-        assert_eq!(most(246.0, 8860.0), RANGE.1, "it explains most of it");
-        assert_eq!(most(10.2, 26.9), RANGE.1, "it is near");
+        assert_eq!(upper_limit(228.0, 444.0), OF_FAR_OFF);
+        assert_eq!(upper_limit(246.0, 8860.0), RANGE.1, "it explains most of it");
+        assert_eq!(upper_limit(10.2, 26.9), RANGE.1, "it is near");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Effects as they are reported: one entry for each place, with the parameters that belong to it.
 
 use super::estimate::Estimate;
-use crate::confidence::{Evidence, most};
+use crate::confidence::{Evidence, upper_limit};
 use crate::effect::{of, unlisted};
 use crate::estimation::LeastSquares;
 use crate::search::{SelectedEffect, Selection};
@@ -76,7 +76,7 @@ fn modelled(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Esti
     let specimen = problem.specimen();
     let point = &selection.best.point;
     let hypothesis = point.hypothesis(specimen);
-    let most = most(selection.improved_ratio, selection.calibrated_ratio);
+    let most = upper_limit(selection.improved_ratio, selection.calibrated_ratio);
     let mut out = Vec::new();
     for selected in &selection.effects {
         let Some(position) = point.effects.iter().position(|&e| e == selected.candidate) else {

@@ -304,6 +304,11 @@ mod tests {
         assert!(!includes(&all[CUBIC], &law), "a name is no wider than a law");
         law.is_believed_number = true;
         assert!(!includes(&law, &all[CUBIC]), "a number is as rigid as a name");
+        let mut form = all[FRICTION].clone();
+        form.label = "another form".to_owned();
+        assert!(is_equal_form(&form, &all[FRICTION]));
+        assert!(!is_equal_form(&all[FRICTION_OF_BOTH], &all[FRICTION]), "more numbers");
+        assert!(!is_equal_form(&all[CUBIC], &all[FRICTION]), "another effect");
         assert!(includes(&all[FRICTION_OF_BOTH], &all[FRICTION]) && !includes(&all[FRICTION], &all[FRICTION_OF_BOTH]));
     }
 }

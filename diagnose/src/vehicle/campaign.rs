@@ -18,6 +18,9 @@ use crate::specimen::strut::TwoStageStrut;
 /// A rounded reading is off by at most half a step, and its error is even within: variance step^2 / 12.
 const VARIANCE_OF_ROUNDING: f64 = 1.0 / 12.0;
 
+/// What is cut off the beginning of a drive is said where it is longer than this, s.
+const NOTED_S: f64 = 0.5;
+
 /// A vehicle ready to be diagnosed.
 pub struct VehicleCampaign {
     /// The model files as they are believed.
@@ -65,7 +68,16 @@ impl VehicleCampaign {
         let at_rest = &model.starts_at_rest;
         // Before commands are moved, so that both kinds of recordings begin at the same sample.
         for corner in Corner::ALL.into_iter().filter(|corner| !at_rest[*corner]) {
-            (recordings[corner].iter_mut()).for_each(TwoStageStrut::let_begin_in_motion);
+            for recording in &mut recordings[corner] {
+                let cut_s = TwoStageStrut::let_begin_in_motion(recording);
+                if cut_s > NOTED_S {
+                    notes.push(format!(
+                        "{}, {}: the first {cut_s:.2} s are not used: it begins where all readings are there and the valves stand still.",
+                        recording.name,
+                        corner.name()
+                    ));
+                }
+            }
         }
         let at_once = specimens(&struts, &recordings, at_rest)?;
         let a_tick_later = specimens(

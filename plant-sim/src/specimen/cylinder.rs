@@ -303,15 +303,15 @@ impl CylinderModel {
 
     /// A measured pressure put right: what the instrument did is undone (sign, offset, gain, drift, skew).
     fn corrected(&self, time_s: &[f64], column: &str, series: &[f64]) -> Vec<f64> {
-        let of = |effect: &Option<SensorEffect>| effect.as_ref().and_then(|e| e.get(column).copied()).unwrap_or(0.0);
+        let size = |effect: &Option<SensorEffect>| effect.as_ref().and_then(|e| e.get(column).copied());
+        let of = |effect: &Option<SensorEffect>| size(effect).unwrap_or(0.0);
         let (offset, gain, drift) = (
             of(&self.effects.sensor_offset),
             of(&self.effects.sensor_gain),
             of(&self.effects.sensor_drift),
         );
         let delay = of(&self.effects.sensor_skew);
-        let reversed = of(&self.effects.sensor_sign) < 0.0;
-        let factor = (1.0 + gain) * if reversed { -1.0 } else { 1.0 };
+        let factor = (1.0 + gain) * size(&self.effects.sensor_sign).unwrap_or(1.0);
         let mut series: Vec<f64> = series
             .iter()
             .zip(time_s)

@@ -83,8 +83,8 @@ impl Quantity {
 
 /// Lets a recording begin at the first sample that holds the displacement and the pressures of the chamber and of both accumulators: a pressure that was
 /// read a sample later may be a tenth of itself away. Near vacuum, where an error of the pressure is a large volume of bubbles, it does not begin; and if it
-/// can wait, it does not while a valve may be moving, because which accumulator takes the oil is unknown then.
-pub fn from_first_complete_sample(recording: &mut Recording, layout: Layout) {
+/// can wait, it does not while a valve may be moving, because which accumulator takes the oil is unknown then. Returns how much is cut off, s.
+pub fn from_first_complete_sample(recording: &mut Recording, layout: Layout) -> f64 {
     let chamber_pa = &recording.columns[layout.column(P1)];
     let read_pa: Vec<f64> = chamber_pa.iter().copied().filter(|pa| pa.is_finite()).collect();
     let usual_pa = median(read_pa) + ATMOSPHERE_PA;
@@ -106,13 +106,15 @@ pub fn from_first_complete_sample(recording: &mut Recording, layout: Layout) {
         .or_else(|| filled.clone().next())
         .or_else(|| complete.clone().next())
     else {
-        return;
+        return 0.0;
     };
+    let cut_s = recording.time_s[first] - recording.time_s[0];
     recording.time_s.drain(..first);
     recording
         .columns
         .iter_mut()
         .for_each(|column| drop(column.drain(..first)));
+    cut_s
 }
 
 /// Whether all that was read of a signal is the same.
@@ -233,7 +235,7 @@ mod tests {
         let mut recording = recording();
         let valve = Layout::VEHICLE.valves();
         recording.columns[valve] = vec![0.0, 1.0, 0.0, 1.0, 0.0];
-        from_first_complete_sample(&mut recording, Layout::VEHICLE);
+        assert_eq!(from_first_complete_sample(&mut recording, Layout::VEHICLE), 0.05);
         assert_eq!(
             (recording.time_s[0], recording.columns[0][0], recording.len()),
             (0.05, 0.01, 4)

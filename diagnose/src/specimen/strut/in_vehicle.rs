@@ -64,9 +64,9 @@ impl TwoStageStrut {
     }
 
     /// Cuts off what a recording that does not begin at rest holds before the sample from which a strut can be simulated: all that must be known of the strut
-    /// was read there, and its valves stand still if they do so within the first seconds.
-    pub fn let_begin_in_motion(recording: &mut Recording) {
-        beginning::from_first_complete_sample(recording, Layout::VEHICLE);
+    /// was read there, and its valves stand still if they do so within the first seconds. Returns the length of what is cut off, s.
+    pub fn let_begin_in_motion(recording: &mut Recording) -> f64 {
+        beginning::from_first_complete_sample(recording, Layout::VEHICLE)
     }
 
     /// Adds to the noise of each sample what the readings leave unknown: how far the pressures of other motions and other switching signals are from

@@ -145,6 +145,36 @@ fn a_wrong_number_is_named_and_the_improved_model_states_the_true_one() {
     );
 }
 
+/// Under all that the recordings hold a mount that yields does the same as a larger volume of oil that yields.
+#[test]
+fn a_number_that_may_be_wrong_in_the_place_of_an_effect_is_said_with_its_value() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let conceal = "diagnose --self-test --terms mount_compliance --seed 3 --campaigns 4 --save --out saved";
+    let saved = oleo(folder.path(), &conceal.split(' ').collect::<Vec<_>>());
+    assert!(saved.status.success(), "{}", text(&saved.stderr));
+    let ran = oleo(
+        folder.path(),
+        &["diagnose", "saved/3_mount_compliance_3_1", "--out", "found"],
+    );
+    assert!(ran.status.success(), "{}", text(&ran.stderr));
+    let read = |name: &str| std::fs::read_to_string(folder.path().join("found").join(name)).expect(name);
+    let report: Value = serde_json::from_str(&read("report.json")).expect("JSON");
+    let effects = report["effects"].as_array().expect("a list");
+    assert_eq!((effects.len(), &effects[0]["id"]), (1, &"mount_compliance".into()));
+    assert!(
+        effects[0]["confidence"].as_f64().expect("a number") > 0.9,
+        "{effects:?}"
+    );
+    assert_eq!(
+        report["ambiguous"],
+        serde_json::json!([["mount_compliance", "unlisted"]])
+    );
+    let next = report["next_experiment"].as_str().expect("a text");
+    assert!(next.contains("measure the oil volume itself"), "{next}");
+    let page = read("report.html");
+    assert!(page.contains("it may be a wrong oil volume") && page.contains("oil_volume_m3 = "));
+}
+
 #[test]
 fn bad_arguments_are_one_line_that_says_what_to_do() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -153,12 +153,11 @@ fn ambiguous(specimen: &dyn Specimen, selection: &Selection) -> Vec<[EffectId; 2
     let all = specimen.candidates();
     let mut pairs: Vec<[EffectId; 2]> = Vec::new();
     for effect in &selection.effects {
-        let Some(rival) = effect.ambiguous_rival() else {
-            continue;
-        };
-        let pair = [all[effect.candidate].id, all[rival].id];
-        if pair[0] != pair[1] && !pairs.contains(&pair) {
-            pairs.push(pair);
+        for other in effect.indistinguishable() {
+            let pair = [all[effect.candidate].id, all[other].id];
+            if pair[0] != pair[1] && !pairs.contains(&pair) {
+                pairs.push(pair);
+            }
         }
     }
     pairs
@@ -168,8 +167,8 @@ fn ambiguous(specimen: &dyn Specimen, selection: &Selection) -> Vec<[EffectId; 2
 fn next_experiment(specimen: &dyn Specimen, selection: &Selection, locations: &[Location]) -> Option<String> {
     let all = specimen.candidates();
     let mut sentences: Vec<String> = (selection.effects.iter())
-        .filter_map(|effect| effect.ambiguous_rival().map(|rival| (effect.candidate, rival)))
-        .map(|(effect, rival)| experiment::separate(specimen.kind(), &all[effect], &all[rival]))
+        .flat_map(|effect| effect.indistinguishable().map(|other| (effect.candidate, other)))
+        .map(|(effect, other)| experiment::separate(specimen.kind(), &all[effect], &all[other]))
         .collect();
     sentences.extend(experiment::at_another_frequency(&selection.of_excitation_hz));
     if let Some(left) = locations.iter().find(|l| l.candidate.is_none()) {

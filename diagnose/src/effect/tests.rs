@@ -231,7 +231,9 @@ fn every_pair_has_an_experiment_that_says_what_each_of_the_two_does() {
                 assert!(text.contains(&a.name()) && text.contains(&b.name()), "{text}");
                 assert!(a.name() != b.name(), "{text}");
                 assert!(!text.contains("do not occur"), "{text}");
-                if kind == SpecimenKind::TwoStageStrut {
+                if a.is_believed_number || b.is_believed_number {
+                    assert!(text.contains("measure the "), "{text}");
+                } else if kind == SpecimenKind::TwoStageStrut {
                     // Slow moves are given in mm/s.
                     let speed = text.contains(" m/s") || text.contains(" mm/s");
                     assert!(speed && text.contains(" mm") && text.contains("valve"), "{text}");

@@ -29,6 +29,8 @@ pub fn asked(specimen: &dyn Specimen, selection: &Selection, locations: &[Locati
     if specimen.kind() == SpecimenKind::TwoStageStrut {
         let travel_mm = travel_mm(specimen);
         let pairs = (selection.effects.iter()).filter_map(|e| e.ambiguous_rival().map(|rival| [e.candidate, rival]));
+        // A number is measured by itself.
+        let pairs = pairs.filter(|pair| pair.iter().all(|&c| !all[c].is_believed_number));
         let mut ids: Vec<EffectId> = Vec::new();
         for id in pairs.flatten().map(|candidate| all[candidate].id) {
             if !ids.contains(&id) {
@@ -138,9 +140,17 @@ impl Strokes {
 }
 
 /// What to record to separate two candidates: amplitude, speed, valve state, and what each of the two causes then. Each
-/// effect has an experiment of its own; if one experiment separates a pair better, one of the two effects names it.
+/// effect has an experiment of its own; if one experiment separates a pair better, one of the two effects names it. A number that may be wrong is measured.
 #[must_use]
 pub fn separate(kind: SpecimenKind, a: &Candidate, b: &Candidate) -> String {
+    if let Some(number) = [a, b].into_iter().find(|c| c.is_believed_number) {
+        return format!(
+            "To separate {} from {}, measure {} itself, and state it in the model with the tolerance of this measurement.",
+            a.name(),
+            b.name(),
+            number.label.replacen("a wrong", "the", 1)
+        );
+    }
     let (one, other) = (of(a.id), of(b.id));
     let how = if kind == SpecimenKind::TwoStageStrut {
         one.told_from(b.id).or_else(|| other.told_from(a.id))

@@ -1,7 +1,8 @@
 //! Spikes: single readings that are far off while their neighbours are not.
 //!
 //! What a specimen does shows in the neighbours too, or in another column at the same time. A reading is a spike only if a
-//! curve through the readings on either side, which lie on it to within the noise, misses it by far.
+//! curve through the readings beside it, which lie on it to within the noise, misses it by far. At an end of a recording these
+//! are readings of one side, mostly or all.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -50,6 +51,7 @@ pub fn spikes(
         .collect();
     let samples: usize = recordings.iter().map(Recording::len).sum();
     for c in 0..columns {
+        keep_how_recordings_begin_and_end(&mut found, c, recordings);
         let (mut all, mut elsewhere) = (0, 0);
         for (r, recording) in recordings.iter().enumerate() {
             let also = |k: usize, other: usize| misses(&recording.columns[other], k) > ALSO * deviation(r, other, k);
@@ -63,6 +65,21 @@ pub fn spikes(
         }
     }
     found
+}
+
+/// Ends of a column that look like spikes in half of the recordings are how these begin or end: with a motion that sets in at the second sample, for example.
+fn keep_how_recordings_begin_and_end(found: &mut [Vec<Vec<Spike>>], column: usize, recordings: &[Recording]) {
+    type End = fn(&Recording) -> usize;
+    let ends: [End; 2] = [|_| 0, |recording| recording.len() - 1];
+    for end in ends {
+        let is_end = |spike: &Spike, r: usize| spike.sample == end(&recordings[r]);
+        let off = (found.iter().enumerate()).filter(|(r, of)| of[column].iter().any(|spike| is_end(spike, *r)));
+        if 2 * off.count() >= recordings.len() {
+            for (r, of) in found.iter_mut().enumerate() {
+                of[column].retain(|spike| !is_end(spike, r));
+            }
+        }
+    }
 }
 
 /// What looks like spikes in each column of a recording.
@@ -107,9 +124,15 @@ fn off(series: &[f64], curves: &[Curve], deviation: &dyn Fn(usize) -> f64) -> Ve
 
 fn spike(series: &[f64], k: usize, curve: &Curve, deviation: f64) -> Option<Spike> {
     let mut beside = curve.neighbours(series, k)?;
-    // Cheap first: most readings are next to the mean of their neighbours.
-    let chord = series[k] - 0.5 * (series[k - 1] + series[k + 1]);
-    if series[k].is_nan() || chord.abs() < 0.5 * curve.far * deviation {
+    let last = series.len() - 1;
+    // Cheap first: most readings are next to the mean of their neighbours, and an end to the line through the next two.
+    let (by_a_line, wider) = match k {
+        0 => (2.0 * series[1] - series[2], AT_END),
+        _ if k == last => (2.0 * series[k - 1] - series[k - 2], AT_END),
+        _ => (0.5 * (series[k - 1] + series[k + 1]), 1.0),
+    };
+    let far = wider * curve.far * deviation;
+    if series[k].is_nan() || (series[k] - by_a_line).abs() < 0.5 * far {
         return None;
     }
     let least = 2 * curve.beside - 1;
@@ -119,7 +142,7 @@ fn spike(series: &[f64], k: usize, curve: &Curve, deviation: f64) -> Option<Spik
         beside.remove(worst);
         (instead, rms, _) = curve.through(&beside)?;
     }
-    let far = (curve.far * deviation).max(curve.beyond_kink * rms);
+    let far = far.max(wider * curve.beyond_kink * rms);
     let is_far = beside.len() >= least && rms <= NEAR * deviation && (series[k] - instead).abs() > far;
     is_far.then_some(Spike { sample: k, instead })
 }
@@ -131,10 +154,16 @@ fn misses(series: &[f64], k: usize) -> f64 {
     through.map_or(0.0, |(instead, ..)| (series[k] - instead).abs())
 }
 
+/// The first and the last reading are a spike if they are off by this many times what another one must be: they are extrapolated, with 1.7 times
+/// the noise, and a kink beside them makes them miss by 14.3 times what the others do.
+const AT_END: f64 = 2.0;
+
 /// A polynomial through the readings beside a sample.
 struct Curve {
-    /// Readings on either side.
+    /// Readings on either side; near an end as many in all.
     beside: usize,
+    /// Whether it holds near an end, where most readings are on one side.
+    at_ends: bool,
     degree: usize,
     /// A spike is off by this many standard deviations of the noise ...
     far: f64,
@@ -142,9 +171,10 @@ struct Curve {
     beyond_kink: f64,
 }
 
-/// At a kink the middle is off by 5.2 times the miss of the others.
+/// At a kink the middle is off by 5.2 times the miss of the others, and the second and third reading by 3.5 times.
 const PARABOLA: Curve = Curve {
     beside: 3,
+    at_ends: true,
     degree: 2,
     far: 8.0,
     beyond_kink: 8.0,
@@ -158,19 +188,23 @@ const BEYOND_PULSES: Curve = Curve {
 /// Follows a motion that begins. At a kink the middle is off by 8.0 times the miss of the others.
 const QUARTIC: Curve = Curve {
     beside: 4,
+    at_ends: false,
     degree: 4,
     far: 8.0,
     beyond_kink: 12.0,
 };
 
 impl Curve {
-    /// Readings beside a sample, with their distances from it; `None` at an end.
+    /// Readings beside a sample, with their distances from it; `None` where there are too few.
     fn neighbours(&self, series: &[f64], k: usize) -> Option<Vec<(f64, f64)>> {
-        if k < self.beside || k + self.beside >= series.len() {
+        let first = k
+            .saturating_sub(self.beside)
+            .min(series.len().checked_sub(2 * self.beside + 1)?);
+        if first + self.beside != k && !self.at_ends {
             return None;
         }
-        let both = (1..=self.beside).flat_map(|i| [(-(i as f64), series[k - i]), (i as f64, series[k + i])]);
-        Some(both.filter(|(_, y)| y.is_finite()).collect())
+        let window = (first..=first + 2 * self.beside).filter(|&i| i != k && series[i].is_finite());
+        Some(window.map(|i| (i as f64 - k as f64, series[i])).collect())
     }
 
     /// The curve through points about zero: its value there, RMS of what the points miss it by, and the one that misses most.
@@ -234,6 +268,39 @@ mod tests {
     }
 
     #[test]
+    fn a_spike_is_found_also_at_the_ends_of_a_recording() {
+        let clean = |seed| -> Vec<f64> {
+            let moving = |k: usize| 5000.0 * libm::sin(0.02 * k as f64);
+            noise(seed, 2000, 0.0)
+                .iter()
+                .enumerate()
+                .map(|(k, v)| v + moving(k))
+                .collect()
+        };
+        let mut series = clean(4);
+        assert_eq!(found(vec![series.clone(), clean(5)]), vec![Vec::<usize>::new(); 2]);
+        for k in [2, 1998] {
+            series[k] += 25.0;
+        }
+        assert_eq!(found(vec![series, clean(6)]), [vec![2, 1998], vec![]]);
+        for k in [0, 1, 1997, 1998, 1999] {
+            let mut series = clean(7 + k as u64);
+            series[k] -= 25.0;
+            let of_all = |off: &dyn Fn(usize) -> Vec<f64>| {
+                let recordings: Vec<Recording> = (0..3).map(|r| recording(0.002, vec![off(r)])).collect();
+                spikes(&recordings, 1, Course::Smooth, &|_, _, _| 1.0)
+            };
+            let one = of_all(&|r| if r == 1 { series.clone() } else { clean(5) });
+            assert_eq!(one[1][0].iter().map(|spike| spike.sample).collect::<Vec<_>>(), [k]);
+            assert!(one[0][0].is_empty() && one[2][0].is_empty());
+            // What all recordings do at their ends is no fault.
+            let is_end = k == 0 || k == 1999;
+            let all = of_all(&|_| series.clone());
+            assert!(all.iter().all(|of| of[0].is_empty() == is_end), "{k}");
+        }
+    }
+
+    #[test]
     fn steps_corners_and_pulses_of_a_specimen_are_no_spikes() {
         let white = noise(3, 2000, 0.0);
         let with =
@@ -242,6 +309,8 @@ mod tests {
         let corner = with(&|k| 40.0 * (k as f64 - 1000.0).abs());
         let pulse = with(&|k| if (700..703).contains(&k) { 60.0 } else { 0.0 });
         assert_eq!(found(vec![step, corner, pulse]), vec![Vec::<usize>::new(); 3]);
+        let beside_the_ends = with(&|k| 40.0 * k.clamp(2, 1997) as f64);
+        assert_eq!(found(vec![beside_the_ends]), [Vec::<usize>::new()]);
         // One reading off in two columns at once.
         let both = with(&|k| if k == 600 { 50.0 } else { 0.0 });
         assert_eq!(found(vec![both.clone(), both]), vec![Vec::<usize>::new(); 2]);

@@ -15,7 +15,7 @@ use oleo_report::{Column, Page, Table, Verdict as Colour, significant};
 
 use crate::campaign::Campaign;
 use crate::diagnosis::{Diagnosis, Effect, Verdict};
-use crate::effect::{Candidate, of};
+use crate::effect::{Candidate, of, unlisted};
 use crate::specimen::Specimen;
 use crate::vocabulary::SpecimenKind;
 
@@ -79,11 +79,16 @@ pub(crate) fn evidence(page: &mut Page, campaign: &Campaign, diagnosis: &Diagnos
 fn colour(diagnosis: &Diagnosis) -> Colour {
     match diagnosis.verdict() {
         Verdict::Consistent => Colour::Pass,
-        Verdict::MissingPhysics if !diagnosis.selection.incomplete && diagnosis.ambiguous.is_empty() => {
+        Verdict::MissingPhysics if !diagnosis.selection.incomplete && !has_ambiguous_rival(diagnosis) => {
             Colour::Attention
         }
         _ => Colour::Fail,
     }
+}
+
+/// Whether the recordings cannot tell an effect from another one. The tolerances of the model speak against a wrong number.
+fn has_ambiguous_rival(diagnosis: &Diagnosis) -> bool {
+    (diagnosis.selection.effects.iter()).any(|effect| effect.ambiguous_rival().is_some())
 }
 
 /// The verdict in one or two sentences.
@@ -116,12 +121,22 @@ pub fn headline(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> String {
         text += " Part of the misfit remains, and none of the effects that were tried explains it.";
     }
     for effect in &diagnosis.selection.effects {
+        let said = |c: &Candidate| format!("{} {}", of(c.id).called(kind, &c.label), words::at(&c.place));
         if let Some(rival) = effect.ambiguous_rival() {
-            let said = |c: &Candidate| format!("{} {}", of(c.id).called(kind, &c.label), words::at(&c.place));
             text += &format!(
                 " The recordings cannot distinguish {} from {}. The last section says what to record to separate them.",
                 said(&all[effect.candidate]),
                 said(&all[rival])
+            );
+        }
+        if let Some(number) = &effect.as_good {
+            let candidate = &all[number.candidate];
+            text += &format!(
+                " As far as the recordings can tell, it may be {} in the place of {}{}, against which the tolerance that \
+                 the model states speaks.",
+                said(candidate),
+                said(&all[effect.candidate]),
+                unlisted::equation(candidate, &number.values).map_or_else(String::new, |found| format!(" ({found})")),
             );
         }
     }

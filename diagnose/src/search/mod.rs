@@ -42,5 +42,5 @@ pub use evidence::HeldOutGain;
 pub use power::LeastSize;
 pub use screen::Screen;
 pub use select::select;
-pub use selection::{CandidateScore, LawPairs, Progress, Rival, SelectedEffect, Selection};
+pub use selection::{CandidateScore, Fitted, LawPairs, Progress, Rival, SelectedEffect, Selection};
 pub use shared::with_shared;

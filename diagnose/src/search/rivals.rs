@@ -1,6 +1,6 @@
 //! Rivals: for each effect of a model, what does best in its place.
 
-use super::selection::{Rival, SelectedEffect};
+use super::selection::{Fitted, Rival, SelectedEffect};
 use super::selector::{Open, Selector, ranked};
 use super::simplification::is_form_of;
 use crate::criteria::Criteria;
@@ -16,6 +16,16 @@ pub struct Comparison {
     pub better: Option<Fit>,
 }
 
+/// What may stand in the place of an effect.
+enum Kind {
+    /// Another effect, or a law without a name.
+    Other,
+    /// A wrong number of the model. The tolerances speak against it, so that one that only does as well is said and makes the effect no less sure.
+    Number,
+    /// Another form of the effect, which speaks no less for it.
+    Form,
+}
+
 impl Selector<'_, '_> {
     /// Takes each effect out of the model in turn and fits the strongest other candidate in its place.
     pub fn compare_with_rivals(&mut self, best: &Fit, open: Open) -> Result<Comparison, DiagnoseError> {
@@ -27,25 +37,28 @@ impl Selector<'_, '_> {
             let less = self.fitted(best.point.without_effect(self.specimen(), position))?;
             let without = self.held_out(&less);
             let gain = self.gain(without, costs);
-            let mut rival = None;
+            let (mut rival, mut as_good) = (None, None);
             let open = self.open(&less.point, open);
             let numbers = self.numbers_beside(&less.point, &open);
             let effect = self.candidate(candidate);
-            // Another form of the effect may take its place, and speaks no less for the effect.
             let (forms, rivals): (Vec<usize>, Vec<usize>) =
                 (open.into_iter()).partition(|&c| is_equal_form(self.candidate(c), effect));
-            for (candidates, are_reported) in [(rivals, true), (numbers, false), (forms, false)] {
+            for (kind, candidates) in [(Kind::Other, rivals), (Kind::Number, numbers), (Kind::Form, forms)] {
                 let Some((other, full)) = self.strongest_rival(&less, candidate, best, gain.total, candidates)? else {
                     continue;
                 };
                 let found = self.rival(other, &full, best, gain.total);
+                match kind {
+                    Kind::Other => rival = Some(found),
+                    Kind::Number if found.ambiguous => as_good = full.point.hypothesis(self.specimen()).effects.pop(),
+                    Kind::Number | Kind::Form => {}
+                }
                 let lead = found.lead.total;
                 if self.takes_the_place(&found, &full, candidate, best, gain.total)
                     && better.as_ref().is_none_or(|(least, _)| lead < *least)
                 {
                     better = Some((lead, full));
                 }
-                rival = rival.or(Some(found).filter(|_| are_reported));
             }
             effects.push(SelectedEffect {
                 candidate,
@@ -53,6 +66,7 @@ impl Selector<'_, '_> {
                 ratio_without: self.noise_ratio(without),
                 without: less.point,
                 rival,
+                as_good: as_good.map(|(candidate, values)| Fitted { candidate, values }),
             });
         }
         effects.sort_by(|a, b| b.gain.total.total_cmp(&a.gain.total));
@@ -62,7 +76,7 @@ impl Selector<'_, '_> {
         })
     }
 
-    /// Wrong numbers that might be in a model and are not among these rivals. Their tolerances speak against them, so that one that only does as well is no rival.
+    /// Wrong numbers that might be in a model and are not among these rivals.
     fn numbers_beside(&self, point: &Point, rivals: &[usize]) -> Vec<usize> {
         let all = self.open(point, Open::Numbers).into_iter();
         all.filter(|c| self.candidate(*c).is_believed_number && !rivals.contains(c))
@@ -185,7 +199,7 @@ mod tests {
     /// A vibration `a sin(w t)` is orthogonal to all else in the model, so that leaving it out costs the sum of its squares
     /// over the noise: `n a^2 / (2 s^2)`.
     #[test]
-    fn a_wrong_number_takes_the_place_of_a_name_only_if_it_is_certainly_better_and_is_no_rival_otherwise() {
+    fn a_wrong_number_takes_the_place_of_a_name_only_if_it_is_certainly_better_and_is_else_said_beside_it() {
         let compared = |name: usize, truth: usize, size: f64| {
             let mut specimen = specimen(&[(truth, &[size])], &[name, CUBIC]);
             specimen.become_number(CUBIC);
@@ -195,11 +209,17 @@ mod tests {
             let best = selector.fitted(start).expect("a fit");
             let comparison = selector.compare_with_rivals(&best, Open::Names).expect("a comparison");
             assert!(comparison.effects[0].rival.is_none());
-            comparison.better.map(|fit| fit.point.effects)
+            let as_good = comparison.effects[0].as_good.clone();
+            (comparison.better.map(|fit| fit.point.effects), as_good)
         };
-        assert_eq!(compared(FRICTION, CUBIC, 0.4), Some(vec![CUBIC]));
-        assert_eq!(compared(NEARLY_CUBIC, NEARLY_CUBIC, 0.4), None);
-        assert_eq!(compared(NEARLY_CUBIC, CUBIC, 0.4), None);
+        assert_eq!(compared(FRICTION, CUBIC, 0.4).0, Some(vec![CUBIC]));
+        assert_eq!(compared(NEARLY_CUBIC, NEARLY_CUBIC, 9.0), (None, None));
+        for truth in [NEARLY_CUBIC, CUBIC] {
+            let (better, as_good) = compared(NEARLY_CUBIC, truth, 0.4);
+            let number = as_good.expect("a number that does as well");
+            assert!(better.is_none() && number.candidate == CUBIC);
+            assert!((number.values[0] - 0.4).abs() < 0.02, "{number:?}");
+        }
     }
 
     #[test]

@@ -59,6 +59,17 @@ pub struct SelectedEffect {
     pub ratio_without: f64,
     /// The strongest rival, fitted in its place; `None` where none could be fitted.
     pub rival: Option<Rival>,
+    /// A wrong number of the model that does as well in its place; `None` where none does.
+    pub as_good: Option<Fitted>,
+}
+
+/// A candidate with the values that were fitted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fitted {
+    /// Index of the candidate.
+    pub candidate: usize,
+    /// Values of its parameters.
+    pub values: Vec<f64>,
 }
 
 /// The strongest other candidate in the place of an effect.
@@ -77,6 +88,12 @@ impl SelectedEffect {
     #[must_use]
     pub fn ambiguous_rival(&self) -> Option<usize> {
         self.rival.filter(|r| r.ambiguous).map(|r| r.candidate)
+    }
+
+    /// All that the recordings cannot tell from the effect: its rival, and a wrong number of the model.
+    pub fn indistinguishable(&self) -> impl Iterator<Item = usize> {
+        let number = self.as_good.as_ref().map(|number| number.candidate);
+        self.ambiguous_rival().into_iter().chain(number)
     }
 }
 

@@ -27,8 +27,10 @@ const RANGE: (f64, f64) = (0.05, 0.99);
 const FAR_OFF: f64 = 30.0;
 /// ... and this part of what the recalibrated model leaves.
 const LARGE_PART: f64 = 0.25;
-/// Most that is said of an effect of a model that is far off: what else is missing may have its part.
-const OF_FAR_OFF: f64 = 0.5;
+/// The shape of a law without a name is known to this part of what the law gains.
+const SHAPE: f64 = 0.01;
+/// Most that is said of an effect of a model that is far off, since what else is missing may have its part, and of one that may be the shape of a law.
+const MAY_BE_SOMETHING_ELSE: f64 = 0.5;
 
 impl Evidence {
     /// The evidence as numbers of order one; standard errors logarithmic beyond one.
@@ -53,7 +55,14 @@ impl Evidence {
 #[must_use]
 pub fn upper_limit(improved_ratio: f64, recalibrated_ratio: f64) -> f64 {
     let is_far_off = improved_ratio > FAR_OFF && improved_ratio > LARGE_PART * recalibrated_ratio;
-    if is_far_off { OF_FAR_OFF } else { RANGE.1 }
+    if is_far_off { MAY_BE_SOMETHING_ELSE } else { RANGE.1 }
+}
+
+/// The most that a report is sure of an effect with this gain beside a law without a name that has the other one.
+#[must_use]
+pub fn upper_limit_beside_a_law(gain: f64, gain_of_law: f64) -> f64 {
+    let may_be_shape = gain < SHAPE * gain_of_law;
+    if may_be_shape { MAY_BE_SOMETHING_ELSE } else { RANGE.1 }
 }
 
 /// Probability from measures and weights.
@@ -69,9 +78,16 @@ mod tests {
 
     #[test]
     fn nothing_is_sure_in_a_model_that_is_far_off() {
-        assert_eq!(upper_limit(228.0, 444.0), OF_FAR_OFF);
+        assert_eq!(upper_limit(228.0, 444.0), MAY_BE_SOMETHING_ELSE);
         assert_eq!(upper_limit(246.0, 8860.0), RANGE.1, "it explains most of it");
         assert_eq!(upper_limit(10.2, 26.9), RANGE.1, "it is near");
+    }
+
+    #[test]
+    fn what_may_be_the_shape_of_a_law_is_not_sure() {
+        assert_eq!(upper_limit_beside_a_law(40.0, 6e3), MAY_BE_SOMETHING_ELSE);
+        assert_eq!(upper_limit_beside_a_law(6e3, 40.0), RANGE.1);
+        assert_eq!(upper_limit_beside_a_law(40.0, 0.0), RANGE.1, "there is no law");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Effects as they are reported: one entry for each place, with the parameters that belong to it.
 
 use super::estimate::Estimate;
-use crate::confidence::{Evidence, upper_limit};
+use crate::confidence::{Evidence, upper_limit, upper_limit_beside_a_law};
 use crate::effect::{of, unlisted};
 use crate::estimation::LeastSquares;
 use crate::search::{SelectedEffect, Selection};
@@ -77,6 +77,8 @@ fn modelled(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Esti
     let point = &selection.best.point;
     let hypothesis = point.hypothesis(specimen);
     let most = upper_limit(selection.improved_ratio, selection.calibrated_ratio);
+    let laws = (selection.effects.iter()).filter(|e| specimen.candidates()[e.candidate].is_law());
+    let gain_of_law = laws.map(|law| law.gain.total).fold(0.0, f64::max);
     let mut out = Vec::new();
     for selected in &selection.effects {
         let Some(position) = point.effects.iter().position(|&e| e == selected.candidate) else {
@@ -100,7 +102,10 @@ fn modelled(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Esti
                 place: candidate.place.with_site(site),
                 label: candidate.label.clone(),
                 selected: Some(selected.clone()),
-                confidence: evidence.confidence().min(most),
+                confidence: evidence
+                    .confidence()
+                    .min(most)
+                    .min(upper_limit_beside_a_law(selected.gain.total, gain_of_law)),
                 parameters: numbers.iter().map(|&k| own[k].clone()).collect(),
                 law: law.clone(),
                 equation: equation.clone(),

@@ -14,7 +14,7 @@ fn folder_name(case: &Case) -> String {
     case.name.replace([':', '.'], "_")
 }
 
-/// Writes `model.toml`, the recordings, and what is concealed (`answer.json`) into a folder of the case's name.
+/// Writes `model.toml`, the recordings, and what is concealed (`answer.json`, `unseen/complete.toml`) into a folder of the case's name.
 ///
 /// # Errors
 /// A campaign that cannot be simulated, or a folder that cannot be written.
@@ -24,6 +24,7 @@ pub fn save(case: &Case, into: &Path) -> Result<(), DiagnoseError> {
     let unseen = folder.join("unseen");
     std::fs::create_dir_all(&unseen).map_err(|e| DiagnoseError::file(&unseen, e.to_string()))?;
     write(&folder.join("model.toml"), &campaign.given.to_toml())?;
+    write(&unseen.join("complete.toml"), &campaign.complete.to_toml())?;
     let ids: Vec<EffectId> = case.hidden.iter().map(|(id, _)| *id).collect();
     let answer = serde_json::json!({
         "name": case.name, "hidden": ids, "sizes": campaign.sizes, "truth": campaign.truth,

@@ -1,18 +1,21 @@
-//! Values that settle with one time constant from what is believed: `a (1 - exp(-t / T))`, added or as the logarithm of a factor. With a
-//! time constant far beyond the recording this is a drift at a constant rate.
+//! Values that settle with one time constant from what is believed: `a (1 - exp(-t / T)) / (1 - exp(-60 s / T))`, added or as the logarithm of a
+//! factor. With a time constant far beyond the recording this is a drift at a constant rate, of which the value after a minute says as much as it says of
+//! one that has settled by then.
 
 use super::form::{ClosedForm, Form, Grid};
 use crate::parameter::Parameter;
 
 /// Time constants that are tried first, s.
 const STARTS_S: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
-/// Largest logarithm of a factor that is added up.
+/// When the value has the fitted size, s.
+const SIZED_AT_S: f64 = 60.0;
+/// Largest logarithm of a factor after this time.
 const MOST_LOG: f64 = 3.0;
 
-/// A value that is added; the key of its end value.
+/// A value that is added; the key of its value after a minute.
 pub struct SettlingAdded(pub &'static str);
 
-/// A value that is added and never negative; the key of its end value.
+/// A value that is added and never negative; the key of its value after a minute.
 pub struct SettlingLevel(pub &'static str);
 
 /// A value that multiplies what is believed.
@@ -23,11 +26,12 @@ fn time_constant() -> Parameter {
 }
 
 fn settled(grid: &Grid, fitted: &[f64]) -> Vec<f64> {
-    let &[end, time_constant_s] = fitted else {
+    let &[after_a_minute, time_constant_s] = fitted else {
         return vec![0.0; grid.knots.len()];
     };
+    let risen = |t: f64| -libm::expm1(-t / time_constant_s);
     (grid.knots.iter())
-        .map(|t| -end * libm::expm1(-t / time_constant_s))
+        .map(|t| after_a_minute * risen(*t) / risen(SIZED_AT_S))
         .collect()
 }
 
@@ -38,8 +42,8 @@ fn starts(grid: &Grid) -> Vec<Vec<f64>> {
 impl Form for SettlingAdded {
     fn closed(&self) -> Option<ClosedForm> {
         Some(ClosedForm {
-            equation: "y = y_end (1 - exp(-x / T))",
-            symbols: &["y_end", "T"],
+            equation: "y = y_60 (1 - exp(-x / T)) / (1 - exp(-60 / T))",
+            symbols: &["y_60", "T"],
         })
     }
 
@@ -63,8 +67,8 @@ impl Form for SettlingAdded {
 impl Form for SettlingLevel {
     fn closed(&self) -> Option<ClosedForm> {
         Some(ClosedForm {
-            equation: "y = y_end (1 - exp(-x / T))",
-            symbols: &["y_end", "T"],
+            equation: "y = y_60 (1 - exp(-x / T)) / (1 - exp(-60 / T))",
+            symbols: &["y_60", "T"],
         })
     }
 
@@ -84,14 +88,14 @@ impl Form for SettlingLevel {
 impl Form for SettlingFactor {
     fn closed(&self) -> Option<ClosedForm> {
         Some(ClosedForm {
-            equation: "y = exp(a (1 - exp(-x / T)))",
+            equation: "y = exp(a (1 - exp(-x / T)) / (1 - exp(-60 / T)))",
             symbols: &["a", "T"],
         })
     }
 
     fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
         vec![
-            Parameter::departure("log_end_factor", grid.visible, (-MOST_LOG, MOST_LOG)),
+            Parameter::departure("log_factor_after_60_s", grid.visible, (-MOST_LOG, MOST_LOG)),
             time_constant(),
         ]
     }

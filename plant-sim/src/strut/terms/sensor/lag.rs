@@ -1,5 +1,6 @@
 //! `sensor_lag`: an instrument that follows the truth by a first-order lag, `tau dy/dt + y = x`.
 
+use super::interpolate::curvature;
 use crate::model_file::{Quantity, Range};
 use crate::strut::motion::Motion;
 use crate::strut::terms::equation::Equation;
@@ -17,17 +18,22 @@ pub const EQUATION: Equation = Equation {
     source: "first-order instrument",
 };
 
-/// What the instrument shows of a true signal. Exact for a signal that is linear between its samples.
+/// What the instrument shows of a true signal. Exact for a signal that is a parabola between its samples.
 pub fn record(tau_s: f64, times_s: &[f64], signal: &mut [f64]) {
     let mut state = signal.first().copied().unwrap_or(0.0);
-    let mut before = state;
+    let (mut before_last, mut last) = (None, state);
     let mut decays = Decays::of(tau_s);
     for i in 1..signal.len() {
         let dt = times_s[i] - times_s[i - 1];
-        let (decay, slope) = (decays.over(dt), (signal[i] - before) / dt);
-        // Response to a ramp from `before`: it follows tau late.
-        state = (state - before + slope * tau_s) * decay + signal[i] - slope * tau_s;
-        before = signal[i];
+        let now = signal[i];
+        // From `last` with this speed and this half of an acceleration.
+        let bend = 0.5 * curvature([before_last, Some(last), Some(now), signal.get(i + 1).copied()]) / (dt * dt);
+        let speed = (now - last) / dt - bend * dt;
+        // What it would show if it had followed the parabola for ever: at the begin and the end of the interval.
+        let begin = last - tau_s * (speed - 2.0 * tau_s * bend);
+        let end = now - tau_s * (speed + 2.0 * bend * (dt - tau_s));
+        state = end + (state - begin) * decays.over(dt);
+        (before_last, last) = (Some(last), now);
         signal[i] = state;
     }
 }
@@ -98,5 +104,19 @@ mod tests {
         let mut ramp: Vec<f64> = t.iter().map(|t| 5.0 * t).collect();
         record(0.02, &t, &mut ramp);
         assert!((ramp[399] - 5.0 * (t[399] - 0.02)).abs() < 1e-9);
+    }
+
+    #[test]
+    fn follows_a_sine_as_the_closed_form_says_also_with_a_time_constant_below_the_sampling_interval() {
+        let (dt, w) = (0.002, 60.0);
+        let t: Vec<f64> = (0..2000).map(|i| dt * f64::from(i)).collect();
+        for tau in [0.0002, 0.001, 0.02] {
+            let mut y: Vec<f64> = t.iter().map(|t| libm::sin(w * t)).collect();
+            record(tau, &t, &mut y);
+            let exact = |t: f64| (libm::sin(w * t) - w * tau * libm::cos(w * t)) / (1.0 + w * w * tau * tau);
+            let worst = (100..1900).map(|k| (y[k] - exact(t[k])).abs()).fold(0.0, f64::max);
+            // Straight lines miss by up to 1.8e-3, an eighth of the second difference.
+            assert!(worst < 1.5e-4, "{tau}: {worst}");
+        }
     }
 }

@@ -22,45 +22,47 @@ pub const EQUATION: Equation = Equation {
 pub fn record(tau_s: f64, times_s: &[f64], signal: &mut [f64]) {
     let mut state = signal.first().copied().unwrap_or(0.0);
     let (mut before_last, mut last) = (None, state);
-    let mut decays = Decays::of(tau_s);
+    let mut approach = Approach::of(tau_s);
     for i in 1..signal.len() {
         let dt = times_s[i] - times_s[i - 1];
         let now = signal[i];
-        // From `last` with this speed and this half of an acceleration.
-        let bend = 0.5 * curvature([before_last, Some(last), Some(now), signal.get(i + 1).copied()]) / (dt * dt);
-        let speed = (now - last) / dt - bend * dt;
-        // What it would show if it had followed the parabola for ever: at the begin and the end of the interval.
-        let begin = last - tau_s * (speed - 2.0 * tau_s * bend);
-        let end = now - tau_s * (speed + 2.0 * bend * (dt - tau_s));
-        state = end + (state - begin) * decays.over(dt);
+        // What the rise over the interval would be at a constant speed, and what its curvature adds to it by the end.
+        let bend = 0.5 * curvature([before_last, Some(last), Some(now), signal.get(i + 1).copied()]);
+        let rise = now - last - bend;
+        let [of_difference, of_rise, of_bend] = approach.over(dt);
+        state += of_difference * (last - state) + of_rise * rise + of_bend * bend;
         (before_last, last) = (Some(last), now);
         signal[i] = state;
     }
 }
 
-/// What is left of a difference after an interval. Those of evenly sampled recordings differ in their last digit only, so that the last two are remembered.
-struct Decays {
+/// Parts that the instrument has followed by the end of an interval: of a difference at its beginning, of a rise at constant speed, and of one at constant
+/// acceleration. Intervals of evenly sampled recordings differ in their last digit only, so that the last two are remembered.
+struct Approach {
     tau_s: f64,
-    known: [(f64, f64); 2],
+    known: [(f64, [f64; 3]); 2],
 }
 
-impl Decays {
+impl Approach {
     const fn of(tau_s: f64) -> Self {
         Self {
             tau_s,
-            known: [(0.0, 1.0); 2],
+            known: [(0.0, [0.0; 3]); 2],
         }
     }
 
-    fn over(&mut self, dt_s: f64) -> f64 {
+    fn over(&mut self, dt_s: f64) -> [f64; 3] {
         if self.known[0].0 != dt_s {
             self.known.swap(0, 1);
         }
-        let [(over_s, decay), _] = &mut self.known;
+        let [(over_s, parts), _] = &mut self.known;
         if *over_s != dt_s {
-            (*over_s, *decay) = (dt_s, libm::exp(-dt_s / self.tau_s));
+            let intervals = dt_s / self.tau_s;
+            let of_difference = -libm::expm1(-intervals);
+            let of_rise = 1.0 - of_difference / intervals;
+            (*over_s, *parts) = (dt_s, [of_difference, of_rise, 1.0 - 2.0 * of_rise / intervals]);
         }
-        *decay
+        *parts
     }
 }
 
@@ -91,10 +93,28 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_is_that_of_each_interval() {
-        let mut decays = Decays::of(0.02);
+    fn what_is_followed_is_that_of_each_interval() {
+        let mut approach = Approach::of(0.02);
         for dt in [0.005, 0.006, 0.005, 0.006, 0.004, 0.006, 0.005] {
-            assert_eq!(decays.over(dt), libm::exp(-dt / 0.02));
+            assert_eq!(approach.over(dt), Approach::of(0.02).over(dt));
+            assert!((approach.over(dt)[0] - 1.0 + libm::exp(-dt / 0.02)).abs() < 1e-15);
+        }
+        assert_eq!(Approach::of(0.0).over(0.005), [1.0; 3], "it shows what is true");
+    }
+
+    #[test]
+    fn a_time_constant_of_any_length_loses_no_digits() {
+        let t: Vec<f64> = (0..400).map(|i| 0.002 * f64::from(i)).collect();
+        for tau in [1e-9, 10.0, 1e6] {
+            let mut curve: Vec<f64> = t.iter().map(|t| 1e9 * t * t).collect();
+            record(tau, &t, &mut curve);
+            // Of a rise that begins at rest a long lag shows the integral, a t^3 / 3 T, and a short one all.
+            let exact = if tau < 1.0 {
+                1e9 * t[399] * t[399]
+            } else {
+                1e9 * t[399] * t[399] * t[399] / (3.0 * tau)
+            };
+            assert!((curve[399] / exact - 1.0).abs() < 0.03, "{tau}: {} {exact}", curve[399]);
         }
     }
 

@@ -21,6 +21,16 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
+/// Saves the first campaigns of a self-test into `saved`, and diagnoses one of them into `found`.
+fn diagnose_saved(folder: &Path, campaigns: &str, campaign: &str) {
+    let save = format!("diagnose --self-test {campaigns} --save --out saved");
+    let diagnose = format!("diagnose saved/{campaign} --out found");
+    for command in [save, diagnose] {
+        let ran = oleo(folder, &command.split(' ').collect::<Vec<_>>());
+        assert!(ran.status.success(), "{command}: {}", text(&ran.stderr));
+    }
+}
+
 #[test]
 fn a_self_test_goes_on_where_it_stopped_and_is_the_same_on_any_number_of_threads() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -105,14 +115,9 @@ fn a_saved_campaign_is_one_like_any_other() {
 #[test]
 fn a_wrong_number_is_named_and_the_improved_model_states_the_true_one() {
     let folder = tempfile::tempdir().expect("a folder");
-    let conceal = "diagnose --self-test --terms wrong_number --seed 41 --campaigns 2 --save --out saved";
-    let saved = oleo(folder.path(), &conceal.split(' ').collect::<Vec<_>>());
-    assert!(saved.status.success(), "{}", text(&saved.stderr));
     // The second one is a bore, which looks like the gains of two sensors.
-    let campaign = folder.path().join("saved/41_wrong_number_0_19_5");
-    let campaign = campaign.to_string_lossy();
-    let ran = oleo(folder.path(), &["diagnose", &campaign, "--out", "found"]);
-    assert!(ran.status.success(), "{}", text(&ran.stderr));
+    let campaign = "41_wrong_number_0_19_5";
+    diagnose_saved(folder.path(), "--terms wrong_number --seed 41 --campaigns 2", campaign);
     let json = |path: &str| -> Value {
         let text = std::fs::read_to_string(folder.path().join(path)).expect("a file");
         serde_json::from_str(&text).expect("JSON")
@@ -131,10 +136,10 @@ fn a_wrong_number_is_named_and_the_improved_model_states_the_true_one() {
         StrutModel::from_toml(&text, &path).expect("a strut").cylinder.bore_m
     };
     let (believed, found) = (
-        bore_of(format!("{campaign}/model.toml")),
+        bore_of(format!("saved/{campaign}/model.toml")),
         bore_of("found/model.toml".into()),
     );
-    let truth = number(&json(&format!("{campaign}/answer.json"))["truth"][0]["value"]);
+    let truth = number(&json(&format!("saved/{campaign}/answer.json"))["truth"][0]["value"]);
     let ends = [0, 1].map(|end| number(&bore["ci95"][end]));
     assert!(ends[0] <= truth && truth <= ends[1] && (believed - truth).abs() > 3.0 * (ends[1] - ends[0]));
     assert!((found - number(&bore["value"])).abs() < 1e-9);
@@ -149,14 +154,8 @@ fn a_wrong_number_is_named_and_the_improved_model_states_the_true_one() {
 #[test]
 fn a_number_that_may_be_wrong_in_the_place_of_an_effect_is_said_with_its_value() {
     let folder = tempfile::tempdir().expect("a folder");
-    let conceal = "diagnose --self-test --terms mount_compliance --seed 3 --campaigns 4 --save --out saved";
-    let saved = oleo(folder.path(), &conceal.split(' ').collect::<Vec<_>>());
-    assert!(saved.status.success(), "{}", text(&saved.stderr));
-    let ran = oleo(
-        folder.path(),
-        &["diagnose", "saved/3_mount_compliance_3_1", "--out", "found"],
-    );
-    assert!(ran.status.success(), "{}", text(&ran.stderr));
+    let campaigns = "--terms mount_compliance --seed 3 --campaigns 4";
+    diagnose_saved(folder.path(), campaigns, "3_mount_compliance_3_1");
     let read = |name: &str| std::fs::read_to_string(folder.path().join("found").join(name)).expect(name);
     let report: Value = serde_json::from_str(&read("report.json")).expect("JSON");
     let effects = report["effects"].as_array().expect("a list");

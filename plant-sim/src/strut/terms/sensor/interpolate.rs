@@ -21,34 +21,35 @@ impl Place {
         }
     }
 
-    /// Value of a curved signal there.
-    pub fn of_curved(self, y: &[f64]) -> f64 {
+    /// Value of a signal `y` over `x` there, curved between its samples.
+    pub fn of_curved(self, x: &[f64], y: &[f64]) -> f64 {
         let line = self.of(y);
         match self {
             Self::At(_) => line,
             Self::Before(i, part) => {
-                let before = i.checked_sub(2).and_then(|before| y.get(before));
-                let around = [before, y.get(i - 1), y.get(i), y.get(i + 1)];
-                line - 0.5 * part * (1.0 - part) * curvature(around.map(Option::<&f64>::copied))
+                let point = |k: usize| Some((*x.get(k)?, *y.get(k)?));
+                let around = [i.checked_sub(2).and_then(point), point(i - 1), point(i), point(i + 1)];
+                line - part * (1.0 - part) * bend(around)
             }
         }
     }
 }
 
-/// Second difference of a signal over the interval from one sample to the next, `around` it the sample before, the two samples, and the one after: the smaller one of those
-/// at its ends, and none where these have different signs (minmod, Roe, Ann. Rev. Fluid Mech. 18, 1986), so that nothing overshoots where the signal jumps.
-pub(super) fn curvature(around: [Option<f64>; 4]) -> f64 {
+/// What the curvature of a signal adds over the interval from one point `(x, y)` to the next: half its second derivative times the interval squared. `around` the
+/// interval are the point before, the two points, and the one after. Of the second derivatives at both ends the smaller one counts, and none where they have different
+/// signs (minmod, Roe, Ann. Rev. Fluid Mech. 18, 1986), so that nothing overshoots where the signal jumps. 0 where a point is missing.
+pub(super) fn bend(around: [Option<(f64, f64)>; 4]) -> f64 {
     let [Some(before), Some(begin), Some(end), Some(after)] = around else {
         return 0.0;
     };
-    let (a, b) = (before - 2.0 * begin + end, begin - 2.0 * end + after);
-    if a * b <= 0.0 {
-        0.0
-    } else if a.abs() < b.abs() {
-        a
-    } else {
-        b
+    let slope = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1) / (b.0 - a.0);
+    let halved = |a: (f64, f64), b: (f64, f64), c: (f64, f64)| (slope(b, c) - slope(a, b)) / (c.0 - a.0);
+    let (first, second) = (halved(before, begin, end), halved(begin, end, after));
+    if first * second <= 0.0 {
+        return 0.0;
     }
+    let smaller = if first.abs() < second.abs() { first } else { second };
+    smaller * (end.0 - begin.0) * (end.0 - begin.0)
 }
 
 /// Finds places over increasing `x` one after the other: from the place that was found last, the next one is usually a sample further.
@@ -94,9 +95,15 @@ mod tests {
             let y: Vec<f64> = x.iter().map(|x| 2.0 - 3.0 * x).collect();
             let mut places = Places::over(&x);
             for at in ats {
-                let exact = 2.0 - 3.0 * at.clamp(x[0], x[39]);
+                let inside = at.clamp(x[0], x[39]);
+                let exact = 2.0 - 3.0 * inside;
                 let found = places.find(at);
                 proptest::prop_assert!((found.of(&y) - exact).abs() < 1e-9);
+                proptest::prop_assert!((found.of_curved(&x, &y) - exact).abs() < 1e-9);
+                // A parabola too, where there is a sample on either side of the interval.
+                let parabola: Vec<f64> = x.iter().map(|x| x * x).collect();
+                let curved = (found.of_curved(&x, &parabola) - inside * inside).abs();
+                proptest::prop_assert!(curved < 1e-9 || inside < x[1] || inside > x[38]);
                 // To the bit, whatever was asked for before.
                 proptest::prop_assert_eq!(found, Places::over(&x).find(at));
             }

@@ -23,7 +23,7 @@ pub fn record(late_s: f64, times_s: &[f64], signal: &mut [f64]) {
     let truth = signal.to_vec();
     let mut places = Places::over(times_s);
     for (shown, t) in signal.iter_mut().zip(times_s) {
-        *shown = places.find(t - late_s).of_curved(&truth);
+        *shown = places.find(t - late_s).of_curved(times_s, &truth);
     }
 }
 

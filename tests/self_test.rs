@@ -171,7 +171,7 @@ fn a_number_that_may_be_wrong_in_the_place_of_an_effect_is_said_with_its_value()
     let next = report["next_experiment"].as_str().expect("a text");
     assert!(next.contains("measure the oil volume itself"), "{next}");
     let page = read("report.html");
-    assert!(page.contains("it may be a wrong oil volume") && page.contains("oil_volume_m3 = "));
+    assert!(page.contains("from a wrong oil volume") && page.contains("oil_volume_m3 = "));
 }
 
 #[test]

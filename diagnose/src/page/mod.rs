@@ -132,10 +132,10 @@ pub fn headline(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> String {
         if let Some(number) = &effect.as_good {
             let candidate = &all[number.candidate];
             text += &format!(
-                " As far as the recordings can tell, it may be {} in the place of {}{}, against which the tolerance that \
-                 the model states speaks.",
-                said(candidate),
+                " The recordings cannot distinguish {} from {}{}, but the tolerance that the model states speaks \
+                 against the latter.",
                 said(&all[effect.candidate]),
+                said(candidate),
                 unlisted::equation(candidate, &number.values).map_or_else(String::new, |found| format!(" ({found})")),
             );
         }

@@ -184,6 +184,8 @@ mod tests {
             ("static_gas_volume_1", "static gas volume 1", "relative"),
             ("breakaway_over_coulomb", "breakaway force over Coulomb force", ""),
             ("drift_Pa_s", "drift", "Pa/s"),
+            ("flow_after_a_minute_m3_s", "flow after a minute", "m3/s"),
+            ("log_factor_after_a_minute", "log factor after a minute", ""),
         ] {
             assert_eq!(quantity(key), (name.to_owned(), unit.to_owned()), "{key}");
         }

@@ -95,7 +95,7 @@ impl Form for SettlingFactor {
 
     fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
         vec![
-            Parameter::departure("log_factor_after_60_s", grid.visible, (-MOST_LOG, MOST_LOG)),
+            Parameter::departure("log_factor_after_a_minute", grid.visible, (-MOST_LOG, MOST_LOG)),
             time_constant(),
         ]
     }

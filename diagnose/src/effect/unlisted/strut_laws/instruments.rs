@@ -33,7 +33,7 @@ macro_rules! laws_of {
                 concat!("reading over time, ", $name),
                 SITE,
                 (LawPlace::$place, Time),
-                &SettlingAdded(concat!("after_60_s_", $column)),
+                &SettlingAdded(concat!("after_a_minute_", $column)),
                 TIME_S,
                 $visible,
             ),

@@ -46,7 +46,7 @@ pub(super) const LAWS: &[Law] = &[
         "opening beside valve 3 over time",
         Site::Valve(Valve::Spring),
         (LawPlace::BesideValve3, Time),
-        &SettlingLevel("flow_coefficient_after_60_s"),
+        &SettlingLevel("flow_coefficient_after_a_minute"),
         TIME_S,
         1e-9,
     ),

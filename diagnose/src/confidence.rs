@@ -65,6 +65,14 @@ pub fn upper_limit_beside_a_law(gain: f64, gain_of_law: f64) -> f64 {
     if may_be_shape { MAY_BE_SOMETHING_ELSE } else { RANGE.1 }
 }
 
+/// The most that a report is sure of a law without a name with these intervals of its numbers. Of a law none of whose numbers is certainly other than zero it
+/// is not known what it looks like.
+#[must_use]
+pub fn upper_limit_of_law(intervals: impl IntoIterator<Item = [f64; 2]>) -> f64 {
+    let may_be_nothing = intervals.into_iter().all(|[low, high]| low <= 0.0 && 0.0 <= high);
+    if may_be_nothing { MAY_BE_SOMETHING_ELSE } else { RANGE.1 }
+}
+
 /// Probability from measures and weights.
 #[must_use]
 pub fn weighed(measures: &[f64], weights: &[f64]) -> f64 {
@@ -88,6 +96,12 @@ mod tests {
         assert_eq!(upper_limit_beside_a_law(40.0, 6e3), MAY_BE_SOMETHING_ELSE);
         assert_eq!(upper_limit_beside_a_law(6e3, 40.0), RANGE.1);
         assert_eq!(upper_limit_beside_a_law(40.0, 0.0), RANGE.1, "there is no law");
+    }
+
+    #[test]
+    fn a_law_of_which_each_number_may_be_zero_is_not_sure() {
+        assert_eq!(upper_limit_of_law([[-0.1, 0.2], [-0.3, 0.0]]), MAY_BE_SOMETHING_ELSE);
+        assert_eq!(upper_limit_of_law([[-0.1, 0.2], [0.1, 0.3]]), RANGE.1);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Effects as they are reported: one entry for each place, with the parameters that belong to it.
 
 use super::estimate::Estimate;
-use crate::confidence::{Evidence, upper_limit, upper_limit_beside_a_law};
+use crate::confidence::{Evidence, upper_limit, upper_limit_beside_a_law, upper_limit_of_law};
 use crate::effect::{of, unlisted};
 use crate::estimation::LeastSquares;
 use crate::search::{SelectedEffect, Selection};
@@ -96,16 +96,17 @@ fn modelled(problem: &LeastSquares<'_>, selection: &Selection, estimates: &[Esti
             gain: (selected.gain.total, selected.gain.standard_error),
             lead: selected.rival.map(|r| (r.lead.total, r.lead.standard_error)),
         };
+        let mut most = most.min(upper_limit_beside_a_law(selected.gain.total, gain_of_law));
+        if candidate.is_law() {
+            most = most.min(upper_limit_of_law(own.iter().map(|number| number.ci95)));
+        }
         for (site, numbers) in of(candidate.id).reported(&candidate.place.site, own.len()) {
             out.push(Effect {
                 id: candidate.id,
                 place: candidate.place.with_site(site),
                 label: candidate.label.clone(),
                 selected: Some(selected.clone()),
-                confidence: evidence
-                    .confidence()
-                    .min(most)
-                    .min(upper_limit_beside_a_law(selected.gain.total, gain_of_law)),
+                confidence: evidence.confidence().min(most),
                 parameters: numbers.iter().map(|&k| own[k].clone()).collect(),
                 law: law.clone(),
                 equation: equation.clone(),

@@ -26,6 +26,7 @@ mod forward;
 mod numbers;
 mod oscillation;
 mod power;
+mod reshaping;
 mod restart;
 mod rivals;
 pub mod screen;

@@ -149,7 +149,9 @@ fn grown_with_laws_first(
 ) -> Result<Option<(Grown, Fit)>, DiagnoseError> {
     let has_named = |fit: &Fit| (fit.point.effects.iter()).any(|&e| !selector.candidate(e).is_unlisted());
     let incomplete = selector.held_out_ratio(best) > selector.complete_up_to(best);
-    let names_came_first = grown.open != Open::Names && has_named(&grown.best);
+    // As many names as a model may have leave no room for a law.
+    let no_room = grown.best.point.effects.len() >= selector.criteria().acceptance.most_effects;
+    let names_came_first = (grown.open != Open::Names || no_room) && has_named(&grown.best);
     if !incomplete || !names_came_first || !selector.can_have_two_laws() {
         return Ok(None);
     }
@@ -212,6 +214,10 @@ fn grow(
         let incomplete = selector.held_out_ratio(&best) > selector.complete_up_to(&best);
         if incomplete && restarted_in_vain.as_ref() != Some(&best.point) {
             if let Some(better) = selector.restarted(&best)? {
+                best = better;
+                continue;
+            }
+            if let Some(better) = selector.reshaped(&best)? {
                 best = better;
                 continue;
             }
@@ -324,8 +330,8 @@ mod tests {
         effects
     }
 
-    #[test]
-    fn a_name_that_came_before_laws_gives_way_to_the_law_that_explains_more() {
+    /// What a model of a name becomes with laws first, where this was open before and a model may have so many effects.
+    fn anew_with_laws_first(open: Open, most_effects: usize) -> Option<Vec<usize>> {
         let mut specimen = Recipe {
             truth: vec![(CUBIC, vec![0.4])],
             candidates: vec![CUBIC, FRICTION],
@@ -333,24 +339,33 @@ mod tests {
         }
         .make();
         specimen.take_name(CUBIC, Site::Mount);
-        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut criteria = Criteria::default();
+        criteria.acceptance.most_effects = most_effects;
+        let problem = LeastSquares::new(&specimen, &RUN).with_criteria(criteria);
         let mut selector = Selector::new(&problem);
         let calibrated = selector.fitted(Point::nominal(&specimen)).expect("a fit");
         let start = Point::nominal(&specimen).with_effect(&specimen, FRICTION, &[0.1]);
         let best = selector.fitted(start).expect("a fit");
-        let mut anew = |open: Open| {
-            let grown = Grown {
-                best: best.clone(),
-                screened: vec![],
-                scores: vec![],
-                open,
-                law_pairs: LawPairs::NotTried,
-            };
-            let other = grown_with_laws_first(&mut selector, &calibrated, &best, &grown, &|_, _| {}).expect("fits");
-            other.map(|(_, fit)| fit.point.effects)
+        let grown = Grown {
+            best: best.clone(),
+            screened: vec![],
+            scores: vec![],
+            open,
+            law_pairs: LawPairs::NotTried,
         };
-        assert_eq!(anew(Open::Laws), Some(vec![CUBIC]));
-        assert_eq!(anew(Open::Names), None);
+        let other = grown_with_laws_first(&mut selector, &calibrated, &best, &grown, &|_, _| {}).expect("fits");
+        other.map(|(_, fit)| fit.point.effects)
+    }
+
+    #[test]
+    fn a_name_that_came_before_laws_gives_way_to_the_law_that_explains_more() {
+        assert_eq!(anew_with_laws_first(Open::Laws, 6), Some(vec![CUBIC]));
+        assert_eq!(anew_with_laws_first(Open::Names, 6), None);
+    }
+
+    #[test]
+    fn so_do_as_many_names_as_a_model_may_have() {
+        assert_eq!(anew_with_laws_first(Open::Names, 1), Some(vec![CUBIC]));
     }
 
     #[test]

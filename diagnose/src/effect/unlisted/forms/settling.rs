@@ -8,7 +8,7 @@ use crate::parameter::Parameter;
 /// Time constants that are tried first, s.
 const STARTS_S: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 /// When the value has the fitted size, s.
-const SIZED_AT_S: f64 = 60.0;
+pub(super) const SIZED_AT_S: f64 = 60.0;
 /// Largest logarithm of a factor after this time.
 const MOST_LOG: f64 = 3.0;
 

@@ -58,6 +58,39 @@ fn a_choke_lets_half_pass_where_its_argument_is_the_inverse() {
 }
 
 #[test]
+fn a_groove_has_a_bottom_and_half_of_it_at_its_half_width() {
+    // Ends of 2 s w = 1 about 1 and 3: from 0.5 to 1.5, and from 2.5 to 3.5.
+    let knots = &[0.0, 0.5, 1.0, 1.5, 2.5, 3.0, 3.25, 3.5];
+    let values = Groove.values(&Grid { knots, ..GRID }, &[4.0, 2.0, 1.0, 0.5]);
+    assert_eq!(values, [0.0, 0.0, 2.0, 4.0, 4.0, 2.0, 1.0, 0.0]);
+}
+
+#[test]
+fn a_limited_flow_approaches_its_largest_from_the_root_of_the_drop() {
+    let knots = &[-1e12, 0.0, 1e-9, 4.0, 1e12];
+    for sharpness in [0.5, 1.0, 6.0] {
+        let values = Limited.values(&Grid { knots, ..GRID }, &[0.25, sharpness]);
+        // The flow over the root of the drop at large drops is the largest flow, 1 / sqrt(0.25), over that root.
+        for end in [values[0], values[4]] {
+            assert!((end * 1e6 - 2.0).abs() < 1e-4, "{values:?}");
+        }
+        assert!(values[1] == 1.0 && (values[2] - 1.0).abs() < 1e-4);
+        assert!((values[3] - libm::pow(2.0, -0.5 / sharpness)).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn what_opens_grows_evenly_and_stays() {
+    let knots = &[0.0, 5.0, 10.0, 60.0, 1000.0];
+    let grid = Grid { knots, ..GRID };
+    assert_eq!(Opening("flow").values(&grid, &[3.0, 10.0]), [0.0, 1.5, 3.0, 3.0, 3.0]);
+    assert_eq!(
+        Opening("flow").values(&grid, &[3.0, 600.0]),
+        [0.0, 0.25, 0.5, 3.0, 30.0]
+    );
+}
+
+#[test]
 fn bubbles_under_pressure_obey_boyle() {
     // Air of a volume of 2 at an absolute pressure of 0.5 takes up 2 (1 - 0.5 / (0.5 + x)) less.
     let values = Saturating("volume", "half_at").values(&GRID, &[2.0, 0.5]);
@@ -94,16 +127,19 @@ fn stops_do_nothing_between_their_thresholds() {
 
 #[test]
 fn each_form_has_as_many_numbers_as_its_starts() {
-    let forms: [&dyn Form; 23] = [
+    let forms: [&dyn Form; 26] = [
         &Added,
         &Bell,
         &Choke,
         &Factor,
         &Fading,
+        &Groove,
         &Heated,
         &Level,
         &LevelParabola(["a", "b", "c"]),
+        &Limited,
         &Lingering,
+        &Opening("flow_m3_s"),
         &Proportional("mass_kg"),
         &Parabola(["a", "b", "c"]),
         &Power("drop_Pa"),

@@ -5,7 +5,7 @@ use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
 use crate::effect::unlisted::forms::{
-    Bell, Factor, Fading, Power, ProportionalAmount, Rising, SettlingFactor, SettlingLevel,
+    Bell, Factor, Fading, Groove, Power, ProportionalAmount, Rising, SettlingFactor, SettlingLevel,
 };
 use crate::effect::unlisted::knots::{
     FLOW_FINE_M3_S, FLOW_M3_S, FLOW_RATE_M3_S2, GROOVE_M, PACK_J, PACK_PA, STROKE_M, TIME_S,
@@ -74,6 +74,22 @@ pub(super) const LAWS: &[Law] = &[
         Site::Path(Branch::Second),
         (LawPlace::BesidePack2, Displacement),
         &Bell,
+        GROOVE_M,
+        1e-7,
+    ),
+    law(
+        "opening beside pack 1 over displacement, with a bottom",
+        Site::Path(Branch::First),
+        (LawPlace::BesidePack1, Displacement),
+        &Groove,
+        GROOVE_M,
+        1e-7,
+    ),
+    law(
+        "opening beside pack 2 over displacement, with a bottom",
+        Site::Path(Branch::Second),
+        (LawPlace::BesidePack2, Displacement),
+        &Groove,
         GROOVE_M,
         1e-7,
     ),

@@ -5,7 +5,7 @@ use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
 use crate::effect::unlisted::forms::{
-    Added, Level, Proportional, Rising, Saturating, SettlingAdded, SettlingLevel, Stops,
+    Added, Level, Opening, Proportional, Rising, Saturating, SettlingAdded, SettlingLevel, Stops,
 };
 use crate::effect::unlisted::knots::{
     ACCELERATION_M_S2, CHAMBER_FINE_PA, CHAMBER_PA, P1_PA, SPEED_M_S, STOPS_M, TIME_S, TRAVEL_M,
@@ -122,6 +122,14 @@ pub(super) const LAWS: &[Law] = &[
         Site::MainChamber,
         (LawPlace::MainChamberLoss, Time),
         &SettlingLevel("flow_after_a_minute_m3_s"),
+        TIME_S,
+        1e-9,
+    ),
+    law(
+        "oil lost over time, growing and then constant",
+        Site::MainChamber,
+        (LawPlace::MainChamberLoss, Time),
+        &Opening("flow_after_a_minute_m3_s"),
         TIME_S,
         1e-9,
     ),

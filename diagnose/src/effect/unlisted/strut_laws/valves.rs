@@ -5,7 +5,7 @@ use oleo_plant_sim::strut::LawArgument::{PressureDrop, Time};
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
-use crate::effect::unlisted::forms::{Added, Choke, LevelParabola, Parabola, SettlingLevel};
+use crate::effect::unlisted::forms::{Added, Choke, LevelParabola, Limited, Parabola, SettlingLevel};
 use crate::effect::unlisted::knots::{EDGE_FINE_PA, EDGE_PA, TIME_S, VALVE_PA};
 use crate::vocabulary::Site;
 
@@ -39,6 +39,38 @@ pub(super) const LAWS: &[Law] = &[
         Site::Valve(Valve::Spring),
         (LawPlace::Valve3, PressureDrop),
         &Choke,
+        VALVE_PA,
+        1e-8,
+    ),
+    law(
+        "flow of the open valves over pressure drop, up to a largest one",
+        Site::Valves,
+        (LawPlace::Valves, PressureDrop),
+        &Limited,
+        VALVE_PA,
+        1e-8,
+    ),
+    law(
+        "flow of open valve 1 over pressure drop, up to a largest one",
+        Site::Valve(Valve::Bypass1),
+        (LawPlace::Valve1, PressureDrop),
+        &Limited,
+        VALVE_PA,
+        1e-8,
+    ),
+    law(
+        "flow of open valve 2 over pressure drop, up to a largest one",
+        Site::Valve(Valve::Bypass2),
+        (LawPlace::Valve2, PressureDrop),
+        &Limited,
+        VALVE_PA,
+        1e-8,
+    ),
+    law(
+        "flow of open valve 3 over pressure drop, up to a largest one",
+        Site::Valve(Valve::Spring),
+        (LawPlace::Valve3, PressureDrop),
+        &Limited,
         VALVE_PA,
         1e-8,
     ),

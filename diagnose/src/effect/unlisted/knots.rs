@@ -36,21 +36,23 @@ pub const FLOW_M3_S: &[f64] = &[-1.5e-3, -5e-4, -1.5e-4, 0.0, 1.5e-4, 5e-4, 1.5e
 /// Flow in the larger direction at which the points of a power of the flow end, m3/s.
 const FLOW_END_M3_S: f64 = 2e-3;
 /// The same, as densely as a parabola needs: on either side the squares of equal steps.
-pub const FLOW_FINE_M3_S: &[f64] = &flows();
+pub const FLOW_FINE_M3_S: &[f64] = &of_power(FLOW_END_M3_S);
+/// Speed up to 1 m/s, as densely as a parabola needs.
+pub const SPEED_FINE_M_S: &[f64] = &of_power(1.0);
 
-/// Points of a power of the flow on either side.
-const FLOWS: usize = 20;
+/// Points of a power on either side.
+const POWERS: usize = 20;
 
-const fn flows() -> [f64; 2 * FLOWS + 1] {
-    let mut flow = [0.0; 2 * FLOWS + 1];
+const fn of_power(end: f64) -> [f64; 2 * POWERS + 1] {
+    let mut argument = [0.0; 2 * POWERS + 1];
     let mut k = 1;
-    while k <= FLOWS {
-        let part = k as f64 / FLOWS as f64;
-        flow[FLOWS + k] = FLOW_END_M3_S * part * part;
-        flow[FLOWS - k] = -flow[FLOWS + k];
+    while k <= POWERS {
+        let part = k as f64 / POWERS as f64;
+        argument[POWERS + k] = end * part * part;
+        argument[POWERS - k] = -argument[POWERS + k];
         k += 1;
     }
-    flow
+    argument
 }
 
 /// Pressure drop across a damper pack, Pa.

@@ -18,6 +18,7 @@
 //! | `saturating` | is added, rises and comes to an end | its end, the argument where half of it is reached |
 //! | `settling` | is added or multiplies, and settles with time | its end, time constant |
 //! | `shearing` | is added and never negative, a power of its argument that is reached over a volume of oil | its level, exponent, volume |
+//! | `stiffening` | is added, a force that grows with the displacement and its third power | stiffness, stiffening |
 //! | `stops` | is added beyond a threshold in either direction | sizes, thresholds, exponent |
 //! | `swinging` | is added or multiplies, and swings about what is believed | amplitude, phase, frequency |
 //! | `limited` | multiplies a flow over the root of the drop, which approaches a largest flow | inverse argument, sharpness of the bend |
@@ -43,6 +44,7 @@ mod rising;
 mod saturating;
 mod settling;
 mod shearing;
+mod stiffening;
 mod stops;
 mod swinging;
 
@@ -69,5 +71,6 @@ pub use rising::Rising;
 pub use saturating::Saturating;
 pub use settling::{SettlingAdded, SettlingFactor, SettlingLevel};
 pub use shearing::Shearing;
+pub use stiffening::Stiffening;
 pub use stops::Stops;
 pub use swinging::{SwingingAdded, SwingingFactor};

@@ -91,6 +91,11 @@ fn what_opens_grows_evenly_and_stays() {
 }
 
 #[test]
+fn a_stiffening_spring_is_odd_and_its_parts_add_up() {
+    assert_eq!(Stiffening.values(&GRID, &[2.0, -0.5]), [0.0, -1.5, 0.0, 1.5, -7.5]);
+}
+
+#[test]
 fn bubbles_under_pressure_obey_boyle() {
     // Air of a volume of 2 at an absolute pressure of 0.5 takes up 2 (1 - 0.5 / (0.5 + x)) less.
     let values = Saturating("volume", "half_at").values(&GRID, &[2.0, 0.5]);
@@ -127,7 +132,7 @@ fn stops_do_nothing_between_their_thresholds() {
 
 #[test]
 fn each_form_has_as_many_numbers_as_its_starts() {
-    let forms: [&dyn Form; 26] = [
+    let forms: [&dyn Form; 27] = [
         &Added,
         &Bell,
         &Choke,
@@ -148,6 +153,7 @@ fn each_form_has_as_many_numbers_as_its_starts() {
         &Rising,
         &Shearing,
         &Saturating("volume_m3", "half_at_Pa"),
+        &Stiffening,
         &Stops,
         &SettlingAdded("force_N"),
         &SettlingFactor,

@@ -5,10 +5,10 @@ use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
 use crate::effect::unlisted::forms::{
-    Added, Level, Opening, Proportional, Rising, Saturating, SettlingAdded, SettlingLevel, Stops,
+    Added, Level, Opening, Power, Proportional, Rising, Saturating, SettlingAdded, SettlingLevel, Stiffening, Stops,
 };
 use crate::effect::unlisted::knots::{
-    ACCELERATION_M_S2, CHAMBER_FINE_PA, CHAMBER_PA, P1_PA, SPEED_M_S, STOPS_M, TIME_S, TRAVEL_M,
+    ACCELERATION_M_S2, CHAMBER_FINE_PA, CHAMBER_PA, P1_PA, SPEED_FINE_M_S, SPEED_M_S, STOPS_M, TIME_S, TRAVEL_M,
 };
 use crate::vocabulary::Site;
 
@@ -27,6 +27,22 @@ pub(super) const LAWS: &[Law] = &[
         (LawPlace::MainSeal, Speed),
         &Added,
         SPEED_M_S,
+        20.0,
+    ),
+    law(
+        "force over displacement, stiffening",
+        Site::MainSeal,
+        (LawPlace::MainSeal, Displacement),
+        &Stiffening,
+        STOPS_M,
+        20.0,
+    ),
+    law(
+        "force over speed, a power",
+        Site::MainSeal,
+        (LawPlace::MainSeal, Speed),
+        &Power("force_at_1_m_s_N"),
+        SPEED_FINE_M_S,
         20.0,
     ),
     law(

@@ -109,6 +109,12 @@ impl Analytic {
         (candidate.id, candidate.place, candidate.one_of_several) = (EffectId::Unlisted, site.into(), true);
     }
 
+    /// Makes a candidate a fault of an instrument.
+    pub fn become_fault(&mut self, candidate: usize, column: Column) {
+        let candidate = &mut self.candidates[candidate];
+        (candidate.id, candidate.place) = (EffectId::SensorGain, Site::Sensor(column).into());
+    }
+
     /// Makes a candidate a number of the model that is other than believed.
     pub fn become_number(&mut self, candidate: usize) {
         let candidate = &mut self.candidates[candidate];

@@ -20,6 +20,9 @@ mod done {
     pub const RIVALS: f64 = 0.88;
 }
 
+/// So many faults of instruments are doubted where one law may do as well.
+const DOUBTFUL_FAULTS: usize = 3;
+
 /// Runs the whole search. The first page of this crate has an example, in which [`crate::Diagnosis::of`] runs it.
 ///
 /// # Errors
@@ -138,8 +141,8 @@ struct Grown {
 }
 
 /// A model that grows anew with laws open from the beginning, and without what its other effects explain; `None` unless it is better than the model found, or
-/// as good with fewer effects. Names that came before laws were tried may have a part each of what one law explains, so that no law is accepted beside them. A
-/// name is still preferred to a law that gains little more.
+/// as good with fewer effects. Names that came before laws were tried may have a part each of what one law explains, so that no law is accepted beside them, and
+/// several instruments that are all at fault are rarer than one law of the specimen. A name is still preferred to a law that gains little more.
 fn grown_with_laws_first(
     selector: &mut Selector<'_, '_>,
     calibrated: &Fit,
@@ -147,17 +150,24 @@ fn grown_with_laws_first(
     grown: &Grown,
     progress: Progress<'_>,
 ) -> Result<Option<(Grown, Fit)>, DiagnoseError> {
+    let acceptance = &selector.criteria().acceptance;
     let has_named = |fit: &Fit| (fit.point.effects.iter()).any(|&e| !selector.candidate(e).is_unlisted());
     let incomplete = selector.held_out_ratio(best) > selector.complete_up_to(best);
     // As many names as a model may have leave no room for a law.
-    let no_room = grown.best.point.effects.len() >= selector.criteria().acceptance.most_effects;
+    let no_room = grown.best.point.effects.len() >= acceptance.most_effects;
     let names_came_first = (grown.open != Open::Names || no_room) && has_named(&grown.best);
-    if !incomplete || !names_came_first || !selector.can_have_two_laws() {
+    let faults = (best.point.effects.iter()).filter(|&&e| selector.candidate(e).is_instrument_fault());
+    let doubtful = faults.count() >= DOUBTFUL_FAULTS;
+    if !(incomplete && names_came_first || doubtful) || !selector.can_have_two_laws() {
         return Ok(None);
     }
+    let fraction = if incomplete {
+        selector.fraction_of_incomplete()
+    } else {
+        acceptance.least_fraction
+    };
     let anew = grow(selector, calibrated, calibrated.clone(), Open::Laws, progress)?;
     let other = reduced(selector, anew.best.clone(), progress)?;
-    let fraction = selector.fraction_of_incomplete();
     let better = selector.improves(best, &other, fraction);
     let as_good_with_fewer =
         other.point.effects.len() < best.point.effects.len() && !selector.improves(&other, best, fraction);
@@ -317,7 +327,8 @@ mod tests {
     };
     use crate::criteria::Criteria;
     use crate::estimation::covariance::deviations;
-    use crate::vocabulary::Site;
+    use crate::specimen::Specimen;
+    use crate::vocabulary::{Column, Site};
     use std::sync::atomic::AtomicBool;
 
     fn selected(recipe: &Recipe) -> Selection {
@@ -366,6 +377,45 @@ mod tests {
     #[test]
     fn so_do_as_many_names_as_a_model_may_have() {
         assert_eq!(anew_with_laws_first(Open::Names, 1), Some(vec![CUBIC]));
+    }
+
+    #[test]
+    fn three_faults_of_instruments_give_way_to_one_law_that_does_as_well_and_two_do_not() {
+        let anew = |faults: &[usize]| {
+            let mut specimen = Recipe {
+                truth: vec![(CUBIC, vec![0.4])],
+                candidates: vec![CUBIC, NEARLY_CUBIC, FRICTION, VIBRATION],
+                ..Recipe::default()
+            }
+            .make();
+            specimen.take_name(CUBIC, Site::Mount);
+            for (fault, column) in faults.iter().zip(["p1_Pa", "p2_Pa", "p3_Pa"]) {
+                specimen.become_fault(*fault, Column::known(column));
+            }
+            let problem = LeastSquares::new(&specimen, &RUN);
+            let mut selector = Selector::new(&problem);
+            let calibrated = selector.fitted(Point::nominal(&specimen)).expect("a fit");
+            let start = (faults.iter()).fold(Point::nominal(&specimen), |point, fault| {
+                let values: Vec<f64> = specimen.candidates()[*fault]
+                    .parameters
+                    .iter()
+                    .map(|p| p.start)
+                    .collect();
+                point.with_effect(&specimen, *fault, &values)
+            });
+            let best = selector.fitted(start).expect("a fit");
+            let grown = Grown {
+                best: best.clone(),
+                screened: vec![],
+                scores: vec![],
+                open: Open::Names,
+                law_pairs: LawPairs::NotTried,
+            };
+            let other = grown_with_laws_first(&mut selector, &calibrated, &best, &grown, &|_, _| {}).expect("fits");
+            other.map(|(_, fit)| fit.point.effects.len())
+        };
+        assert_eq!(anew(&[NEARLY_CUBIC, FRICTION, VIBRATION]), Some(1));
+        assert_eq!(anew(&[NEARLY_CUBIC, FRICTION]), None);
     }
 
     #[test]

@@ -375,6 +375,13 @@ impl Strut {
         self.output()
     }
 
+    /// Ends an interval that is over, at whose end the acceleration is known, m/s2.
+    pub(super) fn finish_at(&mut self, interval: &Interval, acceleration_m_s2: f64) -> StrutOutput {
+        self.finish(interval);
+        self.acceleration = Acceleration::known(acceleration_m_s2);
+        self.output()
+    }
+
     /// Length of the next step, s: `left_s` in equal parts no longer than `limit_s`, but no farther than the next kink of a
     /// valve's movement.
     #[inline(always)]

@@ -2,6 +2,9 @@
 
 use oleo_interface::StrutValves;
 
+/// An acceleration jumps at a sample if it changes there this many times as much as beside it.
+const JUMPS: f64 = 3.0;
+
 /// One sampling interval of a motion: where it ends, and the speeds at its two ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Segment {
@@ -74,6 +77,41 @@ pub struct Motion {
     pub segments: Vec<Segment>,
 }
 
+impl Motion {
+    /// Acceleration at each sample, m/s2, where all motion is known. It is taken across the sample, or from that side of it on which it changes much less: where the
+    /// acceleration jumps, a mean of both sides is neither.
+    pub(super) fn accelerations_m_s2(&self, time_s: &[f64]) -> Vec<f64> {
+        let mean = |k: usize| {
+            let (segment, time) = (self.segments.get(k)?, time_s.get(k..k + 2)?);
+            Some((segment.to_m_s - segment.from_m_s) / (time[1] - time[0]))
+        };
+        let at = |k: usize| {
+            let before = k.checked_sub(1).and_then(mean);
+            let after = mean(k);
+            let (Some(before), Some(after)) = (before, after) else {
+                return before.or(after).unwrap_or(0.0);
+            };
+            let change = after - before;
+            // From either side by a line through the means of two intervals.
+            let from_before = k.checked_sub(2).and_then(mean).map(|m| before - m);
+            let from_after = mean(k + 1).map(|m| m - after);
+            let sides = [
+                from_before.map(|c| (c, before + 0.5 * c)),
+                from_after.map(|c| (c, after - 0.5 * c)),
+            ];
+            let side = sides
+                .into_iter()
+                .flatten()
+                .min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+            match side {
+                Some((c, m_s2)) if JUMPS * c.abs() < change.abs() => m_s2,
+                _ => before + 0.5 * change,
+            }
+        };
+        (0..=self.segments.len()).map(at).collect()
+    }
+}
+
 /// The cubic through displacement and speed at both ends of an interval: both agree with it at any time inside.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cubic {
@@ -134,5 +172,55 @@ mod tests {
         assert!((x - 1e-3).abs() < 1e-15 && (v - 0.1).abs() < 1e-12);
         let (x, v) = cubic.at(1.0);
         assert!((x - 3e-3).abs() < 1e-15 && (v + 0.4).abs() < 1e-12);
+    }
+
+    /// Motion whose speeds at even samples are these.
+    fn through_speeds(speed_m_s: &[f64], interval_s: f64) -> (Vec<f64>, Motion) {
+        let segments = (speed_m_s.windows(2))
+            .map(|v| Segment {
+                to_m: 0.0,
+                from_m_s: v[0],
+                to_m_s: v[1],
+            })
+            .collect();
+        let time_s = (0..speed_m_s.len()).map(|k| interval_s * k as f64).collect();
+        (time_s, Motion { start_m: 0.0, segments })
+    }
+
+    #[test]
+    fn an_acceleration_that_is_smooth_is_that_across_each_sample() {
+        let speed: Vec<f64> = (0..200).map(|k| libm::sin(0.05 * f64::from(k))).collect();
+        let (time_s, motion) = through_speeds(&speed, 0.002);
+        let found = motion.accelerations_m_s2(&time_s);
+        assert_eq!(found.len(), speed.len());
+        for (k, a) in found.iter().enumerate().skip(2).take(196) {
+            let exact = 25.0 * libm::cos(0.05 * k as f64);
+            assert!((a - exact).abs() < 0.03, "{k}: {a} {exact}");
+        }
+    }
+
+    #[test]
+    fn an_acceleration_that_jumps_between_two_samples_is_that_of_its_side() {
+        // From 1 to -3 m/s2 at a quarter of the interval after sample 5.
+        let speed: Vec<f64> = (0..12)
+            .map(|k| 0.01 * f64::from(k))
+            .map(|t| t.min(0.0525) - 3.0 * (t - 0.0525).max(0.0))
+            .collect();
+        let (time_s, motion) = through_speeds(&speed, 0.01);
+        for (k, a) in motion.accelerations_m_s2(&time_s).into_iter().enumerate() {
+            let exact = if k <= 5 { 1.0 } else { -3.0 };
+            assert!((a - exact).abs() < 1e-9, "{k}: {a} {exact}");
+        }
+    }
+
+    #[test]
+    fn a_motion_of_few_samples_has_the_accelerations_that_it_shows() {
+        let of = |speed: &[f64]| {
+            let (time_s, motion) = through_speeds(speed, 0.5);
+            motion.accelerations_m_s2(&time_s)
+        };
+        assert_eq!(of(&[]), [0.0]);
+        assert_eq!(of(&[1.0, 2.0]), [2.0, 2.0]);
+        assert_eq!(of(&[1.0, 2.0, 4.0]), [2.0, 3.0, 4.0]);
     }
 }

@@ -37,6 +37,14 @@ impl Acceleration {
         };
     }
 
+    /// A known acceleration, m/s2.
+    pub const fn known(m_s2: f64) -> Self {
+        Self {
+            gained_m_s: [0.0, m_s2],
+            duration_s: [0.0, 1.0],
+        }
+    }
+
     /// Acceleration now, m/s2. The mean ones of the two intervals belong to their middles, and a line through them leads here.
     pub fn now_m_s2(&self) -> f64 {
         let ([gained_before, gained], [before, last]) = (self.gained_m_s, self.duration_s);

@@ -15,7 +15,7 @@ use super::model::StrutModel;
 use super::motion::{Motion, Segment, StrutMove};
 use super::prediction::Prediction;
 use super::rod_course::RodCourse;
-use super::terms::COLUMNS;
+use super::terms::{COLUMNS, LawArgument};
 
 /// What has become of a recording that went through a model.
 #[derive(Debug, Clone, Default)]
@@ -32,6 +32,8 @@ pub(super) struct Run<'a> {
     model: &'a StrutModel,
     inputs: &'a Inputs,
     motion: Cow<'a, Motion>,
+    /// At each sample, where a law asks for it.
+    accelerations_m_s2: Vec<f64>,
     /// Number of sampling intervals, and of those that have been begun.
     intervals: usize,
     begun: usize,
@@ -66,6 +68,13 @@ impl<'a> Run<'a> {
             intervals: (motion.segments.len())
                 .min(samples.saturating_sub(1))
                 .min(inputs.signals.len()),
+            accelerations_m_s2: if (model.effects.unlisted.iter())
+                .any(|law| law.depends_on == LawArgument::Acceleration)
+            {
+                motion.accelerations_m_s2(&inputs.time_s)
+            } else {
+                vec![]
+            },
             motion,
             begun: 0,
             interval: Interval::over(),
@@ -79,6 +88,7 @@ impl<'a> Run<'a> {
     #[must_use]
     pub fn with_course(mut self) -> Self {
         self.strut.begin_course();
+        self.accelerations_m_s2 = self.motion.accelerations_m_s2(&self.inputs.time_s);
         if !self.inputs.time_s.is_empty() {
             self.strut.note_sample();
         }
@@ -113,7 +123,11 @@ impl<'a> Run<'a> {
     #[inline(always)]
     fn begin_next(&mut self) -> bool {
         if self.moves {
-            let output = self.strut.finish(&self.interval);
+            let known = self.accelerations_m_s2.get(self.begun).copied();
+            let output = match known {
+                Some(m_s2) if self.to_come.is_empty() => self.strut.finish_at(&self.interval, m_s2),
+                _ => self.strut.finish(&self.interval),
+            };
             if let Some(next) = self.to_come.pop() {
                 self.interval = self.strut.begin(&next);
                 return true;

@@ -182,6 +182,15 @@ impl Candidate {
         has_size && (self.parameters.iter().zip(values)).all(|(p, v)| !p.is_size || *v == 0.0)
     }
 
+    /// Values to start from beside another candidate with these values: its own under the keys that both have.
+    #[must_use]
+    pub fn values_shared_with(&self, other: &Self, values: &[f64]) -> Vec<f64> {
+        let known = |key: &str| (other.parameters.iter().zip(values)).find_map(|(p, v)| (p.key == key).then_some(*v));
+        (self.parameters.iter())
+            .map(|p| known(&p.key).unwrap_or(p.start))
+            .collect()
+    }
+
     /// Id, place and label as one text, which is unique among the candidates.
     #[must_use]
     pub fn name(&self) -> String {
@@ -234,5 +243,15 @@ mod tests {
         assert!(stop.absent_at(&[0.0, 0.0]) && !stop.absent_at(&[1e4, 0.0]) && !stop.absent_at(&[0.0, 1e8]));
         let heat = vec![Parameter::log("time_constant_s", 5.0, (0.1, 100.0))];
         assert!(!Candidate::new(EffectId::GasHeatTransfer, Site::Chamber, heat).absent_at(&[5.0]));
+    }
+
+    #[test]
+    fn a_candidate_starts_from_the_numbers_that_it_shares() {
+        let with = |keys: &[&str]| {
+            let parameters = keys.iter().map(|key| Parameter::log(*key, 0.5, (0.1, 9.0))).collect();
+            Candidate::new(EffectId::Unlisted, Site::Unknown, parameters)
+        };
+        let other = with(&["a", "b"]);
+        assert_eq!(with(&["b", "c"]).values_shared_with(&other, &[2.0, 3.0]), [3.0, 0.5]);
     }
 }

@@ -24,13 +24,8 @@ impl Selector<'_, '_> {
 
     /// The model with a law in another shape, which has the numbers that it shares with the one at this position.
     fn with_shape(&mut self, best: &Fit, position: usize, shape: usize) -> Result<Option<Fit>, DiagnoseError> {
-        let there = self.candidate(best.point.effects[position]);
-        let hypothesis = best.point.hypothesis(self.specimen());
-        let values = &hypothesis.effects[position].1;
-        let known = |key: &str| (there.parameters.iter().zip(values)).find_map(|(p, v)| (p.key == key).then_some(*v));
-        let own: Vec<f64> = (self.candidate(shape).parameters.iter())
-            .map(|p| known(&p.key).unwrap_or(p.start))
-            .collect();
+        let (there, values) = &best.point.hypothesis(self.specimen()).effects[position];
+        let own = self.candidate(shape).values_shared_with(self.candidate(*there), values);
         let without = best.point.without_effect(self.specimen(), position);
         self.fitted_if_simulated(without.with_effect(self.specimen(), shape, &own))
     }

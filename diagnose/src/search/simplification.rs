@@ -35,18 +35,8 @@ impl Selector<'_, '_> {
     /// those that screening finds; `None` where it cannot be simulated.
     fn with_form(&mut self, best: &Fit, position: usize, form: usize) -> Result<Option<Fit>, DiagnoseError> {
         let specimen = self.specimen();
-        let (there, simpler) = (self.candidate(best.point.effects[position]), self.candidate(form));
-        let values = &best.point.hypothesis(specimen).effects[position].1;
-        let known = |key: &str| {
-            (there.parameters.iter().zip(values))
-                .find(|(p, _)| p.key == key)
-                .map(|(_, v)| *v)
-        };
-        let own: Vec<f64> = simpler
-            .parameters
-            .iter()
-            .map(|p| known(&p.key).unwrap_or(p.start))
-            .collect();
+        let (there, values) = &best.point.hypothesis(specimen).effects[position];
+        let own = self.candidate(form).values_shared_with(self.candidate(*there), values);
         let without = best.point.without_effect(specimen, position);
         let near = self.fitted_if_simulated(without.with_effect(specimen, form, &own))?;
         let less = self.fitted(without)?;

@@ -106,7 +106,7 @@ fn advance<S: Simd>(
     if intervals.iter().any(|interval| !interval.is_over()) {
         arrive(side_by_side, struts, &mut intervals);
     }
-    each_lane(|lane| struts[lane].finish(&intervals[lane]))
+    each_lane(|lane| struts[lane].finish(&intervals[lane], None))
 }
 
 /// Lets those struts arrive that have more steps to take than others, each alone.

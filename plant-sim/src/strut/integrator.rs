@@ -268,7 +268,7 @@ impl Strut {
     pub fn advance_by(&mut self, by: &StrutMove) -> StrutOutput {
         let mut interval = self.begin(by);
         self.take_steps(&mut interval);
-        self.finish(&interval)
+        self.finish(&interval, None)
     }
 
     /// Takes the steps of an interval that are left. A step is long, and compiled once for all who take one.
@@ -364,21 +364,17 @@ impl Strut {
         interval.done = interval.fraction(interval.done_s);
     }
 
-    /// Ends an interval that is over.
+    /// Ends an interval that is over. The acceleration at its end, m/s2, follows from the speeds where it is not known.
     #[inline(always)]
-    pub(super) fn finish(&mut self, interval: &Interval) -> StrutOutput {
+    pub(super) fn finish(&mut self, interval: &Interval, acceleration_m_s2: Option<f64>) -> StrutOutput {
         let Segment { to_m, from_m_s, to_m_s } = interval.segment;
         self.time_s = interval.start_s + interval.duration_s;
         self.actuator_m = to_m;
         self.speed_m_s = to_m_s;
-        self.acceleration.follow(to_m_s - from_m_s, interval.duration_s);
-        self.output()
-    }
-
-    /// Ends an interval that is over, at whose end the acceleration is known, m/s2.
-    pub(super) fn finish_at(&mut self, interval: &Interval, acceleration_m_s2: f64) -> StrutOutput {
-        self.finish(interval);
-        self.acceleration = Acceleration::known(acceleration_m_s2);
+        match acceleration_m_s2 {
+            Some(known) => self.acceleration = Acceleration::known(known),
+            None => self.acceleration.follow(to_m_s - from_m_s, interval.duration_s),
+        }
         self.output()
     }
 

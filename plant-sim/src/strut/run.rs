@@ -32,7 +32,7 @@ pub(super) struct Run<'a> {
     model: &'a StrutModel,
     inputs: &'a Inputs,
     motion: Cow<'a, Motion>,
-    /// At each sample, where a law asks for it.
+    /// Accelerations at the samples, m/s2, where a law or a course asks for them.
     accelerations_m_s2: Vec<f64>,
     /// Number of sampling intervals, and of those that have been begun.
     intervals: usize,
@@ -61,34 +61,37 @@ impl<'a> Run<'a> {
         if samples > 0 {
             prediction.push(strut.output());
         }
-        Ok(Self {
+        let mut run = Self {
             strut,
             model,
             inputs,
             intervals: (motion.segments.len())
                 .min(samples.saturating_sub(1))
                 .min(inputs.signals.len()),
-            accelerations_m_s2: if (model.effects.unlisted.iter())
-                .any(|law| law.depends_on == LawArgument::Acceleration)
-            {
-                motion.accelerations_m_s2(&inputs.time_s)
-            } else {
-                vec![]
-            },
+            accelerations_m_s2: vec![],
             motion,
             begun: 0,
             interval: Interval::over(),
             moves: false,
             to_come: Vec::with_capacity(2),
             prediction,
-        })
+        };
+        if (model.effects.unlisted.iter()).any(|law| law.depends_on == LawArgument::Acceleration) {
+            run.know_accelerations();
+        }
+        Ok(run)
+    }
+
+    /// Works out the accelerations of the recorded motion.
+    fn know_accelerations(&mut self) {
+        self.accelerations_m_s2 = self.motion.accelerations_m_s2(&self.inputs.time_s);
     }
 
     /// Notes what the rod goes through.
     #[must_use]
     pub fn with_course(mut self) -> Self {
         self.strut.begin_course();
-        self.accelerations_m_s2 = self.motion.accelerations_m_s2(&self.inputs.time_s);
+        self.know_accelerations();
         if !self.inputs.time_s.is_empty() {
             self.strut.note_sample();
         }
@@ -123,11 +126,9 @@ impl<'a> Run<'a> {
     #[inline(always)]
     fn begin_next(&mut self) -> bool {
         if self.moves {
-            let known = self.accelerations_m_s2.get(self.begun).copied();
-            let output = match known {
-                Some(m_s2) if self.to_come.is_empty() => self.strut.finish_at(&self.interval, m_s2),
-                _ => self.strut.finish(&self.interval),
-            };
+            // Known at samples, where the last move of an interval ends.
+            let known = (self.accelerations_m_s2.get(self.begun).copied()).filter(|_| self.to_come.is_empty());
+            let output = self.strut.finish(&self.interval, known);
             if let Some(next) = self.to_come.pop() {
                 self.interval = self.strut.begin(&next);
                 return true;
@@ -200,7 +201,7 @@ mod tests {
     use crate::strut::beginning::InMotion;
     use crate::strut::gas::GasState;
     use crate::strut::replay::replay;
-    use crate::strut::terms::{DampingFade, Effects, OilCompressibility, OilCount};
+    use crate::strut::terms::{DampingFade, Effects, LawPlace, OilCompressibility, OilCount, UnlistedLaw};
 
     /// Samples of a motion with all valves open, from one on.
     fn inputs(from: usize, to: usize) -> Inputs {
@@ -248,6 +249,47 @@ mod tests {
         let next = inputs(samples, samples + 1);
         let run = Run::begin(model, &next, &Beginning::InMotion(begins)).unwrap();
         run.strut.flowing.state.gas
+    }
+
+    #[test]
+    fn a_moving_mass_feels_the_acceleration_of_its_side_where_that_jumps() {
+        // From 1 to -3 m/s2 between samples 5 and 6.
+        let speed = |t: f64| t.min(0.0525) - 3.0 * (t - 0.0525).max(0.0);
+        let time_s: Vec<f64> = (0..12).map(|k| 0.01 * f64::from(k)).collect();
+        let mut at_m = 0.0;
+        let segments = (time_s.windows(2))
+            .map(|t| {
+                let (from_m_s, to_m_s) = (speed(t[0]), speed(t[1]));
+                at_m += 0.5 * 0.01 * (from_m_s + to_m_s);
+                Segment {
+                    to_m: at_m,
+                    from_m_s,
+                    to_m_s,
+                }
+            })
+            .collect();
+        let inputs = Inputs {
+            motion: Motion { start_m: 0.0, segments },
+            signals: vec![StrutValves::new(true, true, true); 12],
+            time_s,
+        };
+        let bare = StrutModel::defender110(6000.0);
+        let mut with_mass = bare.clone();
+        with_mass.effects.unlisted = vec![UnlistedLaw {
+            place: LawPlace::MainSeal,
+            depends_on: LawArgument::Acceleration,
+            argument: vec![-10.0, 10.0],
+            value: vec![-200.0, 200.0],
+            time_constant_s: None,
+            frequency_hz: None,
+            presliding_volume_m3: None,
+            attraction: None,
+        }];
+        let [with, without] = [&with_mass, &bare].map(|model| replay(model, &inputs).unwrap().force_n);
+        for (k, (a, b)) in with.iter().zip(&without).enumerate().skip(1) {
+            let exact = if k <= 5 { 20.0 } else { -60.0 };
+            assert!((a - b - exact).abs() < 1e-6, "{k}: {} {exact}", a - b);
+        }
     }
 
     #[test]

@@ -8,7 +8,7 @@
 //! | `factor` | multiplies what is believed; one at rest | logarithmic rises from knot to knot |
 //! | `bell` | is added around one argument | height, position, half width |
 //! | `groove` | is added over a stretch of its argument and runs out at the ends | depth, position, half width, length of the ends |
-//! | `opening` | is added, grows at a constant rate and then stays | its value after a minute, duration of the growth |
+//! | `ramp` | is added, grows at a constant rate and then stays | its value after a minute, duration of the growth |
 //! | `parabola` | is added, a polynomial of second degree, of any sign or never negative | its three coefficients |
 //! | `power` | is added and follows a power of its argument | its value at the largest argument, exponent |
 //! | `proportional` | is added and is proportional to its argument | the value at an argument of one |
@@ -21,8 +21,8 @@
 //! | `stiffening` | is added, a force that grows with the displacement and its third power | stiffness, stiffening |
 //! | `stops` | is added beyond a threshold in either direction | sizes, thresholds, exponent |
 //! | `swinging` | is added or multiplies, and swings about what is believed | amplitude, phase, frequency |
-//! | `limited` | multiplies a flow over the root of the drop, which approaches a largest flow | inverse argument, sharpness of the bend |
-//! | `choke` | multiplies what is believed, and falls with the size of its argument | inverse argument, exponent |
+//! | `choke` | multiplies a flow over the root of the drop, which approaches a largest flow | inverse argument, sharpness of the bend |
+//! | `pulled_shut` | multiplies what is believed, and falls with the size of its argument | inverse argument, exponent |
 
 mod added;
 mod bell;
@@ -31,11 +31,11 @@ mod factor;
 mod form;
 mod groove;
 mod level;
-mod limited;
-mod opening;
 mod parabola;
 mod power;
 mod proportional;
+mod pulled_shut;
+mod ramp;
 mod redlich_kwong;
 mod relaxing;
 mod remembering;
@@ -58,11 +58,11 @@ pub use factor::Factor;
 pub use form::{ClosedForm, Form, Grid};
 pub use groove::Groove;
 pub use level::Level;
-pub use limited::Limited;
-pub use opening::Opening;
 pub use parabola::{LevelParabola, Parabola};
 pub use power::Power;
 pub use proportional::{Proportional, ProportionalAmount};
+pub use pulled_shut::PulledShut;
+pub use ramp::Ramp;
 pub use redlich_kwong::RedlichKwong;
 pub use relaxing::Relaxing;
 pub use remembering::{Fading, Heated, Lingering};

@@ -54,7 +54,7 @@ fn the_flanks_of_a_bell_end() {
 
 #[test]
 fn a_choke_lets_half_pass_where_its_argument_is_the_inverse() {
-    assert_eq!(Choke.values(&GRID, &[1.0, 2.5])[2..4], [1.0, 0.5]);
+    assert_eq!(PulledShut.values(&GRID, &[1.0, 2.5])[2..4], [1.0, 0.5]);
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn a_groove_has_a_bottom_and_half_of_it_at_its_half_width() {
 fn a_limited_flow_approaches_its_largest_from_the_root_of_the_drop() {
     let knots = &[-1e12, 0.0, 1e-9, 4.0, 1e12];
     for sharpness in [0.5, 1.0, 6.0] {
-        let values = Limited.values(&Grid { knots, ..GRID }, &[0.25, sharpness]);
+        let values = Choke.values(&Grid { knots, ..GRID }, &[0.25, sharpness]);
         // The flow over the root of the drop at large drops is the largest flow, 1 / sqrt(0.25), over that root.
         for end in [values[0], values[4]] {
             assert!((end * 1e6 - 2.0).abs() < 1e-4, "{values:?}");
@@ -83,11 +83,8 @@ fn a_limited_flow_approaches_its_largest_from_the_root_of_the_drop() {
 fn what_opens_grows_evenly_and_stays() {
     let knots = &[0.0, 5.0, 10.0, 60.0, 1000.0];
     let grid = Grid { knots, ..GRID };
-    assert_eq!(Opening("flow").values(&grid, &[3.0, 10.0]), [0.0, 1.5, 3.0, 3.0, 3.0]);
-    assert_eq!(
-        Opening("flow").values(&grid, &[3.0, 600.0]),
-        [0.0, 0.25, 0.5, 3.0, 30.0]
-    );
+    assert_eq!(Ramp("flow").values(&grid, &[3.0, 10.0]), [0.0, 1.5, 3.0, 3.0, 3.0]);
+    assert_eq!(Ramp("flow").values(&grid, &[3.0, 600.0]), [0.0, 0.25, 0.5, 3.0, 30.0]);
 }
 
 #[test]
@@ -135,16 +132,16 @@ fn each_form_has_as_many_numbers_as_its_starts() {
     let forms: [&dyn Form; 27] = [
         &Added,
         &Bell,
-        &Choke,
+        &PulledShut,
         &Factor,
         &Fading,
         &Groove,
         &Heated,
         &Level,
         &LevelParabola(["a", "b", "c"]),
-        &Limited,
+        &Choke,
         &Lingering,
-        &Opening("flow_m3_s"),
+        &Ramp("flow_m3_s"),
         &Proportional("mass_kg"),
         &Parabola(["a", "b", "c"]),
         &Power("drop_Pa"),

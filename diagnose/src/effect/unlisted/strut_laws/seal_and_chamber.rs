@@ -5,7 +5,7 @@ use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
 use crate::effect::unlisted::forms::{
-    Added, Level, Opening, Power, Proportional, Rising, Saturating, SettlingAdded, SettlingLevel, Stiffening, Stops,
+    Added, Level, Power, Proportional, Ramp, Rising, Saturating, SettlingAdded, SettlingLevel, Stiffening, Stops,
 };
 use crate::effect::unlisted::knots::{
     ACCELERATION_M_S2, CHAMBER_FINE_PA, CHAMBER_PA, P1_PA, SPEED_FINE_M_S, SPEED_M_S, STOPS_M, TIME_S, TRAVEL_M,
@@ -145,7 +145,7 @@ pub(super) const LAWS: &[Law] = &[
         "oil lost over time, growing and then constant",
         Site::MainChamber,
         (LawPlace::MainChamberLoss, Time),
-        &Opening("flow_after_a_minute_m3_s"),
+        &Ramp("flow_after_a_minute_m3_s"),
         TIME_S,
         1e-9,
     ),

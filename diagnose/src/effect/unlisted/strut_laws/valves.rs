@@ -5,7 +5,7 @@ use oleo_plant_sim::strut::LawArgument::{PressureDrop, Time};
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
-use crate::effect::unlisted::forms::{Added, Choke, LevelParabola, Limited, Parabola, SettlingLevel};
+use crate::effect::unlisted::forms::{Added, Choke, LevelParabola, Parabola, PulledShut, SettlingLevel};
 use crate::effect::unlisted::knots::{EDGE_FINE_PA, EDGE_PA, TIME_S, VALVE_PA};
 use crate::vocabulary::Site;
 
@@ -14,7 +14,7 @@ pub(super) const LAWS: &[Law] = &[
         "flow of the open valves over pressure drop",
         Site::Valves,
         (LawPlace::Valves, PressureDrop),
-        &Choke,
+        &PulledShut,
         VALVE_PA,
         1e-8,
     ),
@@ -22,7 +22,7 @@ pub(super) const LAWS: &[Law] = &[
         "flow of open valve 1 over pressure drop",
         Site::Valve(Valve::Bypass1),
         (LawPlace::Valve1, PressureDrop),
-        &Choke,
+        &PulledShut,
         VALVE_PA,
         1e-8,
     ),
@@ -30,7 +30,7 @@ pub(super) const LAWS: &[Law] = &[
         "flow of open valve 2 over pressure drop",
         Site::Valve(Valve::Bypass2),
         (LawPlace::Valve2, PressureDrop),
-        &Choke,
+        &PulledShut,
         VALVE_PA,
         1e-8,
     ),
@@ -38,7 +38,7 @@ pub(super) const LAWS: &[Law] = &[
         "flow of open valve 3 over pressure drop",
         Site::Valve(Valve::Spring),
         (LawPlace::Valve3, PressureDrop),
-        &Choke,
+        &PulledShut,
         VALVE_PA,
         1e-8,
     ),
@@ -46,7 +46,7 @@ pub(super) const LAWS: &[Law] = &[
         "flow of the open valves over pressure drop, up to a largest one",
         Site::Valves,
         (LawPlace::Valves, PressureDrop),
-        &Limited,
+        &Choke,
         VALVE_PA,
         1e-8,
     ),
@@ -54,7 +54,7 @@ pub(super) const LAWS: &[Law] = &[
         "flow of open valve 1 over pressure drop, up to a largest one",
         Site::Valve(Valve::Bypass1),
         (LawPlace::Valve1, PressureDrop),
-        &Limited,
+        &Choke,
         VALVE_PA,
         1e-8,
     ),
@@ -62,7 +62,7 @@ pub(super) const LAWS: &[Law] = &[
         "flow of open valve 2 over pressure drop, up to a largest one",
         Site::Valve(Valve::Bypass2),
         (LawPlace::Valve2, PressureDrop),
-        &Limited,
+        &Choke,
         VALVE_PA,
         1e-8,
     ),
@@ -70,7 +70,7 @@ pub(super) const LAWS: &[Law] = &[
         "flow of open valve 3 over pressure drop, up to a largest one",
         Site::Valve(Valve::Spring),
         (LawPlace::Valve3, PressureDrop),
-        &Limited,
+        &Choke,
         VALVE_PA,
         1e-8,
     ),

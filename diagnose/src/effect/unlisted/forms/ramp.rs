@@ -8,9 +8,9 @@ use crate::parameter::Parameter;
 const STARTS_S: [f64; 3] = [3.0, 15.0, 50.0];
 
 /// The key of its value after a minute.
-pub struct Opening(pub &'static str);
+pub struct Ramp(pub &'static str);
 
-impl Form for Opening {
+impl Form for Ramp {
     fn closed(&self) -> Option<ClosedForm> {
         Some(ClosedForm {
             equation: "y = y_60 min(x, T) / min(60, T)",

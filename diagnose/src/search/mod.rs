@@ -19,10 +19,12 @@
 //! gain may be a wrong law that bends towards a missing one: a law must then explain much more to be reported.
 
 mod combinations;
+mod done;
 mod elimination;
 pub mod evidence;
 mod fits;
 mod forward;
+mod growth;
 mod numbers;
 mod oscillation;
 mod power;

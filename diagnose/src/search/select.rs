@@ -1,27 +1,13 @@
 //! The search from the believed model to the improved one.
 
-use super::combinations::Screening;
+use super::done;
+use super::growth::{Grown, grow, grown_with_laws_first, reduced};
 use super::oscillation::Oscillations;
-use super::selection::{CandidateScore, LawPairs, Progress, Selection};
+use super::selection::{CandidateScore, Progress, Selection};
 use super::selector::{Open, Screened, Selector};
 use crate::error::DiagnoseError;
 use crate::estimation::{Fit, LeastSquares, Point};
 use crate::specimen::Series;
-
-/// Fractions of the work that are done when a phase begins, 0 to 1, for a model that lacks two or three effects.
-mod done {
-    pub const CALIBRATION: f64 = 0.02;
-    /// The first screening; each effect that was added is [`EFFECT`] more.
-    pub const SCREENING: f64 = 0.1;
-    pub const EFFECT: f64 = 0.12;
-    /// Screening all candidates takes about as long as fitting the finalists.
-    pub const FITTING_AFTER_SCREENING: f64 = 0.06;
-    pub const ELIMINATION: f64 = 0.8;
-    pub const RIVALS: f64 = 0.88;
-}
-
-/// So many faults of instruments are doubted where one law may do as well.
-const DOUBTFUL_FAULTS: usize = 3;
 
 /// Runs the whole search. The first page of this crate has an example, in which [`crate::Diagnosis::of`] runs it.
 ///
@@ -127,197 +113,6 @@ impl Selector<'_, '_> {
     }
 }
 
-/// A model to which nothing more can be added.
-struct Grown {
-    best: Fit,
-    /// Candidates screened beside it.
-    screened: Vec<Screened>,
-    /// Candidates screened beside the calibrated model.
-    scores: Vec<CandidateScore>,
-    /// What might join it in the place of one of its effects.
-    open: Open,
-    /// Whether laws were tried in pairs.
-    law_pairs: LawPairs,
-}
-
-/// A model that grows anew with laws open from the beginning, and without what its other effects explain; `None` unless it is better than the model found, or
-/// as good with fewer effects. Names that came before laws were tried may have a part each of what one law explains, so that no law is accepted beside them, and
-/// several instruments that are all at fault are rarer than one law of the specimen. A name is still preferred to a law that gains little more.
-fn grown_with_laws_first(
-    selector: &mut Selector<'_, '_>,
-    calibrated: &Fit,
-    best: &Fit,
-    grown: &Grown,
-    progress: Progress<'_>,
-) -> Result<Option<(Grown, Fit)>, DiagnoseError> {
-    let acceptance = &selector.criteria().acceptance;
-    let has_named = |fit: &Fit| (fit.point.effects.iter()).any(|&e| !selector.candidate(e).is_unlisted());
-    let incomplete = selector.held_out_ratio(best) > selector.complete_up_to(best);
-    // As many names as a model may have leave no room for a law.
-    let no_room = grown.best.point.effects.len() >= acceptance.most_effects;
-    let names_came_first = (grown.open != Open::Names || no_room) && has_named(&grown.best);
-    let faults = (best.point.effects.iter()).filter(|&&e| selector.candidate(e).is_instrument_fault());
-    let doubtful = faults.count() >= DOUBTFUL_FAULTS;
-    if !(incomplete && names_came_first || doubtful) || !selector.can_have_two_laws() {
-        return Ok(None);
-    }
-    let fraction = if incomplete {
-        selector.fraction_of_incomplete()
-    } else {
-        acceptance.least_fraction
-    };
-    let anew = grow(selector, calibrated, calibrated.clone(), Open::Laws, progress)?;
-    let other = reduced(selector, anew.best.clone(), progress)?;
-    let better = selector.improves(best, &other, fraction);
-    let as_good_with_fewer =
-        other.point.effects.len() < best.point.effects.len() && !selector.improves(&other, best, fraction);
-    Ok((better || as_good_with_fewer).then_some((anew, other)))
-}
-
-/// A model without what its other effects explain, each effect in its simplest form.
-fn reduced(selector: &mut Selector<'_, '_>, grown: Fit, progress: Progress<'_>) -> Result<Fit, DiagnoseError> {
-    progress("dropping what the others explain", done::ELIMINATION);
-    selector.reduced(grown)
-}
-
-/// Adds effects to a model until none is accepted. Laws without a name are tried when no name is left and the noise is not reached; a second one, beside
-/// the first, while the model is not complete. Where no law is accepted alone and the model is far from complete, laws are tried in pairs.
-fn grow(
-    selector: &mut Selector<'_, '_>,
-    calibrated: &Fit,
-    from: Fit,
-    mut open: Open,
-    progress: Progress<'_>,
-) -> Result<Grown, DiagnoseError> {
-    let criteria = selector.criteria();
-    let laws_first = open == Open::Laws && from.point.effects.is_empty();
-    let mut best = from;
-    let mut law_pairs = LawPairs::NotTried;
-    let mut restarted_in_vain: Option<Point> = None;
-    let mut scores: Vec<CandidateScore> = Vec::new();
-    let mut screened_alone: Vec<Screened> = Vec::new();
-    loop {
-        let screening = done::SCREENING + done::EFFECT * best.point.effects.len() as f64;
-        progress("screening every candidate", screening);
-        let screened = selector.screen(&best, selector.open(&best.point, open))?;
-        if best.point.effects.is_empty() {
-            score_alone(selector, &screened, &mut scores);
-            if screened_alone.is_empty() {
-                screened_alone.clone_from(&screened);
-            }
-        }
-        progress(
-            "fitting the strongest candidates",
-            screening + done::FITTING_AFTER_SCREENING,
-        );
-        let full = best.point.effects.len() >= criteria.acceptance.most_effects;
-        let next = match open {
-            _ if full => None,
-            Open::Laws if laws_first => selector.strongest_name_or_law(&screened, &best)?,
-            Open::Names | Open::Numbers | Open::Laws => selector.strongest(&screened, &best)?,
-            Open::TwoLaws => selector.strongest_name_or_law(&screened, &best)?,
-        };
-        if let Some(next) = next {
-            best = next;
-            continue;
-        }
-        let incomplete = selector.held_out_ratio(&best) > selector.complete_up_to(&best);
-        if incomplete && restarted_in_vain.as_ref() != Some(&best.point) {
-            if let Some(better) = selector.restarted(&best)? {
-                best = better;
-                continue;
-            }
-            if let Some(better) = selector.reshaped(&best)? {
-                best = better;
-                continue;
-            }
-            restarted_in_vain = Some(best.point.clone());
-            if let (false, Some(split)) = (full, selector.split(&best)?) {
-                best = split;
-                continue;
-            }
-        }
-        let lacks_more = !full && !selector.reaches_noise(&best);
-        if open == Open::Names && lacks_more {
-            progress(
-                "trying other numbers of the model",
-                screening + done::FITTING_AFTER_SCREENING,
-            );
-            if let Some(completed) = selector.completed_by_numbers([&best, calibrated])? {
-                (best, open) = (completed, Open::Numbers);
-                continue;
-            }
-        }
-        if !full && open == Open::Names && selector.is_far_from_complete(&best, calibrated) {
-            progress("trying combinations", screening + done::FITTING_AFTER_SCREENING);
-            let end = Screening {
-                model: &best,
-                screened: &screened,
-            };
-            let begin = Screening {
-                model: calibrated,
-                screened: &screened_alone,
-            };
-            if let Some(next) = selector.strongest_combination(end, begin)? {
-                best = next;
-                continue;
-            }
-        }
-        let laws = selector.laws_of(&best.point);
-        let next = match open {
-            Open::Names if lacks_more => Some(Open::Laws),
-            Open::Laws if !full && incomplete && selector.can_have_two_laws() => Some(Open::TwoLaws),
-            _ => None,
-        };
-        if next == Some(Open::TwoLaws) && laws == 0 {
-            if selector.is_far_from_complete(&best, calibrated) {
-                progress("trying pairs of laws", screening + done::FITTING_AFTER_SCREENING);
-                let end = Screening {
-                    model: &best,
-                    screened: &screened,
-                };
-                if let Some(pair) = selector.combination_beside(end, Open::TwoLaws, &best)? {
-                    (best, open, law_pairs) = (pair, Open::TwoLaws, LawPairs::Found);
-                    continue;
-                }
-                law_pairs = LawPairs::NoneAccepted;
-            }
-        } else if let Some(next) = next {
-            open = next;
-            continue;
-        }
-        return Ok(Grown {
-            best,
-            screened,
-            scores,
-            open: match open {
-                // A second law takes no effect's place.
-                Open::TwoLaws if laws < 2 => Open::Laws,
-                // A law may be what looks like a wrong number.
-                Open::Numbers => Open::Laws,
-                open => open,
-            },
-            law_pairs,
-        });
-    }
-}
-
-/// Notes what candidates explain alone; laws without a name join when they are tried.
-fn score_alone(selector: &Selector<'_, '_>, screened: &[Screened], scores: &mut Vec<CandidateScore>) {
-    for (candidate, fit) in screened {
-        // What swings was not tried where the residual holds no frequency.
-        let was_tried = fit.is_some() || !selector.candidate(*candidate).oscillates;
-        if was_tried && scores.iter().all(|s| s.candidate != *candidate) {
-            scores.push(CandidateScore {
-                candidate: *candidate,
-                alone: fit.as_ref().map_or(f64::INFINITY, |f| selector.held_out_ratio(f)),
-                added: None,
-                least_sizes: vec![],
-            });
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -327,8 +122,8 @@ mod tests {
     };
     use crate::criteria::Criteria;
     use crate::estimation::covariance::deviations;
-    use crate::specimen::Specimen;
-    use crate::vocabulary::{Column, Site};
+    use crate::search::LawPairs;
+    use crate::vocabulary::Site;
     use std::sync::atomic::AtomicBool;
 
     fn selected(recipe: &Recipe) -> Selection {
@@ -339,83 +134,6 @@ mod tests {
         let mut effects = selection.best.point.effects.clone();
         effects.sort_unstable();
         effects
-    }
-
-    /// What a model of a name becomes with laws first, where this was open before and a model may have so many effects.
-    fn anew_with_laws_first(open: Open, most_effects: usize) -> Option<Vec<usize>> {
-        let mut specimen = Recipe {
-            truth: vec![(CUBIC, vec![0.4])],
-            candidates: vec![CUBIC, FRICTION],
-            ..Recipe::default()
-        }
-        .make();
-        specimen.take_name(CUBIC, Site::Mount);
-        let mut criteria = Criteria::default();
-        criteria.acceptance.most_effects = most_effects;
-        let problem = LeastSquares::new(&specimen, &RUN).with_criteria(criteria);
-        let mut selector = Selector::new(&problem);
-        let calibrated = selector.fitted(Point::nominal(&specimen)).expect("a fit");
-        let start = Point::nominal(&specimen).with_effect(&specimen, FRICTION, &[0.1]);
-        let best = selector.fitted(start).expect("a fit");
-        let grown = Grown {
-            best: best.clone(),
-            screened: vec![],
-            scores: vec![],
-            open,
-            law_pairs: LawPairs::NotTried,
-        };
-        let other = grown_with_laws_first(&mut selector, &calibrated, &best, &grown, &|_, _| {}).expect("fits");
-        other.map(|(_, fit)| fit.point.effects)
-    }
-
-    #[test]
-    fn a_name_that_came_before_laws_gives_way_to_the_law_that_explains_more() {
-        assert_eq!(anew_with_laws_first(Open::Laws, 6), Some(vec![CUBIC]));
-        assert_eq!(anew_with_laws_first(Open::Names, 6), None);
-    }
-
-    #[test]
-    fn so_do_as_many_names_as_a_model_may_have() {
-        assert_eq!(anew_with_laws_first(Open::Names, 1), Some(vec![CUBIC]));
-    }
-
-    #[test]
-    fn three_faults_of_instruments_give_way_to_one_law_that_does_as_well_and_two_do_not() {
-        let anew = |faults: &[usize]| {
-            let mut specimen = Recipe {
-                truth: vec![(CUBIC, vec![0.4])],
-                candidates: vec![CUBIC, NEARLY_CUBIC, FRICTION, VIBRATION],
-                ..Recipe::default()
-            }
-            .make();
-            specimen.take_name(CUBIC, Site::Mount);
-            for (fault, column) in faults.iter().zip(["p1_Pa", "p2_Pa", "p3_Pa"]) {
-                specimen.become_fault(*fault, Column::known(column));
-            }
-            let problem = LeastSquares::new(&specimen, &RUN);
-            let mut selector = Selector::new(&problem);
-            let calibrated = selector.fitted(Point::nominal(&specimen)).expect("a fit");
-            let start = (faults.iter()).fold(Point::nominal(&specimen), |point, fault| {
-                let values: Vec<f64> = specimen.candidates()[*fault]
-                    .parameters
-                    .iter()
-                    .map(|p| p.start)
-                    .collect();
-                point.with_effect(&specimen, *fault, &values)
-            });
-            let best = selector.fitted(start).expect("a fit");
-            let grown = Grown {
-                best: best.clone(),
-                screened: vec![],
-                scores: vec![],
-                open: Open::Names,
-                law_pairs: LawPairs::NotTried,
-            };
-            let other = grown_with_laws_first(&mut selector, &calibrated, &best, &grown, &|_, _| {}).expect("fits");
-            other.map(|(_, fit)| fit.point.effects.len())
-        };
-        assert_eq!(anew(&[NEARLY_CUBIC, FRICTION, VIBRATION]), Some(1));
-        assert_eq!(anew(&[NEARLY_CUBIC, FRICTION]), None);
     }
 
     #[test]

@@ -272,6 +272,7 @@ fn candidate(index: usize) -> Candidate {
         becomes: None,
         one_of_several: id == EffectId::Unlisted,
         is_believed_number: false,
+        only_in_place: false,
         oscillates: index == SWING,
         untestable: None,
         id,

@@ -28,6 +28,9 @@ pub struct Candidate {
     pub one_of_several: bool,
     /// Whether it is a number of the model that is other than believed, and no law.
     pub is_believed_number: bool,
+    /// Whether it is fitted only in the place of an effect that is there and leaves much behind: a law of so many numbers, or with so many starts,
+    /// that it is not screened.
+    pub only_in_place: bool,
     /// Whether it swings in time at a frequency that is looked for in the residual. Its parameters are then amplitude, phase, rad, and
     /// frequency, Hz.
     pub oscillates: bool,
@@ -55,6 +58,7 @@ impl Candidate {
             group: None,
             one_of_several: false,
             is_believed_number: false,
+            only_in_place: false,
             oscillates: false,
             untestable: None,
         }
@@ -125,6 +129,12 @@ impl Candidate {
             replaces: tolerance,
             ..self
         }
+    }
+
+    /// The candidate as one that is fitted only in the place of another effect.
+    #[must_use]
+    pub fn only_in_place_of_another(self, only_in_place: bool) -> Self {
+        Self { only_in_place, ..self }
     }
 
     /// The candidate as one that swings in time.

@@ -102,7 +102,7 @@ pub fn grow(
             Open::TwoLaws => selector.strongest_name_or_law(&screened, &best)?,
         };
         if let Some(next) = next {
-            best = next;
+            best = selector.with_last_law_reshaped(next)?;
             continue;
         }
         let incomplete = selector.held_out_ratio(&best) > selector.complete_up_to(&best);
@@ -111,7 +111,7 @@ pub fn grow(
                 best = better;
                 continue;
             }
-            if let Some(better) = selector.reshaped(&best)? {
+            if let Some(better) = selector.reshaped(&best, open)? {
                 best = better;
                 continue;
             }
@@ -122,6 +122,15 @@ pub fn grow(
             }
         }
         let lacks_more = !full && !selector.reaches_noise(&best);
+        if !full && incomplete && matches!(open, Open::Laws | Open::TwoLaws) {
+            progress("trying changes at a moment", screening + done::FITTING_AFTER_SCREENING);
+            let at_last = selector.open_at_last(&best.point, open);
+            let screened = selector.screen_in_passing(&best, at_last)?;
+            if let Some(next) = selector.strongest(&screened, &best)? {
+                best = next;
+                continue;
+            }
+        }
         if open == Open::Names && lacks_more {
             progress(
                 "trying other numbers of the model",

@@ -102,12 +102,20 @@ impl Selector<'_, '_> {
         };
         let rival = start.point.effects.last().copied().unwrap_or(candidate);
         let total: f64 = self.held_out(best).iter().sum();
-        let full = if cost - total < self.criteria().rivalry.contender * gain {
-            self.fitted_if_simulated(start.point.clone())?
-        } else {
-            None
+        if cost - total >= self.criteria().rivalry.contender * gain {
+            return Ok(Some((rival, start.clone())));
+        }
+        let full = self.fitted_if_simulated(start.point.clone())?;
+        let full = full.unwrap_or_else(|| start.clone());
+        // A law that was shaped to the recordings is compared with one elsewhere that is, too.
+        let (effect, other) = (self.candidate(candidate), self.candidate(rival));
+        let shaped = effect.only_in_place && other.is_law() && other.place != effect.place;
+        let last = full.point.effects.len() - 1;
+        let full = match shaped.then(|| self.reshaped_at(&full, last)).transpose()?.flatten() {
+            Some(other) => other,
+            None => full,
         };
-        Ok(Some((rival, full.unwrap_or_else(|| start.clone()))))
+        Ok(Some((full.point.effects.last().copied().unwrap_or(rival), full)))
     }
 
     /// How far the model found leads over the one with a rival in the place of an effect.

@@ -136,6 +136,19 @@ impl<'p, 'a> Selector<'p, 'a> {
     /// Candidates that may be added to a model: not in it and excluded by none of its effects. Laws without a name only
     /// where they are asked for.
     pub fn open(&self, point: &Point, open: Open) -> Vec<usize> {
+        let mut all = self.joinable(point, open);
+        all.retain(|&c| !self.candidate(c).only_in_place);
+        all
+    }
+
+    /// The same of candidates that are otherwise fitted only in the place of an effect: those of few numbers, which have starts of their own.
+    pub fn open_at_last(&self, point: &Point, open: Open) -> Vec<usize> {
+        let mut all = self.joinable(point, open);
+        all.retain(|&c| self.candidate(c).only_in_place && !self.candidate(c).starts.is_empty());
+        all
+    }
+
+    fn joinable(&self, point: &Point, open: Open) -> Vec<usize> {
         let laws = self.laws_of(point);
         let excluded = |c: usize| {
             let candidate = self.candidate(c);

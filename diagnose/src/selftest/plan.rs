@@ -1,6 +1,7 @@
 //! Which campaigns a self-test is made of, in which order: every term at every size, complete models, and pairs, dealt out
 //! in rounds, so that the first hundred are already a fair sample of the first thousand.
 
+use std::ops::Range;
 use std::str::FromStr;
 
 use oleo_plant_sim::model_file::names::suggestion;
@@ -8,7 +9,9 @@ use oleo_plant_sim::model_file::names::suggestion;
 use super::draw::Draw;
 use super::flaw::Flaw;
 use crate::effect::in_struts;
-use crate::effect::unlisted::{pairs_of_variants, periodic_variants, variants_of_believed_numbers};
+use crate::effect::unlisted::{
+    pairs_of_variants, periodic_variants, unfamiliar_variants, variants_of_believed_numbers,
+};
 use crate::vocabulary::EffectId;
 
 /// Sizes asked for, in units of noise (RMS over all channels and samples, after recalibration).
@@ -44,6 +47,11 @@ const TWO_LAWS_PER_ROUND: usize = 6;
 pub const WRONG_NUMBER: &str = "wrong_number";
 /// Its sizes.
 const WRONG_NUMBER_SIZES: [f64; 3] = [1.0, 5.0, 30.0];
+
+/// Name of a campaign in which a law is whose shape no form of the search holds.
+pub const UNFAMILIAR: &str = "unfamiliar";
+/// Its sizes: large enough that something must be said.
+const UNFAMILIAR_SIZES: [f64; 3] = [2.0, 10.0, 60.0];
 
 /// What a self-test is to do.
 #[derive(Debug, Clone)]
@@ -92,6 +100,8 @@ pub enum Subject {
     TwoLaws,
     /// A number of the model that is another than believed.
     WrongNumber,
+    /// A law without a name whose shape no form of the search holds.
+    Unfamiliar,
 }
 
 /// A text that names no subject of a self-test.
@@ -103,7 +113,7 @@ pub struct UnknownTerm(String);
 fn suggested(text: &str) -> String {
     let effects = in_struts().into_iter().map(EffectId::as_str);
     let known: Vec<&str> = effects
-        .chain([COMPLETE, PAIR, TRIPLE, PERIODIC, TWO_LAWS, WRONG_NUMBER])
+        .chain([COMPLETE, PAIR, TRIPLE, PERIODIC, TWO_LAWS, WRONG_NUMBER, UNFAMILIAR])
         .collect();
     suggestion(text, &known, "terms")
 }
@@ -119,6 +129,7 @@ impl FromStr for Subject {
             PERIODIC => Ok(Self::Periodic),
             TWO_LAWS => Ok(Self::TwoLaws),
             WRONG_NUMBER => Ok(Self::WrongNumber),
+            UNFAMILIAR => Ok(Self::Unfamiliar),
             _ => (in_struts().into_iter().find(|term| term.as_str() == text))
                 .map(Self::Effect)
                 .ok_or_else(|| UnknownTerm(text.to_owned())),
@@ -185,7 +196,11 @@ impl Plan {
             self.periodic(round, cases);
         }
         if self.subjects.contains(&Subject::WrongNumber) {
-            self.wrong_number(round, cases);
+            let (variants, sizes) = (variants_of_believed_numbers(), WRONG_NUMBER_SIZES);
+            self.one_of_each(WRONG_NUMBER, variants, sizes, round, cases);
+        }
+        if self.subjects.contains(&Subject::Unfamiliar) {
+            self.one_of_each(UNFAMILIAR, unfamiliar_variants(), UNFAMILIAR_SIZES, round, cases);
         }
         if self.subjects.contains(&Subject::TwoLaws) {
             self.two_laws(round, cases);
@@ -214,12 +229,12 @@ impl Plan {
         }
     }
 
-    /// Every number of the model that may be another than believed. They are concealed only where they are asked for.
-    fn wrong_number(&self, round: usize, cases: &mut Vec<Case>) {
-        for (k, variant) in variants_of_believed_numbers().enumerate() {
-            let size = WRONG_NUMBER_SIZES[(round + k) % WRONG_NUMBER_SIZES.len()];
+    /// Every variant once, with a size that changes from round to round. They are concealed only where they are asked for.
+    fn one_of_each(&self, kind: &str, variants: Range<usize>, sizes: [f64; 3], round: usize, cases: &mut Vec<Case>) {
+        for (k, variant) in variants.enumerate() {
+            let size = sizes[(round + k) % sizes.len()];
             cases.push(Case {
-                name: format!("{}:{WRONG_NUMBER}:{round}:{variant}:{size}", self.seed),
+                name: format!("{}:{kind}:{round}:{variant}:{size}", self.seed),
                 hidden: vec![(EffectId::Unlisted, size)],
                 variants: vec![variant],
                 left_out: None,

@@ -43,8 +43,9 @@ pub struct Args {
     seed: u64,
     /// Conceal only these, separated by commas: ids of effects, none (the model is complete), pair (two effects), triple (three
     /// effects), periodic (a law without a name that swings in time, in six places and three sizes), two_laws (two laws
-    /// without a name at different places) or wrong_number (a number of the model that is another than believed) [default: all
-    /// but the last four, which would change what the first N campaigns of a seed are]
+    /// without a name at different places), wrong_number (a number of the model that is another than believed) or unfamiliar (a
+    /// law without a name whose shape no textbook has) [default: all but the last five, which would change what the first N
+    /// campaigns of a seed are]
     #[arg(
         long,
         value_name = "A,B",

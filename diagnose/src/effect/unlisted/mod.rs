@@ -12,6 +12,7 @@
 //! | `cylinder_laws`, `gas_spring_laws`, `mechanism_laws` | laws of one number that only these kinds of specimen may have |
 //! | `believed_numbers` | numbers of a strut's model that may be other than believed |
 //! | `textbook`, `swinging_textbook` | other laws, for the self-test to conceal |
+//! | `unfamiliar` | laws whose shapes no form holds, for the same |
 //!
 //! A new form is a file in `forms` and its name in the rows of `strut_laws`. A new quantity to depend on is a variant of
 //! plant-sim's `LawArgument`, which the solver must read at the place. A law with a state of its own (heat, memory) is not
@@ -28,6 +29,7 @@ mod nameless;
 mod strut_laws;
 mod swinging_textbook;
 mod textbook;
+mod unfamiliar;
 mod words;
 
 use super::candidate::Candidate;
@@ -38,9 +40,17 @@ pub use forms::is_of_free_table;
 pub use nameless::Unlisted;
 pub use strut_laws::table;
 pub use textbook::{pairs_of_variants, periodic_variants};
+pub use unfamiliar::variants as unfamiliar_variants;
 
 #[cfg(test)]
 pub use strut_laws::candidates as candidates_of_struts;
+
+/// Numbers with which a law of a strut comes near another one; `None` where they do not act at the same place over the same quantity. The longest
+/// recording lasts this long, s.
+#[must_use]
+pub fn near(law: &Candidate, other: &Candidate, fitted: &[f64], longest_s: f64) -> Option<Vec<f64>> {
+    strut_laws::near(&law.label, &other.label, fitted, longest_s)
+}
 
 /// What was found of a candidate of a strut, as an equation with its numbers; `None` for a law that is drawn.
 #[must_use]

@@ -5,6 +5,7 @@ use oleo_plant_sim::strut::{Equation, StrutModel, TermId};
 use super::words::NamelessLaw;
 use super::{
     believed_numbers, co_simulation_laws, cylinder_laws, gas_spring_laws, mechanism_laws, strut_laws, textbook,
+    unfamiliar,
 };
 use crate::effect::candidate::Candidate;
 use crate::effect::contract::{
@@ -143,7 +144,7 @@ impl Concealed for Unlisted {
 
     fn put_true(&self, model: &mut StrutModel, drawn: &Drawn, amount: f64) -> Vec<TrueNumber> {
         believed_numbers::put_true(model, drawn, amount).unwrap_or_else(|| {
-            let (law, numbers) = textbook::law(drawn, amount);
+            let (law, numbers) = unfamiliar::law(drawn, amount).unwrap_or_else(|| textbook::law(drawn, amount));
             model.effects.unlisted.push(law);
             numbers
         })

@@ -1,5 +1,7 @@
 //! The trait of a form: how a law is described by a few fitted parameters.
 
+use oleo_plant_sim::strut::UnlistedLaw;
+
 use crate::parameter::Parameter;
 
 /// Largest fitted number over one that would be visible.
@@ -79,6 +81,16 @@ pub trait Form: Sync {
 
     /// The law of a quantity as an equation with the fitted numbers; `None` for a form that is drawn.
     fn equation(&self, _quantity: &str, _fitted: &[f64]) -> Option<String> {
+        None
+    }
+
+    /// Values of the argument at which the table has points.
+    fn argument(&self, grid: &Grid, _fitted: &[f64]) -> Vec<f64> {
+        grid.knots.to_vec()
+    }
+
+    /// The numbers with which this form comes near a law of another form over the same quantity; `None` where that says nothing.
+    fn near(&self, _grid: &Grid, _law: &UnlistedLaw) -> Option<Vec<f64>> {
         None
     }
 

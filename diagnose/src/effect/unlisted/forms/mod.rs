@@ -9,6 +9,7 @@
 //! | `bell` | is added around one argument | height, position, half width |
 //! | `groove` | is added over a stretch of its argument and runs out at the ends | depth, position, half width, length of the ends |
 //! | `ramp` | is added, grows at a constant rate and then stays | its value after a minute, duration of the growth |
+//! | `onset` | is added or multiplies, as believed until a moment, and stays after a while of change | its value in the end, the moment, duration of the change |
 //! | `parabola` | is added, a polynomial of second degree, of any sign or never negative | its three coefficients |
 //! | `power` | is added and follows a power of its argument | its value at the largest argument, exponent |
 //! | `proportional` | is added and is proportional to its argument | the value at an argument of one |
@@ -22,6 +23,8 @@
 //! | `stops` | is added beyond a threshold in either direction | sizes, thresholds, exponent |
 //! | `swinging` | is added or multiplies, and swings about what is believed | amplitude, phase, frequency |
 //! | `choke` | multiplies a flow over the root of the drop, which approaches a largest flow | inverse argument, sharpness of the bend |
+//! | `threshold` | is added beyond a threshold of its argument, in proportion to what is beyond it | its rise, the threshold |
+//! | `with_memory`, `with_presliding` | is one of the tables above | the numbers of the table, a time constant or a volume |
 //! | `pulled_shut` | multiplies what is believed, and falls with the size of its argument | inverse argument, exponent |
 
 mod added;
@@ -31,6 +34,7 @@ mod factor;
 mod form;
 mod groove;
 mod level;
+mod onset;
 mod parabola;
 mod power;
 mod proportional;
@@ -47,6 +51,9 @@ mod shearing;
 mod stiffening;
 mod stops;
 mod swinging;
+mod threshold;
+mod with_memory;
+mod with_presliding;
 
 #[cfg(test)]
 mod tests;
@@ -58,6 +65,7 @@ pub use factor::Factor;
 pub use form::{ClosedForm, Form, Grid};
 pub use groove::Groove;
 pub use level::Level;
+pub use onset::{OnsetAdded, OnsetFactor, OnsetLevel};
 pub use parabola::{LevelParabola, Parabola};
 pub use power::Power;
 pub use proportional::{Proportional, ProportionalAmount};
@@ -74,3 +82,6 @@ pub use shearing::Shearing;
 pub use stiffening::Stiffening;
 pub use stops::Stops;
 pub use swinging::{SwingingAdded, SwingingFactor};
+pub use threshold::{ThresholdAdded, ThresholdLevel};
+pub use with_memory::WithMemory;
+pub use with_presliding::WithPresliding;

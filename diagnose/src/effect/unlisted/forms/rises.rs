@@ -1,5 +1,7 @@
 //! Tables that are fitted as rises from knot to knot.
 
+use oleo_plant_sim::strut::UnlistedLaw;
+
 use super::form::Grid;
 use crate::parameter::Parameter;
 
@@ -27,4 +29,16 @@ pub fn values(grid: &Grid, rises: &[f64]) -> Vec<f64> {
     let at_rest = grid.knots.iter().position(|k| *k == grid.at_rest);
     let rest = at_rest.map_or(0.0, |k| value[k]);
     value.iter().map(|v| v - rest).collect()
+}
+
+/// Rises of a law from knot to knot.
+pub fn of(grid: &Grid, law: &UnlistedLaw) -> Vec<f64> {
+    let values = at(grid, law);
+    values.windows(2).map(|w| w[1] - w[0]).collect()
+}
+
+/// Values of a law at the knots.
+pub fn at(grid: &Grid, law: &UnlistedLaw) -> Vec<f64> {
+    let table = law.characteristic();
+    grid.knots.iter().map(|x| table.value(*x)).collect()
 }

@@ -8,9 +8,9 @@ use super::form::{ClosedForm, Form, Grid};
 use crate::parameter::Parameter;
 
 /// Volumes that are tried first, m3: a seal that is stiff, and one that is soft.
-const STARTS_M3: [f64; 2] = [1e-7, 1e-6];
+pub(super) const STARTS_M3: [f64; 2] = [1e-7, 1e-6];
 /// Volumes that are possible, m3: a hundredth of a millimetre of a small piston to ten of a large one.
-const RANGE_M3: (f64, f64) = (1e-8, 2e-5);
+pub(super) const RANGE_M3: (f64, f64) = (1e-8, 2e-5);
 /// Largest size of the exponent.
 const STEEPEST: f64 = 3.0;
 

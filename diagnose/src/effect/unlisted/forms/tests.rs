@@ -1,5 +1,6 @@
 //! Every form against what its definition says.
 
+use oleo_plant_sim::strut::{LawArgument, LawPlace, UnlistedLaw};
 use proptest::prelude::*;
 
 use super::*;
@@ -129,7 +130,7 @@ fn stops_do_nothing_between_their_thresholds() {
 
 #[test]
 fn each_form_has_as_many_numbers_as_its_starts() {
-    let forms: [&dyn Form; 27] = [
+    let forms: [&dyn Form; 35] = [
         &Added,
         &Bell,
         &PulledShut,
@@ -139,6 +140,20 @@ fn each_form_has_as_many_numbers_as_its_starts() {
         &Heated,
         &Level,
         &LevelParabola(["a", "b", "c"]),
+        &OnsetAdded("force_N"),
+        &OnsetFactor,
+        &OnsetLevel("flow_m3_s"),
+        &WithMemory(Added),
+        &WithMemory(Factor),
+        &WithPresliding,
+        &ThresholdAdded {
+            slope: "per_Pa_N",
+            threshold: "threshold_Pa",
+        },
+        &ThresholdLevel {
+            slope: "per_Pa_N",
+            threshold: "threshold_Pa",
+        },
         &Choke,
         &Lingering,
         &Ramp("flow_m3_s"),
@@ -162,7 +177,7 @@ fn each_form_has_as_many_numbers_as_its_starts() {
         let count = form.parameters(&GRID).len();
         assert!(form.starts(&GRID).iter().all(|start| start.len() == count));
         let absent: Vec<f64> = form.parameters(&GRID).iter().map(|p| p.start).collect();
-        assert_eq!(form.values(&GRID, &absent).len(), KNOTS.len());
+        assert_eq!(form.values(&GRID, &absent).len(), form.argument(&GRID, &absent).len());
     }
 }
 
@@ -258,4 +273,72 @@ fn what_holds_energy_or_remembers_is_in_proportion_to_it() {
     for form in [&Heated as &dyn Form, &Fading, &Lingering] {
         assert_eq!(form.time_constant_s(&[0.1, 9.0]), Some(9.0));
     }
+}
+
+/// The table of a form's numbers as a law.
+fn table(form: &dyn Form, fitted: &[f64]) -> UnlistedLaw {
+    UnlistedLaw {
+        place: LawPlace::MainSeal,
+        depends_on: LawArgument::Displacement,
+        argument: form.argument(&GRID, fitted),
+        value: form.values(&GRID, fitted),
+        time_constant_s: form.time_constant_s(fitted),
+        frequency_hz: None,
+        presliding_volume_m3: form.presliding_volume_m3(fitted),
+        attraction: None,
+    }
+}
+
+#[test]
+fn what_begins_at_a_moment_is_as_believed_before_and_stays_after() {
+    let law = table(&OnsetAdded("force_N"), &[-3.0, 7.0, 2.0]).characteristic();
+    for (time, expected) in [(0.0, 0.0), (7.0, 0.0), (8.0, -1.5), (9.0, -3.0), (1000.0, -3.0)] {
+        assert!((law.value(time) - expected).abs() < 1e-12, "{time}");
+    }
+    // Before the recording there was nothing, too.
+    assert_eq!(
+        table(&OnsetLevel("flow_m3_s"), &[3.0, 0.0, 2.0])
+            .characteristic()
+            .value(1.0),
+        1.5
+    );
+    let factor = table(&OnsetFactor, &[libm::log(0.5), 1.0, 1.0]).characteristic();
+    assert!(factor.value(0.5) == 1.0 && (factor.value(5.0) - 0.5).abs() < 1e-12);
+    assert_eq!(OnsetAdded("force_N").starts(&GRID).last().map(|s| s[1]), Some(45.0));
+}
+
+#[test]
+fn beyond_a_threshold_a_value_rises_without_an_end() {
+    let (slope, threshold) = ("per_Pa_N", "threshold_Pa");
+    let law = table(&ThresholdAdded { slope, threshold }, &[-2.0, 0.5]).characteristic();
+    for (x, expected) in [(-9.0, 0.0), (0.0, 0.0), (0.5, 0.0), (1.0, -1.0), (10.5, -20.0)] {
+        assert!((law.value(x) - expected).abs() < 1e-12, "{x}");
+    }
+}
+
+#[test]
+fn a_table_comes_near_a_law_of_another_form() {
+    let law = table(&Stiffening, &[2.0, -0.5]);
+    let (added, level) = (Added.near(&GRID, &law), Level.near(&GRID, &law));
+    assert_eq!(table(&Added, &added.expect("rises")).value, law.value);
+    let not_negative: Vec<f64> = law.value.iter().map(|v| v.max(0.0)).collect();
+    assert_eq!(level, Some(not_negative));
+    let factor = table(&PulledShut, &[0.7, 2.0]);
+    let rises = Factor.near(&GRID, &factor).expect("rises");
+    for (a, b) in table(&Factor, &rises).value.iter().zip(&factor.value) {
+        assert!((a - b).abs() < 1e-12);
+    }
+    // What is remembered and what shears goes with the table.
+    let lingering = table(&Lingering, &[-0.5, 3.0]);
+    let with_memory = WithMemory(Added).near(&GRID, &lingering).expect("a table");
+    assert_eq!(table(&WithMemory(Added), &with_memory), lingering);
+    let knots = &[0.5, 1.0, 2.0];
+    let grid = Grid { knots, ..GRID };
+    let shearing = UnlistedLaw {
+        argument: knots.to_vec(),
+        value: Shearing.values(&grid, &[4e4, -1.0, 7e-7]),
+        ..table(&Shearing, &[4e4, -1.0, 7e-7])
+    };
+    assert_eq!(WithPresliding.near(&grid, &shearing), Some(vec![8e4, 4e4, 2e4, 7e-7]));
+    assert_eq!(WithMemory(Added).near(&GRID, &shearing), None);
 }

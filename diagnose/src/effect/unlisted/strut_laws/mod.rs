@@ -4,6 +4,7 @@
 //! A new row is a new law to search for; a new dependence or place is one of plant-sim's (`LawArgument`, `LawPlace`).
 
 mod accumulators;
+mod fine;
 mod instruments;
 mod law;
 mod mount;
@@ -23,8 +24,18 @@ use crate::vocabulary::EffectId;
 /// The longest recording is taken to last at least this long, s.
 const LEAST_DURATION_S: f64 = 1.0;
 
-/// All laws.
+/// All laws, first those that are screened.
 fn laws() -> impl Iterator<Item = &'static Law> {
+    screened().chain(fine::laws())
+}
+
+/// The law of a label.
+fn of(label: &str) -> Option<&'static Law> {
+    laws().find(|law| law.label == label)
+}
+
+/// Laws that are screened.
+fn screened() -> impl Iterator<Item = &'static Law> {
     (seal_and_chamber::LAWS.iter())
         .chain(mount::LAWS)
         .chain(paths::LAWS)
@@ -37,7 +48,8 @@ fn laws() -> impl Iterator<Item = &'static Law> {
 
 /// Candidates for every law. The longest recording lasts this long, s.
 pub fn candidates(longest_s: f64) -> Vec<Candidate> {
-    let candidate = |law: &Law| {
+    let count = screened().count();
+    let candidate = |(k, law): (usize, &Law)| {
         let grid = law.grid(longest_s.max(LEAST_DURATION_S));
         let mut parameters = law.form.parameters(&grid);
         if law.is_of_output_only() {
@@ -49,8 +61,9 @@ pub fn candidates(longest_s: f64) -> Vec<Candidate> {
             .beside_others()
             .oscillating(law.depends_on == LawArgument::Phase)
             .in_group(is_one_table_of_two_places(law).then_some(ExclusionGroup(EffectId::Unlisted)))
+            .only_in_place_of_another(k >= count)
     };
-    laws().map(candidate).collect()
+    laws().enumerate().map(candidate).collect()
 }
 
 /// Whether the model has one table for this law and for one that is reported at another place. A model has one of the two.
@@ -61,12 +74,13 @@ fn is_one_table_of_two_places(law: &Law) -> bool {
 /// The law of a candidate with its fitted numbers, as a model file holds it; `None` for a label that no law has.
 #[must_use]
 pub fn table(label: &str, fitted: &[f64]) -> Option<UnlistedLaw> {
-    let law = laws().find(|law| law.label == label)?;
+    let law = of(label)?;
+    let grid = law.grid(LEAST_DURATION_S);
     Some(UnlistedLaw {
         place: law.place,
         depends_on: law.depends_on,
-        argument: law.knots.to_vec(),
-        value: law.form.values(&law.grid(LEAST_DURATION_S), fitted),
+        argument: law.form.argument(&grid, fitted),
+        value: law.form.values(&grid, fitted),
         time_constant_s: law.form.time_constant_s(fitted),
         frequency_hz: law.form.frequency_hz(fitted),
         presliding_volume_m3: law.form.presliding_volume_m3(fitted),
@@ -74,16 +88,26 @@ pub fn table(label: &str, fitted: &[f64]) -> Option<UnlistedLaw> {
     })
 }
 
+/// The numbers with which a law comes near another one of these numbers at the same place over the same quantity; `None` where they are not
+/// such two, or where that says nothing. The longest recording lasts this long, s.
+#[must_use]
+pub fn near(label: &str, other: &str, fitted: &[f64], longest_s: f64) -> Option<Vec<f64>> {
+    let (law, there) = (of(label)?, of(other)?);
+    let same = law.place == there.place && law.depends_on == there.depends_on;
+    let grid = law.grid(longest_s.max(LEAST_DURATION_S));
+    same.then(|| law.form.near(&grid, &table(other, fitted)?)).flatten()
+}
+
 /// The law of a label as an equation; `None` for a table of free points.
 #[must_use]
 pub fn closed(label: &str) -> Option<ClosedForm> {
-    laws().find(|law| law.label == label)?.form.closed()
+    of(label)?.form.closed()
 }
 
 /// The symbol of a fitted number in the equation of a law.
 #[must_use]
 pub fn symbol(label: &str, key: &str) -> Option<&'static str> {
-    let law = laws().find(|law| law.label == label)?;
+    let law = of(label)?;
     let position = (law.form.parameters(&law.grid(LEAST_DURATION_S)).iter()).position(|p| p.key == key)?;
     law.form.closed()?.symbols.get(position).copied()
 }
@@ -91,13 +115,15 @@ pub fn symbol(label: &str, key: &str) -> Option<&'static str> {
 /// The law of a candidate as an equation with its fitted numbers; `None` for a form that is no equation.
 #[must_use]
 pub fn equation(label: &str, fitted: &[f64]) -> Option<String> {
-    let law = laws().find(|law| law.label == label)?;
+    let law = of(label)?;
     let quantity = label.split(" over ").next().unwrap_or(label);
     law.form.equation(quantity, fitted)
 }
 
 #[cfg(test)]
 mod tests {
+    use oleo_plant_sim::model_file::Checked;
+
     use super::*;
 
     #[test]
@@ -118,6 +144,7 @@ mod tests {
             // What is added is zero, a factor is one.
             let first = table.value[0];
             assert!(first == 0.0 || first == 1.0, "{}", law.label);
+            assert_eq!(table.check(), Ok(()), "{}", law.label);
             assert!(table.value.iter().all(|v| *v == first), "{}", law.label);
         }
     }

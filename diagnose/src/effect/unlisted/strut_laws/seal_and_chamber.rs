@@ -6,9 +6,11 @@ use oleo_plant_sim::strut::LawPlace;
 use super::law::{Law, law};
 use crate::effect::unlisted::forms::{
     Added, Level, Power, Proportional, Ramp, Rising, Saturating, SettlingAdded, SettlingLevel, Stiffening, Stops,
+    ThresholdAdded, ThresholdLevel,
 };
 use crate::effect::unlisted::knots::{
-    ACCELERATION_M_S2, CHAMBER_FINE_PA, CHAMBER_PA, P1_PA, SPEED_FINE_M_S, SPEED_M_S, STOPS_M, TIME_S, TRAVEL_M,
+    ACCELERATION_M_S2, CHAMBER_FINE_PA, CHAMBER_PA, P1_PA, P1_THRESHOLDS_PA, SPEED_FINE_M_S, SPEED_M_S, STOPS_M,
+    TIME_S, TRAVEL_M,
 };
 use crate::vocabulary::Site;
 
@@ -147,6 +149,50 @@ pub(super) const LAWS: &[Law] = &[
         (LawPlace::MainChamberLoss, Time),
         &Ramp("flow_after_a_minute_m3_s"),
         TIME_S,
+        1e-9,
+    ),
+    law(
+        "force over pressure, beyond a threshold",
+        Site::MainSeal,
+        (LawPlace::MainSeal, P1),
+        &ThresholdAdded {
+            slope: "per_Pa_N",
+            threshold: "threshold_Pa",
+        },
+        P1_THRESHOLDS_PA,
+        20.0,
+    ),
+    law(
+        "friction over pressure, beyond a threshold",
+        Site::MainSeal,
+        (LawPlace::MainSealFriction, P1),
+        &ThresholdLevel {
+            slope: "per_Pa_N",
+            threshold: "threshold_Pa",
+        },
+        P1_THRESHOLDS_PA,
+        20.0,
+    ),
+    law(
+        "volume over pressure, beyond a threshold",
+        Site::MainChamber,
+        (LawPlace::MainChamber, P1),
+        &ThresholdLevel {
+            slope: "per_Pa_m3",
+            threshold: "threshold_Pa",
+        },
+        P1_THRESHOLDS_PA,
+        5e-8,
+    ),
+    law(
+        "oil lost over pressure, beyond a threshold",
+        Site::MainChamber,
+        (LawPlace::MainChamberLoss, P1),
+        &ThresholdLevel {
+            slope: "per_Pa_m3_s",
+            threshold: "threshold_Pa",
+        },
+        P1_THRESHOLDS_PA,
         1e-9,
     ),
 ];

@@ -5,8 +5,10 @@ use oleo_plant_sim::strut::LawArgument::{PressureDrop, Time};
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
-use crate::effect::unlisted::forms::{Added, Choke, LevelParabola, Parabola, PulledShut, SettlingLevel};
-use crate::effect::unlisted::knots::{EDGE_FINE_PA, EDGE_PA, TIME_S, VALVE_PA};
+use crate::effect::unlisted::forms::{
+    Added, Choke, LevelParabola, Parabola, PulledShut, SettlingLevel, ThresholdAdded,
+};
+use crate::effect::unlisted::knots::{EDGE_FINE_PA, EDGE_PA, EDGE_THRESHOLDS_PA, TIME_S, VALVE_PA};
 use crate::vocabulary::Site;
 
 pub(super) const LAWS: &[Law] = &[
@@ -96,6 +98,17 @@ pub(super) const LAWS: &[Law] = &[
         (LawPlace::ValveTiming, PressureDrop),
         &Parabola(["at_rest_s", "per_Pa_s", "per_Pa2_s"]),
         EDGE_FINE_PA,
+        2e-3,
+    ),
+    law(
+        "response time over pressure drop, beyond a threshold",
+        Site::Valves,
+        (LawPlace::ValveTiming, PressureDrop),
+        &ThresholdAdded {
+            slope: "per_Pa_s",
+            threshold: "threshold_Pa",
+        },
+        EDGE_THRESHOLDS_PA,
         2e-3,
     ),
     law(

@@ -1,0 +1,155 @@
+//! A value that is as believed until a moment, changes at a constant rate for a while, and then stays: what breaks, lodges, opens or runs dry while it
+//! is recorded.
+
+use oleo_plant_sim::strut::UnlistedLaw;
+
+use super::form::{ClosedForm, Form, Grid};
+use crate::parameter::Parameter;
+
+/// Moments that are tried first, and the duration of the change with them, over the longest recording.
+const PARTS: usize = 10;
+/// Shortest and longest change, s.
+const CHANGES_FOR_S: (f64, f64) = (0.01, 3000.0);
+/// Latest moment, s.
+const LATEST_S: f64 = 3600.0;
+/// Largest logarithm of a factor.
+const MOST_LOG: f64 = 3.0;
+/// Least factor of another form that is followed.
+const LEAST: f64 = 1e-3;
+
+/// A value that is added; the key of its value in the end.
+pub struct OnsetAdded(pub &'static str);
+
+/// A value that is added and never negative; the key of its value in the end.
+pub struct OnsetLevel(pub &'static str);
+
+/// A value that multiplies what is believed.
+pub struct OnsetFactor;
+
+fn with_times(size: Parameter) -> Vec<Parameter> {
+    vec![
+        size,
+        Parameter::linear("begins_at_s", 0.0, 1.0, (0.0, LATEST_S)),
+        Parameter::log("changes_for_s", 1.0, CHANGES_FOR_S),
+    ]
+}
+
+fn starts(grid: &Grid) -> Vec<Vec<f64>> {
+    let part = grid.longest_s / PARTS as f64;
+    (0..PARTS)
+        .map(|k| vec![3.0 * grid.visible, part * k as f64, part])
+        .collect()
+}
+
+/// Before the change, at its beginning, at its end and after it: the table is flat beyond its points.
+fn moments(fitted: &[f64]) -> Vec<f64> {
+    let &[_, begins_at_s, changes_for_s] = fitted else {
+        return vec![0.0, 1.0, 2.0, 3.0];
+    };
+    let ends_at_s = begins_at_s + changes_for_s;
+    vec![
+        begins_at_s - changes_for_s,
+        begins_at_s,
+        ends_at_s,
+        ends_at_s + changes_for_s,
+    ]
+}
+
+fn changed(fitted: &[f64]) -> Vec<f64> {
+    let size = fitted.first().copied().unwrap_or(0.0);
+    vec![0.0, 0.0, size, size]
+}
+
+/// Half of the recording leads from none to what a law has in the end.
+fn near(grid: &Grid, in_the_end: f64) -> Option<Vec<f64>> {
+    Some(vec![in_the_end, 0.0, 0.5 * grid.longest_s])
+}
+
+impl Form for OnsetAdded {
+    fn closed(&self) -> Option<ClosedForm> {
+        Some(ClosedForm {
+            equation: "y = y_e min(max((x - t_0) / T, 0), 1)",
+            symbols: &["y_e", "t_0", "T"],
+        })
+    }
+
+    fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
+        let most = grid.most();
+        with_times(Parameter::departure(self.0, grid.visible, (-most, most)))
+    }
+
+    fn starts(&self, grid: &Grid) -> Vec<Vec<f64>> {
+        starts(grid)
+    }
+
+    fn argument(&self, _grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        moments(fitted)
+    }
+
+    fn near(&self, grid: &Grid, law: &UnlistedLaw) -> Option<Vec<f64>> {
+        near(grid, law.characteristic().value(grid.longest_s))
+    }
+
+    fn values(&self, _grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        changed(fitted)
+    }
+}
+
+impl Form for OnsetLevel {
+    fn closed(&self) -> Option<ClosedForm> {
+        OnsetAdded(self.0).closed()
+    }
+
+    fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
+        with_times(Parameter::amount(self.0, grid.visible, grid.most()))
+    }
+
+    fn starts(&self, grid: &Grid) -> Vec<Vec<f64>> {
+        starts(grid)
+    }
+
+    fn argument(&self, _grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        moments(fitted)
+    }
+
+    fn near(&self, grid: &Grid, law: &UnlistedLaw) -> Option<Vec<f64>> {
+        near(grid, law.characteristic().value(grid.longest_s).max(0.0))
+    }
+
+    fn values(&self, _grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        changed(fitted)
+    }
+}
+
+impl Form for OnsetFactor {
+    fn closed(&self) -> Option<ClosedForm> {
+        Some(ClosedForm {
+            equation: "y = exp(a min(max((x - t_0) / T, 0), 1))",
+            symbols: &["a", "t_0", "T"],
+        })
+    }
+
+    fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
+        with_times(Parameter::departure(
+            "log_factor_in_the_end",
+            grid.visible,
+            (-MOST_LOG, MOST_LOG),
+        ))
+    }
+
+    fn starts(&self, grid: &Grid) -> Vec<Vec<f64>> {
+        starts(grid)
+    }
+
+    fn argument(&self, _grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        moments(fitted)
+    }
+
+    fn near(&self, grid: &Grid, law: &UnlistedLaw) -> Option<Vec<f64>> {
+        near(grid, libm::log(law.characteristic().value(grid.longest_s).max(LEAST)))
+    }
+
+    fn values(&self, _grid: &Grid, fitted: &[f64]) -> Vec<f64> {
+        changed(fitted).into_iter().map(libm::exp).collect()
+    }
+}

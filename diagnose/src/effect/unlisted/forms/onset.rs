@@ -6,8 +6,11 @@ use oleo_plant_sim::strut::UnlistedLaw;
 use super::form::{ClosedForm, Form, Grid};
 use crate::parameter::Parameter;
 
-/// Moments that are tried first, and the duration of the change with them, over the longest recording.
-const PARTS: usize = 10;
+/// First moment after the start that is tried, s, and each over the one before: what is seen in a short recording is not seen in steps of a long one.
+const FIRST_S: f64 = 0.5;
+const RATIO: f64 = 1.5;
+/// Duration of the change with which a moment is tried, over the moment.
+const PART: f64 = 0.4;
 /// Shortest and longest change, s.
 const CHANGES_FOR_S: (f64, f64) = (0.01, 3000.0);
 /// Latest moment, s.
@@ -35,9 +38,11 @@ fn with_times(size: Parameter) -> Vec<Parameter> {
 }
 
 fn starts(grid: &Grid) -> Vec<Vec<f64>> {
-    let part = grid.longest_s / PARTS as f64;
-    (0..PARTS)
-        .map(|k| vec![3.0 * grid.visible, part * k as f64, part])
+    let moments = std::iter::successors(Some(FIRST_S), |moment| Some(RATIO * moment));
+    std::iter::once((0.0, FIRST_S))
+        .chain(moments.map(|moment| (moment, PART * moment)))
+        .take_while(|(moment, _)| *moment < grid.longest_s)
+        .map(|(moment, lasts_s)| vec![3.0 * grid.visible, moment, lasts_s])
         .collect()
 }
 

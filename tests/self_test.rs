@@ -152,6 +152,32 @@ fn a_wrong_number_is_named_and_the_improved_model_states_the_true_one() {
 
 /// Under all that the recordings hold a mount that yields does the same as a larger volume of oil that yields.
 #[test]
+fn a_spot_between_the_points_of_a_table_and_a_change_at_a_moment_are_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // Friction about a place of the bore, and a damper that is suddenly stronger.
+    for (campaign, place, depends_on, points) in [
+        ("3_unfamiliar_0_37_60", "main-seal", "displacement", 31),
+        ("3_unfamiliar_0_43_60", "path-1", "time", 4),
+    ] {
+        let folder = folder.path().join(campaign);
+        std::fs::create_dir(&folder).expect("a folder");
+        diagnose_saved(&folder, "--terms unfamiliar --seed 3 --campaigns 12", campaign);
+        let text = std::fs::read_to_string(folder.join("found/report.json")).expect("a report");
+        let report: Value = serde_json::from_str(&text).expect("JSON");
+        let effects = report["effects"].as_array().expect("a list");
+        assert_eq!(effects.len(), 1, "{effects:?}");
+        let law = &effects[0]["law"];
+        assert_eq!(
+            (&effects[0]["place"], &law["depends_on"]),
+            (&place.into(), &depends_on.into())
+        );
+        assert_eq!(law["argument"].as_array().map(Vec::len), Some(points));
+        let ratio = effects[0]["held_out_noise_ratio"]["with"].as_f64().expect("a ratio");
+        assert!(ratio < 1.1, "{campaign}: {ratio}");
+    }
+}
+
+#[test]
 fn a_number_that_may_be_wrong_in_the_place_of_an_effect_is_said_with_its_value() {
     let folder = tempfile::tempdir().expect("a folder");
     let campaigns = "--terms mount_compliance --seed 3 --campaigns 4";

@@ -132,6 +132,11 @@ impl Analytic {
         key.clone_into(&mut self.candidates[candidate].parameters[0].key);
     }
 
+    /// Makes a candidate one that is fitted only in the place of another effect.
+    pub fn become_only_in_place(&mut self, candidate: usize) {
+        self.candidates[candidate].only_in_place = true;
+    }
+
     /// Another start of a candidate's first parameter.
     pub fn move_start(&mut self, candidate: usize, start: f64) {
         self.candidates[candidate].parameters[0].start = start;

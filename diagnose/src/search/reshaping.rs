@@ -142,4 +142,40 @@ mod tests {
         assert_eq!(reshaped(FRICTION, "another"), None);
         assert_eq!(reshaped(CUBIC, "size"), None, "nothing is left to explain");
     }
+
+    /// What a model of a friction becomes where a cubic law is true that is fitted only in the place of what is there.
+    fn reshaped_into_what_is_not_screened(friction_is_law: bool, open: Open) -> Option<Vec<usize>> {
+        let mut specimen = Recipe {
+            truth: vec![(CUBIC, vec![0.4])],
+            candidates: vec![CUBIC, FRICTION],
+            ..Recipe::default()
+        }
+        .make();
+        specimen.take_name(CUBIC, Site::MainSeal);
+        specimen.become_only_in_place(CUBIC);
+        if friction_is_law {
+            specimen.take_name(FRICTION, Site::MainSeal);
+        }
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let mut selector = Selector::new(&problem);
+        let start = Point::nominal(&specimen).with_effect(&specimen, FRICTION, &[0.1]);
+        assert!(
+            !selector
+                .open(&Point::nominal(&specimen), Open::TwoLaws)
+                .contains(&CUBIC)
+        );
+        let best = selector.fitted(start).expect("a fit");
+        selector
+            .reshaped(&best, open)
+            .expect("fits")
+            .map(|fit| fit.point.effects)
+    }
+
+    #[test]
+    fn what_is_not_screened_takes_the_place_of_a_law_and_of_a_name_only_where_laws_are_open() {
+        assert_eq!(reshaped_into_what_is_not_screened(true, Open::Names), Some(vec![CUBIC]));
+        assert_eq!(reshaped_into_what_is_not_screened(false, Open::Names), None);
+        let effects = reshaped_into_what_is_not_screened(false, Open::Laws).expect("another shape");
+        assert!(effects.contains(&CUBIC), "{effects:?}");
+    }
 }

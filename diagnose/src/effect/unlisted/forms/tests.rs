@@ -140,19 +140,21 @@ fn each_form_has_as_many_numbers_as_its_starts() {
         &Heated,
         &Level,
         &LevelParabola(["a", "b", "c"]),
-        &OnsetAdded("force_N"),
-        &OnsetFactor,
-        &OnsetLevel("flow_m3_s"),
+        &Onset::Added("force_N"),
+        &Onset::Factor,
+        &Onset::Level("flow_m3_s"),
         &WithMemory(Added),
         &WithMemory(Factor),
         &WithPresliding,
-        &ThresholdAdded {
+        &Threshold {
             slope: "per_Pa_N",
             threshold: "threshold_Pa",
+            any_sign: true,
         },
-        &ThresholdLevel {
+        &Threshold {
             slope: "per_Pa_N",
             threshold: "threshold_Pa",
+            any_sign: false,
         },
         &Choke,
         &Lingering,
@@ -291,20 +293,20 @@ fn table(form: &dyn Form, fitted: &[f64]) -> UnlistedLaw {
 
 #[test]
 fn what_begins_at_a_moment_is_as_believed_before_and_stays_after() {
-    let law = table(&OnsetAdded("force_N"), &[-3.0, 7.0, 2.0]).characteristic();
+    let law = table(&Onset::Added("force_N"), &[-3.0, 7.0, 2.0]).characteristic();
     for (time, expected) in [(0.0, 0.0), (7.0, 0.0), (8.0, -1.5), (9.0, -3.0), (1000.0, -3.0)] {
         assert!((law.value(time) - expected).abs() < 1e-12, "{time}");
     }
     // Before the recording there was nothing, too.
     assert_eq!(
-        table(&OnsetLevel("flow_m3_s"), &[3.0, 0.0, 2.0])
+        table(&Onset::Level("flow_m3_s"), &[3.0, 0.0, 2.0])
             .characteristic()
             .value(1.0),
         1.5
     );
-    let factor = table(&OnsetFactor, &[libm::log(0.5), 1.0, 1.0]).characteristic();
+    let factor = table(&Onset::Factor, &[libm::log(0.5), 1.0, 1.0]).characteristic();
     assert!(factor.value(0.5) == 1.0 && (factor.value(5.0) - 0.5).abs() < 1e-12);
-    let moments: Vec<f64> = OnsetFactor.starts(&GRID).iter().map(|start| start[1]).collect();
+    let moments: Vec<f64> = Onset::Factor.starts(&GRID).iter().map(|start| start[1]).collect();
     assert_eq!(moments[..4], [0.0, 0.5, 0.75, 1.125]);
     assert!(
         moments
@@ -316,7 +318,15 @@ fn what_begins_at_a_moment_is_as_believed_before_and_stays_after() {
 #[test]
 fn beyond_a_threshold_a_value_rises_without_an_end() {
     let (slope, threshold) = ("per_Pa_N", "threshold_Pa");
-    let law = table(&ThresholdAdded { slope, threshold }, &[-2.0, 0.5]).characteristic();
+    let law = table(
+        &Threshold {
+            slope,
+            threshold,
+            any_sign: true,
+        },
+        &[-2.0, 0.5],
+    )
+    .characteristic();
     for (x, expected) in [(-9.0, 0.0), (0.0, 0.0), (0.5, 0.0), (1.0, -1.0), (10.5, -20.0)] {
         assert!((law.value(x) - expected).abs() < 1e-12, "{x}");
     }

@@ -7,20 +7,14 @@ use crate::parameter::Parameter;
 /// Sizes that are tried, over one that would be visible over the distance of the thresholds.
 const SIZES: [f64; 2] = [3.0, 30.0];
 
-/// A value of any sign.
-pub struct ThresholdAdded {
-    /// Key of its rise with the argument.
+/// A value that rises with its argument beyond a threshold.
+pub struct Threshold {
+    /// Key of its rise.
     pub slope: &'static str,
     /// Key of the threshold.
     pub threshold: &'static str,
-}
-
-/// A value that is never negative.
-pub struct ThresholdLevel {
-    /// Key of its rise with the argument.
-    pub slope: &'static str,
-    /// Key of the threshold.
-    pub threshold: &'static str,
+    /// Whether it may fall instead.
+    pub any_sign: bool,
 }
 
 /// Largest argument of the table.
@@ -33,30 +27,7 @@ fn visible(grid: &Grid) -> f64 {
     grid.visible / end(grid)
 }
 
-fn threshold(key: &'static str, grid: &Grid) -> Parameter {
-    let end = end(grid);
-    Parameter::linear(key, 0.3 * end, 0.02 * end, (0.0, end))
-}
-
-fn starts(grid: &Grid) -> Vec<Vec<f64>> {
-    let thresholds = grid.knots.iter().copied().filter(|x| *x >= 0.0 && *x < end(grid));
-    thresholds
-        .flat_map(|x| SIZES.map(|size| vec![size * visible(grid), x]))
-        .collect()
-}
-
-/// The threshold with a point on either side: the table is linear beyond its points.
-fn argument(grid: &Grid, fitted: &[f64]) -> Vec<f64> {
-    let threshold = fitted.get(1).copied().unwrap_or(0.0);
-    vec![threshold - end(grid), threshold, threshold + end(grid)]
-}
-
-fn values(grid: &Grid, fitted: &[f64]) -> Vec<f64> {
-    let slope = fitted.first().copied().unwrap_or(0.0);
-    vec![0.0, 0.0, slope * end(grid)]
-}
-
-impl Form for ThresholdAdded {
+impl Form for Threshold {
     fn closed(&self) -> Option<ClosedForm> {
         Some(ClosedForm {
             equation: "y = a max(x - x_0, 0)",
@@ -65,51 +36,33 @@ impl Form for ThresholdAdded {
     }
 
     fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
-        let most = grid.most() / end(grid);
+        let end = end(grid);
+        let most = grid.most() / end;
         vec![
-            Parameter::departure(self.slope, visible(grid), (-most, most)),
-            threshold(self.threshold, grid),
+            if self.any_sign {
+                Parameter::departure(self.slope, visible(grid), (-most, most))
+            } else {
+                Parameter::amount(self.slope, visible(grid), most)
+            },
+            Parameter::linear(self.threshold, 0.3 * end, 0.02 * end, (0.0, end)),
         ]
     }
 
     fn starts(&self, grid: &Grid) -> Vec<Vec<f64>> {
-        starts(grid)
+        let thresholds = grid.knots.iter().copied().filter(|x| *x >= 0.0 && *x < end(grid));
+        thresholds
+            .flat_map(|x| SIZES.map(|size| vec![size * visible(grid), x]))
+            .collect()
     }
 
+    /// The threshold with a point on either side: the table is linear beyond its points.
     fn argument(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {
-        argument(grid, fitted)
+        let threshold = fitted.get(1).copied().unwrap_or(0.0);
+        vec![threshold - end(grid), threshold, threshold + end(grid)]
     }
 
     fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {
-        values(grid, fitted)
-    }
-}
-
-impl Form for ThresholdLevel {
-    fn closed(&self) -> Option<ClosedForm> {
-        Some(ClosedForm {
-            equation: "y = a max(x - x_0, 0)",
-            symbols: &["a", "x_0"],
-        })
-    }
-
-    fn parameters(&self, grid: &Grid) -> Vec<Parameter> {
-        let most = grid.most() / end(grid);
-        vec![
-            Parameter::amount(self.slope, visible(grid), most),
-            threshold(self.threshold, grid),
-        ]
-    }
-
-    fn starts(&self, grid: &Grid) -> Vec<Vec<f64>> {
-        starts(grid)
-    }
-
-    fn argument(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {
-        argument(grid, fitted)
-    }
-
-    fn values(&self, grid: &Grid, fitted: &[f64]) -> Vec<f64> {
-        values(grid, fitted)
+        let slope = fitted.first().copied().unwrap_or(0.0);
+        vec![0.0, 0.0, slope * end(grid)]
     }
 }

@@ -6,7 +6,7 @@ use oleo_plant_sim::strut::LawPlace;
 use super::law::{Law, law};
 use crate::effect::unlisted::forms::{
     Added, Level, Power, Proportional, Ramp, Rising, Saturating, SettlingAdded, SettlingLevel, Stiffening, Stops,
-    ThresholdAdded, ThresholdLevel,
+    Threshold,
 };
 use crate::effect::unlisted::knots::{
     ACCELERATION_M_S2, CHAMBER_FINE_PA, CHAMBER_PA, P1_PA, P1_THRESHOLDS_PA, SPEED_FINE_M_S, SPEED_M_S, STOPS_M,
@@ -155,9 +155,10 @@ pub(super) const LAWS: &[Law] = &[
         "force over pressure, beyond a threshold",
         Site::MainSeal,
         (LawPlace::MainSeal, P1),
-        &ThresholdAdded {
+        &Threshold {
             slope: "per_Pa_N",
             threshold: "threshold_Pa",
+            any_sign: true,
         },
         P1_THRESHOLDS_PA,
         20.0,
@@ -166,9 +167,10 @@ pub(super) const LAWS: &[Law] = &[
         "friction over pressure, beyond a threshold",
         Site::MainSeal,
         (LawPlace::MainSealFriction, P1),
-        &ThresholdLevel {
+        &Threshold {
             slope: "per_Pa_N",
             threshold: "threshold_Pa",
+            any_sign: false,
         },
         P1_THRESHOLDS_PA,
         20.0,
@@ -177,9 +179,10 @@ pub(super) const LAWS: &[Law] = &[
         "volume over pressure, beyond a threshold",
         Site::MainChamber,
         (LawPlace::MainChamber, P1),
-        &ThresholdLevel {
+        &Threshold {
             slope: "per_Pa_m3",
             threshold: "threshold_Pa",
+            any_sign: false,
         },
         P1_THRESHOLDS_PA,
         5e-8,
@@ -188,9 +191,10 @@ pub(super) const LAWS: &[Law] = &[
         "oil lost over pressure, beyond a threshold",
         Site::MainChamber,
         (LawPlace::MainChamberLoss, P1),
-        &ThresholdLevel {
+        &Threshold {
             slope: "per_Pa_m3_s",
             threshold: "threshold_Pa",
+            any_sign: false,
         },
         P1_THRESHOLDS_PA,
         1e-9,

@@ -5,9 +5,7 @@ use oleo_plant_sim::strut::LawArgument::{PressureDrop, Time};
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
-use crate::effect::unlisted::forms::{
-    Added, Choke, LevelParabola, Parabola, PulledShut, SettlingLevel, ThresholdAdded,
-};
+use crate::effect::unlisted::forms::{Added, Choke, LevelParabola, Parabola, PulledShut, SettlingLevel, Threshold};
 use crate::effect::unlisted::knots::{EDGE_FINE_PA, EDGE_PA, EDGE_THRESHOLDS_PA, TIME_S, VALVE_PA};
 use crate::vocabulary::Site;
 
@@ -104,9 +102,10 @@ pub(super) const LAWS: &[Law] = &[
         "response time over pressure drop, beyond a threshold",
         Site::Valves,
         (LawPlace::ValveTiming, PressureDrop),
-        &ThresholdAdded {
+        &Threshold {
             slope: "per_Pa_s",
             threshold: "threshold_Pa",
+            any_sign: true,
         },
         EDGE_THRESHOLDS_PA,
         2e-3,

@@ -10,7 +10,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use crate::effect::{Candidate, ExclusionGroup};
+use crate::effect::{Candidate, ExclusionGroup, Joins};
 use crate::parameter::Parameter;
 use crate::recording::Recording;
 use crate::specimen::{Channel, Hypothesis, Series, Specimen, StateSeries};
@@ -134,7 +134,7 @@ impl Analytic {
 
     /// Makes a candidate one that is fitted only in the place of another effect.
     pub fn become_only_in_place(&mut self, candidate: usize) {
-        self.candidates[candidate].only_in_place = true;
+        self.candidates[candidate].joins = Joins::InPlace;
     }
 
     /// Another start of a candidate's first parameter.
@@ -277,7 +277,7 @@ fn candidate(index: usize) -> Candidate {
         becomes: None,
         one_of_several: id == EffectId::Unlisted,
         is_believed_number: false,
-        only_in_place: false,
+        joins: Joins::Screened,
         oscillates: index == SWING,
         untestable: None,
         id,

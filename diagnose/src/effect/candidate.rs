@@ -28,9 +28,8 @@ pub struct Candidate {
     pub one_of_several: bool,
     /// Whether it is a number of the model that is other than believed, and no law.
     pub is_believed_number: bool,
-    /// Whether it is fitted only in the place of an effect that is there and leaves much behind: a law of so many numbers, or with so many starts,
-    /// that it is not screened.
-    pub only_in_place: bool,
+    /// When it may join a model.
+    pub joins: Joins,
     /// Whether it swings in time at a frequency that is looked for in the residual. Its parameters are then amplitude, phase, rad, and
     /// frequency, Hz.
     pub oscillates: bool,
@@ -41,6 +40,17 @@ pub struct Candidate {
 /// A group of candidates of which a model can contain only one, because they are different forms of one effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ExclusionGroup(pub EffectId);
+
+/// When a candidate may join a model. Those of many numbers or many starts would be screened slowly, and mostly in vain.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Joins {
+    /// When it is screened and explains most.
+    Screened,
+    /// When nothing else joins, or in the place of an effect that leaves much behind.
+    AtLast,
+    /// In the place of such an effect only.
+    InPlace,
+}
 
 impl Candidate {
     /// A candidate: an effect at a site of a specimen with the parameters to fit.
@@ -58,7 +68,7 @@ impl Candidate {
             group: None,
             one_of_several: false,
             is_believed_number: false,
-            only_in_place: false,
+            joins: Joins::Screened,
             oscillates: false,
             untestable: None,
         }
@@ -131,10 +141,10 @@ impl Candidate {
         }
     }
 
-    /// The candidate as one that is fitted only in the place of another effect.
+    /// The candidate as one that joins a model at another time.
     #[must_use]
-    pub fn only_in_place_of_another(self, only_in_place: bool) -> Self {
-        Self { only_in_place, ..self }
+    pub fn joining(self, joins: Joins) -> Self {
+        Self { joins, ..self }
     }
 
     /// The candidate as one that swings in time.

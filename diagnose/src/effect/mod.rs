@@ -51,7 +51,7 @@ mod valve_transition;
 #[cfg(test)]
 mod tests;
 
-pub use candidate::{Candidate, ExclusionGroup};
+pub use candidate::{Candidate, ExclusionGroup, Joins};
 pub use contract::{
     ActsOn, CoSimulation, Concealed, Cylinder, Effect, Experiment, GasSpring, Kind, Mechanism, ShowsIn, Strut,
     StrutEffect,

@@ -4,8 +4,8 @@
 //! What has a kink or a spot between the points of a table needs a table in finer steps, and what breaks at a moment is not a drift.
 
 use super::selector::{Open, Selector};
-use crate::effect::Candidate;
 use crate::effect::unlisted::near;
+use crate::effect::{Candidate, Joins};
 use crate::error::DiagnoseError;
 use crate::estimation::{Fit, Point};
 
@@ -71,7 +71,7 @@ impl Selector<'_, '_> {
         if !there.is_law() && !there.excludes(other) {
             starts.push(best.point.with_effect(specimen, shape, &own));
         }
-        if other.only_in_place && !other.starts.is_empty() {
+        if other.joins == Joins::AtLast && !other.starts.is_empty() {
             let less = self.fitted(without)?;
             let screened = self.screen_in_passing(&less, vec![shape])?;
             starts.extend(screened.into_iter().filter_map(|(_, fit)| fit).map(|fit| fit.point));
@@ -106,7 +106,7 @@ impl Selector<'_, '_> {
 fn is_shape_of(other: &Candidate, there: &Candidate) -> bool {
     let size = |candidate: &Candidate| candidate.parameters.first().map(|p| p.key.clone());
     let same = other.is_law() && there.is_law() && size(other) == size(there);
-    other.place == there.place && (same || other.only_in_place)
+    other.place == there.place && (same || other.joins != Joins::Screened)
 }
 
 #[cfg(test)]

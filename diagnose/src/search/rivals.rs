@@ -4,7 +4,7 @@ use super::selection::{Fitted, Rival, SelectedEffect};
 use super::selector::{Open, Selector, ranked};
 use super::simplification::is_form_of;
 use crate::criteria::Criteria;
-use crate::effect::Candidate;
+use crate::effect::{Candidate, Joins};
 use crate::error::DiagnoseError;
 use crate::estimation::{Fit, Point};
 
@@ -109,7 +109,7 @@ impl Selector<'_, '_> {
         let full = full.unwrap_or_else(|| start.clone());
         // A law that was shaped to the recordings is compared with one elsewhere that is, too.
         let (effect, other) = (self.candidate(candidate), self.candidate(rival));
-        let shaped = effect.only_in_place && other.is_law() && other.place != effect.place;
+        let shaped = effect.joins != Joins::Screened && other.is_law() && other.place != effect.place;
         let last = full.point.effects.len() - 1;
         let full = match shaped.then(|| self.reshaped_at(&full, last)).transpose()?.flatten() {
             Some(other) => other,

@@ -8,7 +8,7 @@ use super::fits::{Fits, if_simulated};
 use super::screen::Screen;
 use super::screenings::Screenings;
 use crate::criteria::Criteria;
-use crate::effect::Candidate;
+use crate::effect::{Candidate, Joins};
 use crate::error::DiagnoseError;
 use crate::estimation::gauss_newton::{Start, fit_from};
 use crate::estimation::{Fit, LeastSquares, Point, cost_of_whole_recordings, held_out};
@@ -136,19 +136,15 @@ impl<'p, 'a> Selector<'p, 'a> {
     /// Candidates that may be added to a model: not in it and excluded by none of its effects. Laws without a name only
     /// where they are asked for.
     pub fn open(&self, point: &Point, open: Open) -> Vec<usize> {
-        let mut all = self.joinable(point, open);
-        all.retain(|&c| !self.candidate(c).only_in_place);
-        all
+        self.joinable(point, open, Joins::Screened)
     }
 
-    /// The same of candidates that are otherwise fitted only in the place of an effect: those of few numbers, which have starts of their own.
+    /// The same of candidates that are screened only when nothing else joins.
     pub fn open_at_last(&self, point: &Point, open: Open) -> Vec<usize> {
-        let mut all = self.joinable(point, open);
-        all.retain(|&c| self.candidate(c).only_in_place && !self.candidate(c).starts.is_empty());
-        all
+        self.joinable(point, open, Joins::AtLast)
     }
 
-    fn joinable(&self, point: &Point, open: Open) -> Vec<usize> {
+    fn joinable(&self, point: &Point, open: Open, joins: Joins) -> Vec<usize> {
         let laws = self.laws_of(point);
         let excluded = |c: usize| {
             let candidate = self.candidate(c);
@@ -158,7 +154,9 @@ impl<'p, 'a> Selector<'p, 'a> {
                 Open::Laws => candidate.one_of_several && laws >= 1,
                 Open::TwoLaws => candidate.one_of_several && laws >= 2,
             };
-            closed || (point.effects.iter()).any(|&e| e == c || self.candidate(e).excludes(candidate))
+            closed
+                || candidate.joins != joins
+                || (point.effects.iter()).any(|&e| e == c || self.candidate(e).excludes(candidate))
         };
         self.testable.iter().copied().filter(|&c| !excluded(c)).collect()
     }

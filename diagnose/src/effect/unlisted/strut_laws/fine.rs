@@ -11,6 +11,7 @@ use oleo_plant_sim::strut::LawArgument::{
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
+use crate::effect::candidate::Joins;
 use crate::effect::unlisted::forms::{Added, Factor, Level, Onset, Rising, WithMemory, WithPresliding};
 use crate::effect::unlisted::knots::{GROOVE_M, TIME_S, VALVE_PA, fine};
 use crate::vocabulary::{Branch, Column, Site};
@@ -18,6 +19,19 @@ use crate::vocabulary::{Branch, Column, Site};
 /// The laws of a strut and those of its instruments.
 pub(super) fn laws() -> impl Iterator<Item = &'static Law> {
     (LAWS.iter()).chain(INSTRUMENTS.iter().flatten()).chain(MEMORIES)
+}
+
+/// When a law joins a model. Changes at a moment and the flow of a valve have no table of few points by which their place is found.
+pub(super) fn joins(law: &Law) -> Joins {
+    let of_open_valve = matches!(
+        law.place,
+        LawPlace::Valve1 | LawPlace::Valve2 | LawPlace::Valve3 | LawPlace::Valves
+    );
+    if law.depends_on == Time || of_open_valve {
+        Joins::AtLast
+    } else {
+        Joins::InPlace
+    }
 }
 
 const LAWS: &[Law] = &[

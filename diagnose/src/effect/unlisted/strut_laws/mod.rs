@@ -17,7 +17,7 @@ use law::Law;
 use oleo_plant_sim::strut::{LawArgument, UnlistedLaw};
 
 use super::forms::ClosedForm;
-use crate::effect::candidate::{Candidate, ExclusionGroup};
+use crate::effect::candidate::{Candidate, ExclusionGroup, Joins};
 use crate::parameter::Parameter;
 use crate::vocabulary::EffectId;
 
@@ -61,7 +61,7 @@ pub fn candidates(longest_s: f64) -> Vec<Candidate> {
             .beside_others()
             .oscillating(law.depends_on == LawArgument::Phase)
             .in_group(is_one_table_of_two_places(law).then_some(ExclusionGroup(EffectId::Unlisted)))
-            .only_in_place_of_another(k >= count)
+            .joining(if k >= count { fine::joins(law) } else { Joins::Screened })
     };
     laws().enumerate().map(candidate).collect()
 }

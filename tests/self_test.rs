@@ -150,7 +150,6 @@ fn a_wrong_number_is_named_and_the_improved_model_states_the_true_one() {
     );
 }
 
-/// Under all that the recordings hold a mount that yields does the same as a larger volume of oil that yields.
 #[test]
 fn a_spot_between_the_points_of_a_table_and_a_change_at_a_moment_are_found() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -177,6 +176,7 @@ fn a_spot_between_the_points_of_a_table_and_a_change_at_a_moment_are_found() {
     }
 }
 
+/// Under all that the recordings hold a mount that yields does the same as a larger volume of oil that yields.
 #[test]
 fn a_number_that_may_be_wrong_in_the_place_of_an_effect_is_said_with_its_value() {
     let folder = tempfile::tempdir().expect("a folder");

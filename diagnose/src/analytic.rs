@@ -132,9 +132,9 @@ impl Analytic {
         key.clone_into(&mut self.candidates[candidate].parameters[0].key);
     }
 
-    /// Makes a candidate one that is fitted only in the place of another effect.
-    pub fn become_only_in_place(&mut self, candidate: usize) {
-        self.candidates[candidate].joins = Joins::InPlace;
+    /// Makes a candidate one that joins a model at another time.
+    pub fn become_joining(&mut self, candidate: usize, joins: Joins) {
+        self.candidates[candidate].joins = joins;
     }
 
     /// Another start of a candidate's first parameter.

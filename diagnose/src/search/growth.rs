@@ -64,8 +64,8 @@ pub fn reduced(selector: &mut Selector<'_, '_>, grown: Fit, progress: Progress<'
     selector.reduced(grown)
 }
 
-/// Adds effects to a model until none is accepted. Laws without a name are tried when no name is left and the noise is not reached; a second one, beside
-/// the first, while the model is not complete. Where no law is accepted alone and the model is far from complete, laws are tried in pairs.
+/// Adds effects to a model until none is accepted. Laws without a name are tried when no name is left and the noise is not reached, and those of many
+/// starts or numbers when no other is left; a second one, beside the first, while the model is not complete. Where no law is accepted alone and the model is far from complete, laws are tried in pairs.
 pub fn grow(
     selector: &mut Selector<'_, '_>,
     calibrated: &Fit,
@@ -123,7 +123,7 @@ pub fn grow(
         }
         let lacks_more = !full && !selector.reaches_noise(&best);
         if !full && incomplete && matches!(open, Open::Laws | Open::TwoLaws) {
-            progress("trying changes at a moment", screening + done::FITTING_AFTER_SCREENING);
+            progress("trying what is not screened", screening + done::FITTING_AFTER_SCREENING);
             let at_last = selector.open_at_last(&best.point, open);
             let screened = selector.screen_in_passing(&best, at_last)?;
             if let Some(next) = selector.strongest(&screened, &best)? {

@@ -38,7 +38,7 @@ impl Selector<'_, '_> {
         Ok(other.unwrap_or(best))
     }
 
-    /// The same of the effect at a position. A law is fitted from what both shapes have.
+    /// The model with the effect at a position in another shape; `None` if that explains little more. A law is fitted from what both shapes have.
     pub fn reshaped_at(&mut self, best: &Fit, position: usize) -> Result<Option<Fit>, DiagnoseError> {
         let mut quick = Vec::new();
         for shape in self.other_shapes(&best.point, best.point.effects[position]) {
@@ -68,7 +68,8 @@ impl Selector<'_, '_> {
         let without = best.point.without_effect(specimen, position);
         let mut starts = vec![without.with_effect(specimen, shape, &own)];
         // What a number stands for may be a part of a law: the law begins beside it.
-        if !there.is_law() && !there.excludes(other) {
+        let full = best.point.effects.len() >= self.criteria().acceptance.most_effects;
+        if !full && !there.is_law() && !there.excludes(other) {
             starts.push(best.point.with_effect(specimen, shape, &own));
         }
         if other.joins == Joins::AtLast && !other.starts.is_empty() {
@@ -152,7 +153,7 @@ mod tests {
         }
         .make();
         specimen.take_name(CUBIC, Site::MainSeal);
-        specimen.become_only_in_place(CUBIC);
+        specimen.become_joining(CUBIC, Joins::InPlace);
         if friction_is_law {
             specimen.take_name(FRICTION, Site::MainSeal);
         }

@@ -177,6 +177,7 @@ mod tests {
     use crate::analytic::{Analytic, CUBIC, FRICTION, FRICTION_OF_BOTH, NEARLY_CUBIC, RUN, Recipe, TABLE, VIBRATION};
     use crate::estimation::{LeastSquares, Point};
     use crate::specimen::Specimen;
+    use crate::vocabulary::Site;
 
     fn specimen(truth: &[(usize, &[f64])], candidates: &[usize]) -> Analytic {
         Recipe {
@@ -338,5 +339,26 @@ mod tests {
         assert!(!is_equal_form(&all[FRICTION_OF_BOTH], &all[FRICTION]), "more numbers");
         assert!(!is_equal_form(&all[CUBIC], &all[FRICTION]), "another effect");
         assert!(includes(&all[FRICTION_OF_BOTH], &all[FRICTION]) && !includes(&all[FRICTION], &all[FRICTION_OF_BOTH]));
+    }
+
+    #[test]
+    fn a_law_that_was_shaped_is_compared_with_a_rival_that_is() {
+        let rival = |joins| {
+            let mut specimen = specimen(&[(CUBIC, &[0.4])], &[CUBIC, NEARLY_CUBIC, FRICTION]);
+            specimen.take_name(CUBIC, Site::MainSeal);
+            specimen.become_joining(CUBIC, joins);
+            for law in [NEARLY_CUBIC, FRICTION] {
+                specimen.take_name(law, Site::Mount);
+            }
+            specimen.become_joining(NEARLY_CUBIC, Joins::InPlace);
+            let mut criteria = Criteria::default();
+            // What is screened is so far behind that it would not be fitted.
+            criteria.rivalry.contender = 10.0;
+            let compared = compared(&specimen, criteria, &[(CUBIC, &[0.3])]);
+            let rival = compared.effects[0].rival.as_ref().expect("a rival");
+            (rival.candidate, rival.ambiguous)
+        };
+        assert_eq!(rival(Joins::InPlace), (NEARLY_CUBIC, true));
+        assert_eq!(rival(Joins::Screened), (FRICTION, false));
     }
 }

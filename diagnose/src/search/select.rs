@@ -121,6 +121,7 @@ mod tests {
         SECOND_OF_PAIR, TABLE, VIBRATION,
     };
     use crate::criteria::Criteria;
+    use crate::effect::Joins;
     use crate::estimation::covariance::deviations;
     use crate::search::LawPairs;
     use crate::vocabulary::Site;
@@ -266,6 +267,25 @@ mod tests {
         let nameless = selected(&recipe(vec![FRICTION, TABLE]));
         assert_eq!(found(&nameless), [TABLE]);
         assert!(nameless.improved_ratio < 0.7 * nameless.calibrated_ratio);
+    }
+
+    #[test]
+    fn what_is_not_screened_is_tried_when_nothing_else_joins() {
+        let found_if = |joins| {
+            let mut specimen = Recipe {
+                truth: vec![(CUBIC, vec![0.4])],
+                candidates: vec![CUBIC, FRICTION],
+                ..Recipe::default()
+            }
+            .make();
+            specimen.take_name(CUBIC, Site::Mount);
+            specimen.become_joining(CUBIC, joins);
+            let s = select(&LeastSquares::new(&specimen, &RUN), &|_, _| {}).expect("a selection");
+            (found(&s), s.incomplete)
+        };
+        assert_eq!(found_if(Joins::AtLast), (vec![CUBIC], false));
+        let (effects, incomplete) = found_if(Joins::InPlace);
+        assert!(!effects.contains(&CUBIC) && incomplete, "{effects:?}");
     }
 
     /// What the search finds where these are laws without a name, at places of their own.

@@ -48,7 +48,7 @@ pub const WRONG_NUMBER: &str = "wrong_number";
 /// Its sizes.
 const WRONG_NUMBER_SIZES: [f64; 3] = [1.0, 5.0, 30.0];
 
-/// Name of a campaign in which a law is whose shape no form of the search holds.
+/// Name of a campaign in which a law is whose shape no textbook has.
 pub const UNFAMILIAR: &str = "unfamiliar";
 /// Its sizes: large enough that something must be said.
 const UNFAMILIAR_SIZES: [f64; 3] = [2.0, 10.0, 60.0];
@@ -100,7 +100,7 @@ pub enum Subject {
     TwoLaws,
     /// A number of the model that is another than believed.
     WrongNumber,
-    /// A law without a name whose shape no form of the search holds.
+    /// A law without a name whose shape no textbook has.
     Unfamiliar,
 }
 

@@ -12,7 +12,7 @@
 //! | `cylinder_laws`, `gas_spring_laws`, `mechanism_laws` | laws of one number that only these kinds of specimen may have |
 //! | `believed_numbers` | numbers of a strut's model that may be other than believed |
 //! | `textbook`, `swinging_textbook` | other laws, for the self-test to conceal |
-//! | `unfamiliar` | laws whose shapes no form holds, for the same |
+//! | `unfamiliar` | laws of shapes that no textbook has, for the same |
 //!
 //! A new form is a file in `forms` and its name in the rows of `strut_laws`. A new quantity to depend on is a variant of
 //! plant-sim's `LawArgument`, which the solver must read at the place. A law with a state of its own (heat, memory) is not

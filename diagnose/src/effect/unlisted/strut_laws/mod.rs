@@ -1,5 +1,5 @@
-//! The laws that are tried on a strut, as tables of place, dependence and form, one file for each part of the strut and one for
-//! what swings in time.
+//! The laws that are tried on a strut, as tables of place, dependence and form, one file for each part of the strut, and others for
+//! what swings in time, what changes at a moment, and tables in fine steps.
 //!
 //! A new row is a new law to search for; a new dependence or place is one of plant-sim's (`LawArgument`, `LawPlace`).
 
@@ -7,6 +7,7 @@ mod accumulators;
 mod fine;
 mod instruments;
 mod law;
+mod moments;
 mod mount;
 mod oscillations;
 mod paths;
@@ -24,9 +25,9 @@ use crate::vocabulary::EffectId;
 /// The longest recording is taken to last at least this long, s.
 const LEAST_DURATION_S: f64 = 1.0;
 
-/// All laws, first those that are screened.
+/// All laws.
 fn laws() -> impl Iterator<Item = &'static Law> {
-    screened().chain(fine::laws())
+    screened().chain(at_last()).chain(fine::laws())
 }
 
 /// The law of a label.
@@ -46,10 +47,14 @@ fn screened() -> impl Iterator<Item = &'static Law> {
         .chain(oscillations::LAWS)
 }
 
+/// Laws that are screened when nothing else joins a model.
+fn at_last() -> impl Iterator<Item = &'static Law> {
+    moments::laws().chain(valves::TABLES)
+}
+
 /// Candidates for every law. The longest recording lasts this long, s.
 pub fn candidates(longest_s: f64) -> Vec<Candidate> {
-    let count = screened().count();
-    let candidate = |(k, law): (usize, &Law)| {
+    let candidate = |law: &Law, joins: Joins| {
         let grid = law.grid(longest_s.max(LEAST_DURATION_S));
         let mut parameters = law.form.parameters(&grid);
         if law.is_of_output_only() {
@@ -61,9 +66,12 @@ pub fn candidates(longest_s: f64) -> Vec<Candidate> {
             .beside_others()
             .oscillating(law.depends_on == LawArgument::Phase)
             .in_group(is_one_table_of_two_places(law).then_some(ExclusionGroup(EffectId::Unlisted)))
-            .joining(if k >= count { fine::joins(law) } else { Joins::Screened })
+            .joining(joins)
     };
-    laws().enumerate().map(candidate).collect()
+    (screened().map(|law| candidate(law, Joins::Screened)))
+        .chain(at_last().map(|law| candidate(law, Joins::AtLast)))
+        .chain(fine::laws().map(|law| candidate(law, Joins::InPlace)))
+        .collect()
 }
 
 /// Whether the model has one table for this law and for one that is reported at another place. A model has one of the two.

@@ -5,7 +5,9 @@ use oleo_plant_sim::strut::LawArgument::{PressureDrop, Time};
 use oleo_plant_sim::strut::LawPlace;
 
 use super::law::{Law, law};
-use crate::effect::unlisted::forms::{Added, Choke, LevelParabola, Parabola, PulledShut, SettlingLevel, Threshold};
+use crate::effect::unlisted::forms::{
+    Added, Choke, Factor, LevelParabola, Parabola, PulledShut, SettlingLevel, Threshold,
+};
 use crate::effect::unlisted::knots::{EDGE_FINE_PA, EDGE_PA, EDGE_THRESHOLDS_PA, TIME_S, VALVE_PA};
 use crate::vocabulary::Site;
 
@@ -118,5 +120,41 @@ pub(super) const LAWS: &[Law] = &[
         &LevelParabola(["at_rest_s", "per_Pa_s", "per_Pa2_s"]),
         EDGE_FINE_PA,
         2e-3,
+    ),
+];
+
+/// What an open valve passes as a table, of which there is none of few points by which its place would be found.
+pub(super) const TABLES: &[Law] = &[
+    law(
+        "flow of open valve 1 over pressure drop, in fine steps",
+        Site::Valve(Valve::Bypass1),
+        (LawPlace::Valve1, PressureDrop),
+        &Factor,
+        VALVE_PA,
+        0.05,
+    ),
+    law(
+        "flow of open valve 2 over pressure drop, in fine steps",
+        Site::Valve(Valve::Bypass2),
+        (LawPlace::Valve2, PressureDrop),
+        &Factor,
+        VALVE_PA,
+        0.05,
+    ),
+    law(
+        "flow of open valve 3 over pressure drop, in fine steps",
+        Site::Valve(Valve::Spring),
+        (LawPlace::Valve3, PressureDrop),
+        &Factor,
+        VALVE_PA,
+        0.05,
+    ),
+    law(
+        "flow of the open valves over pressure drop, in fine steps",
+        Site::Valves,
+        (LawPlace::Valves, PressureDrop),
+        &Factor,
+        VALVE_PA,
+        0.05,
     ),
 ];

@@ -146,7 +146,19 @@ fn tabulated(effect: &Effect, law: &UnlistedLaw) -> Curves {
         &format!("The fitted law: {}", effect.label),
         Axis::new(argument, argument_unit),
     );
-    curves.caption("The law is linear between the points.");
+    let memory = (law.time_constant_s).map_or(String::new(), |t| {
+        format!(
+            " A change is forgotten with a time constant of {} s.",
+            significant(t, 3)
+        )
+    });
+    let shear = (law.presliding_volume_m3).map_or(String::new(), |v| {
+        format!(
+            " It is reached over {} m3 of oil, which shear the seal.",
+            significant(v, 3)
+        )
+    });
+    curves.caption(&format!("The law is linear between the points.{memory}{shear}"));
     curves
         .panel(Axis::new(value, value_unit))
         .series(Style::LineAndPoints, "fitted", &law.argument, &law.value);

@@ -67,15 +67,20 @@ pub fn sentence(text: &str) -> String {
 }
 
 /// Units at the end of a parameter's key, longest first, with their usual spelling.
-const UNITS: [(&str, &str); 25] = [
+const UNITS: [(&str, &str); 30] = [
     ("_N_s2_m2", "N s2/m2"),
     ("_Pa_s_m3", "Pa s/m3"),
+    ("_m3_s_Pa", "m3/s/Pa"),
     ("_s_MPa2", "s/MPa2"),
+    ("_s_Pa2", "s/Pa2"),
+    ("_m3_Pa", "m3/Pa"),
     ("_s_MPa", "s/MPa"),
     ("_N_s_m", "N s/m"),
     ("_kg_m4", "kg/m4"),
     ("_per_J", "1/J"),
     ("_N_m3", "N/m3"),
+    ("_N_Pa", "N/Pa"),
+    ("_s_Pa", "s/Pa"),
     ("_m3_s", "m3/s"),
     ("_Pa_s", "Pa/s"),
     ("_1_Pa", "1/Pa"),
@@ -184,6 +189,9 @@ mod tests {
             ("static_gas_volume_1", "static gas volume 1", "relative"),
             ("breakaway_over_coulomb", "breakaway force over Coulomb force", ""),
             ("drift_Pa_s", "drift", "Pa/s"),
+            ("slope_s_Pa", "slope", "s/Pa"),
+            ("curvature_s_Pa2", "curvature", "s/Pa2"),
+            ("slope_m3_s_Pa", "slope", "m3/s/Pa"),
             ("flow_after_a_minute_m3_s", "flow after a minute", "m3/s"),
             ("log_factor_after_a_minute", "log factor after a minute", ""),
         ] {

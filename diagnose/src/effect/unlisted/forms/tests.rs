@@ -147,12 +147,12 @@ fn each_form_has_as_many_numbers_as_its_starts() {
         &WithMemory(Factor),
         &WithPresliding,
         &Threshold {
-            slope: "per_Pa_N",
+            slope: "slope_N_Pa",
             threshold: "threshold_Pa",
             any_sign: true,
         },
         &Threshold {
-            slope: "per_Pa_N",
+            slope: "slope_N_Pa",
             threshold: "threshold_Pa",
             any_sign: false,
         },
@@ -317,7 +317,7 @@ fn what_begins_at_a_moment_is_as_believed_before_and_stays_after() {
 
 #[test]
 fn beyond_a_threshold_a_value_rises_without_an_end() {
-    let (slope, threshold) = ("per_Pa_N", "threshold_Pa");
+    let (slope, threshold) = ("slope_N_Pa", "threshold_Pa");
     let law = table(
         &Threshold {
             slope,

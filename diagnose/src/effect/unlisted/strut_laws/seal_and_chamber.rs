@@ -156,7 +156,7 @@ pub(super) const LAWS: &[Law] = &[
         Site::MainSeal,
         (LawPlace::MainSeal, P1),
         &Threshold {
-            slope: "per_Pa_N",
+            slope: "slope_N_Pa",
             threshold: "threshold_Pa",
             any_sign: true,
         },
@@ -168,7 +168,7 @@ pub(super) const LAWS: &[Law] = &[
         Site::MainSeal,
         (LawPlace::MainSealFriction, P1),
         &Threshold {
-            slope: "per_Pa_N",
+            slope: "slope_N_Pa",
             threshold: "threshold_Pa",
             any_sign: false,
         },
@@ -180,7 +180,7 @@ pub(super) const LAWS: &[Law] = &[
         Site::MainChamber,
         (LawPlace::MainChamber, P1),
         &Threshold {
-            slope: "per_Pa_m3",
+            slope: "slope_m3_Pa",
             threshold: "threshold_Pa",
             any_sign: false,
         },
@@ -192,7 +192,7 @@ pub(super) const LAWS: &[Law] = &[
         Site::MainChamber,
         (LawPlace::MainChamberLoss, P1),
         &Threshold {
-            slope: "per_Pa_m3_s",
+            slope: "slope_m3_s_Pa",
             threshold: "threshold_Pa",
             any_sign: false,
         },

@@ -96,7 +96,7 @@ pub(super) const LAWS: &[Law] = &[
         "response time over pressure drop, a parabola",
         Site::Valves,
         (LawPlace::ValveTiming, PressureDrop),
-        &Parabola(["at_rest_s", "per_Pa_s", "per_Pa2_s"]),
+        &Parabola(["at_rest_s", "slope_s_Pa", "curvature_s_Pa2"]),
         EDGE_FINE_PA,
         2e-3,
     ),
@@ -105,7 +105,7 @@ pub(super) const LAWS: &[Law] = &[
         Site::Valves,
         (LawPlace::ValveTiming, PressureDrop),
         &Threshold {
-            slope: "per_Pa_s",
+            slope: "slope_s_Pa",
             threshold: "threshold_Pa",
             any_sign: true,
         },
@@ -117,7 +117,7 @@ pub(super) const LAWS: &[Law] = &[
         Site::Valves,
         (LawPlace::ValveMovement, PressureDrop),
         // As the response time goes with the pressure, so does the time that a part of it takes.
-        &LevelParabola(["at_rest_s", "per_Pa_s", "per_Pa2_s"]),
+        &LevelParabola(["at_rest_s", "slope_s_Pa", "curvature_s_Pa2"]),
         EDGE_FINE_PA,
         2e-3,
     ),

@@ -10,6 +10,9 @@ use crate::estimation::{Fit, Point};
 /// So many faults of instruments are doubted where one law may do as well.
 const DOUBTFUL_FAULTS: usize = 3;
 
+/// So many effects of any kind are, too.
+const DOUBTFUL_EFFECTS: usize = 4;
+
 /// A model to which nothing more can be added.
 pub struct Grown {
     /// The model.
@@ -41,15 +44,11 @@ pub fn grown_with_laws_first(
     let no_room = grown.best.point.effects.len() >= acceptance.most_effects;
     let names_came_first = (grown.open != Open::Names || no_room) && has_named(&grown.best);
     let faults = (best.point.effects.iter()).filter(|&&e| selector.candidate(e).is_instrument_fault());
-    let doubtful = faults.count() >= DOUBTFUL_FAULTS;
+    let doubtful = faults.count() >= DOUBTFUL_FAULTS || best.point.effects.len() >= DOUBTFUL_EFFECTS;
     if !(incomplete && names_came_first || doubtful) || !selector.can_have_two_laws() {
         return Ok(None);
     }
-    let fraction = if incomplete {
-        selector.fraction_of_incomplete()
-    } else {
-        acceptance.least_fraction
-    };
+    let fraction = selector.fraction_of(best);
     let anew = grow(selector, calibrated, calibrated.clone(), Open::Laws, progress)?;
     let other = reduced(selector, anew.best.clone(), progress)?;
     let better = selector.improves(best, &other, fraction);
@@ -214,7 +213,7 @@ fn score_alone(selector: &Selector<'_, '_>, screened: &[Screened], scores: &mut 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analytic::{CUBIC, FRICTION, NEARLY_CUBIC, RUN, Recipe, VIBRATION};
+    use crate::analytic::{CUBIC, FIRST_OF_PAIR, FRICTION, NEARLY_CUBIC, RUN, Recipe, VIBRATION};
     use crate::criteria::Criteria;
     use crate::estimation::LeastSquares;
     use crate::specimen::Specimen;
@@ -259,28 +258,28 @@ mod tests {
     }
 
     #[test]
-    fn three_faults_of_instruments_give_way_to_one_law_that_does_as_well_and_two_do_not() {
-        let anew = |faults: &[usize]| {
+    fn three_faults_of_instruments_or_four_effects_give_way_to_one_law_that_does_as_well_and_fewer_do_not() {
+        let anew = |effects: &[usize], faults: usize| {
             let mut specimen = Recipe {
                 truth: vec![(CUBIC, vec![0.4])],
-                candidates: vec![CUBIC, NEARLY_CUBIC, FRICTION, VIBRATION],
+                candidates: [&[CUBIC], effects].concat(),
                 ..Recipe::default()
             }
             .make();
             specimen.take_name(CUBIC, Site::Mount);
-            for (fault, column) in faults.iter().zip(["p1_Pa", "p2_Pa", "p3_Pa"]) {
+            for (fault, column) in effects[..faults].iter().zip(["p1_Pa", "p2_Pa", "p3_Pa"]) {
                 specimen.become_fault(*fault, Column::known(column));
             }
             let problem = LeastSquares::new(&specimen, &RUN);
             let mut selector = Selector::new(&problem);
             let calibrated = selector.fitted(Point::nominal(&specimen)).expect("a fit");
-            let start = (faults.iter()).fold(Point::nominal(&specimen), |point, fault| {
-                let values: Vec<f64> = specimen.candidates()[*fault]
+            let start = (effects.iter()).fold(Point::nominal(&specimen), |point, effect| {
+                let values: Vec<f64> = specimen.candidates()[*effect]
                     .parameters
                     .iter()
                     .map(|p| p.start)
                     .collect();
-                point.with_effect(&specimen, *fault, &values)
+                point.with_effect(&specimen, *effect, &values)
             });
             let best = selector.fitted(start).expect("a fit");
             let grown = Grown {
@@ -293,7 +292,8 @@ mod tests {
             let other = grown_with_laws_first(&mut selector, &calibrated, &best, &grown, &|_, _| {}).expect("fits");
             other.map(|(_, fit)| fit.point.effects.len())
         };
-        assert_eq!(anew(&[NEARLY_CUBIC, FRICTION, VIBRATION]), Some(1));
-        assert_eq!(anew(&[NEARLY_CUBIC, FRICTION]), None);
+        assert_eq!(anew(&[NEARLY_CUBIC, FRICTION, VIBRATION], 3), Some(1));
+        assert_eq!(anew(&[NEARLY_CUBIC, FRICTION, VIBRATION], 2), None);
+        assert_eq!(anew(&[NEARLY_CUBIC, FRICTION, VIBRATION, FIRST_OF_PAIR], 2), Some(1));
     }
 }

@@ -25,6 +25,7 @@ pub mod evidence;
 mod fits;
 mod forward;
 mod growth;
+mod merging;
 mod numbers;
 mod oscillation;
 mod power;

@@ -83,11 +83,9 @@ impl Selector<'_, '_> {
     /// Shapes that an effect of a model may have instead, which no other of its effects excludes.
     fn other_shapes(&self, point: &Point, effect: usize) -> Vec<usize> {
         let there = self.candidate(effect);
-        let excluded = |c: usize| {
-            (point.effects.iter()).any(|&e| e != effect && (e == c || self.candidate(e).excludes(self.candidate(c))))
-        };
+        let others = || point.effects.iter().copied().filter(|&e| e != effect);
         (self.testable().iter().copied())
-            .filter(|&c| c != effect && is_shape_of(self.candidate(c), there) && !excluded(c))
+            .filter(|&c| c != effect && is_shape_of(self.candidate(c), there) && self.may_join(c, others()))
             .collect()
     }
 

@@ -36,6 +36,9 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
         grown.scores = first.scores;
         grown.law_pairs = grown.law_pairs.max(first.law_pairs);
     }
+    if let Some(merged) = selector.merged(&best)? {
+        best = merged;
+    }
     let effects_grown = grown.best.point.effects.len();
     let Grown {
         mut screened,

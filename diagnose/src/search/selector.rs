@@ -154,11 +154,14 @@ impl<'p, 'a> Selector<'p, 'a> {
                 Open::Laws => candidate.one_of_several && laws >= 1,
                 Open::TwoLaws => candidate.one_of_several && laws >= 2,
             };
-            closed
-                || candidate.joins != joins
-                || (point.effects.iter()).any(|&e| e == c || self.candidate(e).excludes(candidate))
+            closed || candidate.joins != joins || !self.may_join(c, point.effects.iter().copied())
         };
         self.testable.iter().copied().filter(|&c| !excluded(c)).collect()
+    }
+
+    /// Whether a candidate may join these effects: it is none of them, and none of them excludes it.
+    pub fn may_join(&self, candidate: usize, mut effects: impl Iterator<Item = usize>) -> bool {
+        effects.all(|e| e != candidate && !self.candidate(e).excludes(self.candidate(candidate)))
     }
 
     /// How many laws without a name a model has of those of which it can have two.
@@ -209,6 +212,15 @@ impl<'p, 'a> Selector<'p, 'a> {
             acceptance.least_fraction_conditions
         } else {
             acceptance.least_fraction_incomplete
+        }
+    }
+
+    /// Fraction of the unexplained cost that each effect of this model must explain.
+    pub fn fraction_of(&self, fit: &Fit) -> f64 {
+        if self.held_out_ratio(fit) > self.complete_up_to(fit) {
+            self.fraction_of_incomplete()
+        } else {
+            self.criteria().acceptance.least_fraction
         }
     }
 

@@ -53,10 +53,9 @@ impl Selector<'_, '_> {
             let is_form = is_form_of(form, there) || is_in_fewer_places(form, there);
             is_form && form.parameters.len() < there.parameters.len()
         };
-        let excluded =
-            |form: &Candidate| (best.point.effects.iter()).any(|&e| e != effect && self.candidate(e).excludes(form));
+        let others = || best.point.effects.iter().copied().filter(|&e| e != effect);
         (self.testable().iter().copied())
-            .filter(|&c| simpler(self.candidate(c)) && !excluded(self.candidate(c)))
+            .filter(|&c| simpler(self.candidate(c)) && self.may_join(c, others()))
             .collect()
     }
 }

@@ -1,7 +1,7 @@
 //! Values that swing at one frequency about what is believed: `a sin(2 pi f t + phi)`, added or as a part of it. The time counts from the
 //! start of each recording.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use oleo_report::significant;
 
@@ -51,9 +51,17 @@ fn swing(grid: &Grid, fitted: &[f64]) -> Vec<f64> {
     let &[amplitude, phase, _] = fitted else {
         return vec![0.0; grid.knots.len()];
     };
+    let at_points = amplitude / swing_of_chords(grid.knots.len() - 1);
     (grid.knots.iter())
-        .map(|turns| amplitude * libm::sin(TAU * turns + phase))
+        .map(|turns| at_points * libm::sin(TAU * turns + phase))
         .collect()
+}
+
+/// Amplitude at which straight lines between points of a sine swing, over that of the sine: the square of `sin(x) / x` with half a part of a turn as `x`.
+fn swing_of_chords(parts: usize) -> f64 {
+    let half_part = PI / parts as f64;
+    let ratio = libm::sin(half_part) / half_part;
+    ratio * ratio
 }
 
 /// `sin(2 pi f t + phi)` with its numbers.

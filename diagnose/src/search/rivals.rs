@@ -24,6 +24,8 @@ enum Kind {
     Number,
     /// Another form of the effect, which speaks no less for it.
     Form,
+    /// A name of physics in the place of a wrong number. It takes the place where it does as well.
+    Name,
 }
 
 impl Selector<'_, '_> {
@@ -43,7 +45,15 @@ impl Selector<'_, '_> {
             let effect = self.candidate(candidate);
             let (forms, rivals): (Vec<usize>, Vec<usize>) =
                 (open.into_iter()).partition(|&c| is_equal_form(self.candidate(c), effect));
-            for (kind, candidates) in [(Kind::Other, rivals), (Kind::Number, numbers), (Kind::Form, forms)] {
+            let names = (rivals.iter().copied())
+                .filter(|&c| is_name_of_number(self.candidate(c), effect))
+                .collect();
+            for (kind, candidates) in [
+                (Kind::Other, rivals),
+                (Kind::Number, numbers),
+                (Kind::Form, forms),
+                (Kind::Name, names),
+            ] {
                 let Some((other, full)) = self.strongest_rival(&less, candidate, best, gain.total, candidates)? else {
                     continue;
                 };
@@ -51,7 +61,7 @@ impl Selector<'_, '_> {
                 match kind {
                     Kind::Other => rival = Some(found),
                     Kind::Number if found.ambiguous => as_good = full.point.hypothesis(self.specimen()).effects.pop(),
-                    Kind::Number | Kind::Form => {}
+                    Kind::Number | Kind::Form | Kind::Name => {}
                 }
                 let lead = found.lead.total;
                 if self.takes_the_place(&found, &full, candidate, best, gain.total)
@@ -132,8 +142,8 @@ impl Selector<'_, '_> {
         }
     }
 
-    /// True if the rival belongs into the model in the place of the effect: it is clearly better, or it is the same effect in
-    /// fewer places and does as well (one damper fades, not both).
+    /// True if the rival belongs into the model in the place of the effect: it is clearly better, or it does as well and is the same effect in
+    /// fewer places (one damper fades, not both) or a name in the place of a wrong number.
     fn takes_the_place(&self, rival: &Rival, full: &Fit, candidate: usize, best: &Fit, gain: f64) -> bool {
         let criteria = self.criteria();
         let named = |fit: &Fit| fit.point.effects.iter().all(|&e| !self.candidate(e).is_unlisted());
@@ -151,7 +161,8 @@ impl Selector<'_, '_> {
             && other.parameters.len() < effect.parameters.len()
             && !self.accepts(&rival.lead, 0.0);
         let certainly = !is_number || self.improves(best, full, 0.0);
-        ((clearly && certainly) || simpler) && !self.predicts_recordings_worse(best, full)
+        let named_as_well = is_name_of_number(other, effect) && !self.improves(full, best, 0.0);
+        ((clearly && certainly) || simpler || named_as_well) && !self.predicts_recordings_worse(best, full)
     }
 }
 
@@ -164,6 +175,11 @@ fn includes(wider: &Candidate, effect: &Candidate) -> bool {
         && wider.place.contains(&effect.place);
     let more_numbers = is_form_of(effect, wider) && wider.parameters.len() > effect.parameters.len();
     law || more_places || more_numbers
+}
+
+/// True if a candidate is physics with a name and the effect is a wrong number.
+fn is_name_of_number(other: &Candidate, effect: &Candidate) -> bool {
+    effect.is_believed_number && !other.is_unlisted() && !other.is_instrument_fault()
 }
 
 /// True if a candidate is another form of the same effect with as many numbers.
@@ -190,11 +206,16 @@ mod tests {
 
     /// The comparison for a model with these effects, fitted from these values.
     fn compared(specimen: &Analytic, criteria: Criteria, model: &[(usize, &[f64])]) -> Comparison {
+        compared_from(specimen, criteria, model, Open::Laws)
+    }
+
+    /// The same where this may join.
+    fn compared_from(specimen: &Analytic, criteria: Criteria, model: &[(usize, &[f64])], open: Open) -> Comparison {
         let problem = LeastSquares::new(specimen, &RUN).with_criteria(criteria);
         let mut selector = Selector::new(&problem);
         let start = (model.iter()).fold(Point::nominal(specimen), |p, (e, v)| p.with_effect(specimen, *e, v));
         let best = selector.fitted(start).expect("a fit");
-        selector.compare_with_rivals(&best, Open::Laws).expect("a comparison")
+        selector.compare_with_rivals(&best, open).expect("a comparison")
     }
 
     fn usual(specimen: &Analytic, model: &[(usize, &[f64])]) -> Comparison {
@@ -205,8 +226,6 @@ mod tests {
         comparison.better.map(|fit| fit.point.effects)
     }
 
-    /// A vibration `a sin(w t)` is orthogonal to all else in the model, so that leaving it out costs the sum of its squares
-    /// over the noise: `n a^2 / (2 s^2)`.
     #[test]
     fn a_wrong_number_takes_the_place_of_a_name_only_if_it_is_certainly_better_and_is_else_said_beside_it() {
         let compared = |name: usize, truth: usize, size: f64| {
@@ -231,6 +250,24 @@ mod tests {
         }
     }
 
+    #[test]
+    fn a_name_takes_the_place_of_a_wrong_number_if_it_does_as_well() {
+        let becomes = |name: usize, truth: usize| {
+            let mut specimen = specimen(&[(truth, &[0.4])], &[name, CUBIC]);
+            specimen.become_number(CUBIC);
+            better(compared_from(
+                &specimen,
+                Criteria::default(),
+                &[(CUBIC, &[0.3])],
+                Open::Numbers,
+            ))
+        };
+        assert_eq!(becomes(NEARLY_CUBIC, CUBIC), Some(vec![NEARLY_CUBIC]));
+        assert_eq!(becomes(FRICTION, CUBIC), None);
+    }
+
+    /// A vibration `a sin(w t)` is orthogonal to all else in the model, so that leaving it out costs the sum of its squares
+    /// over the noise: `n a^2 / (2 s^2)`.
     #[test]
     fn the_gain_of_an_effect_is_the_sum_of_its_squares_over_the_noise() {
         let truth: [(usize, &[f64]); 2] = [(VIBRATION, &[0.1, 2.3]), (CUBIC, &[0.05])];

@@ -164,28 +164,51 @@ impl<'a> Evaluation<'a> {
             simulated = self.truths(point)?;
             &simulated
         };
-        let shown = self.observed(point, truths);
-        let moved: Vec<Moved> = coordinates.iter().map(|&k| self.moved(point, k)).collect();
+        let mut one = self.sensitivities_at_each(&[(point, coordinates)], truths)?;
+        Ok(one.pop().unwrap_or_default())
+    }
+
+    /// The same at several points, each with coordinates of its own, where the true quantities are the same and known.
+    ///
+    /// # Errors
+    /// As [`Self::truths`], of any of the points.
+    pub fn sensitivities_at_each(
+        &self,
+        points: &[(&Point, &[usize])],
+        truths: &[Series],
+    ) -> Result<Vec<Vec<Sensitivity>>, DiagnoseError> {
+        let asked: Vec<Asked> = (points.iter())
+            .map(|(point, coordinates)| Asked {
+                shown: self.observed(point, truths),
+                moved: coordinates.iter().map(|&k| self.moved(point, k)).collect(),
+            })
+            .collect();
         // All (recording, coordinate) pairs at once keep every core busy; collect restores their order. Of a recording, its place among those that
         // are simulated.
         let matters = |place: usize, moved: &Moved| moved.matters_in(self.recordings[place]);
-        let pairs: Vec<(usize, &Moved)> = (0..truths.len())
-            .flat_map(|r| moved.iter().map(move |moved| (r, moved)))
-            .filter(|&(r, moved)| matters(r, moved))
+        let pairs: Vec<(usize, &Asked, &Moved)> = (asked.iter())
+            .flat_map(|asked| (0..truths.len()).map(move |r| (r, asked)))
+            .flat_map(|(r, asked)| asked.moved.iter().map(move |moved| (r, asked, moved)))
+            .filter(|&(r, _, moved)| matters(r, moved))
             .collect();
         let derivatives: Vec<Vec<Series>> = (pairs.par_chunks(self.at_once(pairs.len())))
-            .map(|pairs| self.derivatives(pairs, truths, &shown))
+            .map(|pairs| self.derivatives(pairs, truths))
             .collect::<Result<_, _>>()?;
         let mut derivatives = derivatives.into_iter().flatten();
-        Ok((self.residuals(&shown).into_iter().enumerate())
-            .map(|(r, residual)| {
-                let unchanged = || residual.iter().map(|series| vec![0.0; series.len()]).collect();
-                let of = |moved| if matters(r, moved) { derivatives.next() } else { None };
-                let columns = moved.iter().map(of).map(|column| column.unwrap_or_else(unchanged));
-                Sensitivity {
-                    columns: columns.collect(),
-                    residual,
-                }
+        let mut sensitivity = |asked: &Asked, r: usize, residual: Series| {
+            let unchanged = || residual.iter().map(|series| vec![0.0; series.len()]).collect();
+            let of = |moved| if matters(r, moved) { derivatives.next() } else { None };
+            let columns = (asked.moved.iter().map(of)).map(|column| column.unwrap_or_else(unchanged));
+            Sensitivity {
+                columns: columns.collect(),
+                residual,
+            }
+        };
+        Ok((asked.iter())
+            .map(|asked| {
+                (self.residuals(&asked.shown).into_iter().enumerate())
+                    .map(|(r, residual)| sensitivity(asked, r, residual))
+                    .collect()
             })
             .collect())
     }
@@ -207,22 +230,17 @@ impl<'a> Evaluation<'a> {
     }
 
     /// Derivatives of recordings along coordinates, those that need a simulation by simulations together.
-    fn derivatives(
-        &self,
-        pairs: &[(usize, &Moved)],
-        truths: &[Series],
-        shown: &[Series],
-    ) -> Result<Vec<Series>, DiagnoseError> {
+    fn derivatives(&self, pairs: &[(usize, &Asked, &Moved)], truths: &[Series]) -> Result<Vec<Series>, DiagnoseError> {
         let wanted: Vec<(&Hypothesis, usize)> = (pairs.iter())
-            .filter(|(_, moved)| !moved.instrument_only)
-            .map(|&(place, moved)| (&moved.hypothesis, self.recordings[place]))
+            .filter(|(_, _, moved)| !moved.instrument_only)
+            .map(|&(place, _, moved)| (&moved.hypothesis, self.recordings[place]))
             .collect();
         let mut simulated = self.simulate_these(&wanted)?.into_iter();
         Ok((pairs.iter())
-            .map(|&(place, moved)| {
+            .map(|&(place, asked, moved)| {
                 let simulated = if moved.instrument_only { None } else { simulated.next() };
                 let truth = simulated.as_ref().unwrap_or(&truths[place]);
-                self.derivative(moved, self.recordings[place], truth, &shown[place])
+                self.derivative(moved, self.recordings[place], truth, &asked.shown[place])
             })
             .collect())
     }
@@ -242,11 +260,12 @@ impl<'a> Evaluation<'a> {
 
     /// How many of so many simulations one thread is given at once: all threads have some, and none so many that a wish to stop waits for long.
     fn at_once(&self, simulations: usize) -> usize {
+        let most = self.specimen.simulations_at_once();
         if self.one_of_many {
-            return self.specimen.simulations_at_once();
+            return most;
         }
         let share = simulations.div_ceil(rayon::current_num_threads());
-        share.clamp(1, self.specimen.simulations_at_once())
+        share.clamp(1, most)
     }
 
     fn simulate_all(&self, wanted: &[(&Hypothesis, usize)]) -> Result<Vec<Series>, DiagnoseError> {
@@ -294,6 +313,14 @@ impl<'a> Evaluation<'a> {
         }
         series
     }
+}
+
+/// A point of which derivatives are asked for.
+struct Asked {
+    /// What the instruments show there.
+    shown: Vec<Series>,
+    /// The point moved along each coordinate.
+    moved: Vec<Moved>,
 }
 
 /// A model moved along one coordinate.

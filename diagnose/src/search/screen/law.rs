@@ -4,6 +4,7 @@ use super::beside::{Screen, ScreenedCandidate};
 use super::look::Look;
 use super::steps::Linearised;
 use crate::error::DiagnoseError;
+use crate::estimation::Point;
 use crate::vocabulary::Column;
 
 impl Screen<'_, '_> {
@@ -33,9 +34,16 @@ impl Screen<'_, '_> {
         // A law of the instrument of the displacement works the motion out anew, which rounds otherwise: by as much as a slow law changes in a
         // derivative, so that this starts from what is simulated with the law.
         let changes_motion = specimen.candidates()[candidate].place.sensor() == Some(&Column::DISPLACEMENT);
-        let begun_at = |look: &Look<'_>, shape: &[f64]| {
-            let known = (!changes_motion).then_some(look.truths.as_slice());
-            self.at(look, fit.point.with_effect(specimen, candidate, shape), known)
+        let at_shape = |shape: &Vec<f64>| fit.point.with_effect(specimen, candidate, shape);
+        let begun_at = |look: &Look<'_>, shapes: &[Vec<f64>]| -> Result<Vec<Linearised>, DiagnoseError> {
+            if changes_motion {
+                shapes
+                    .iter()
+                    .map(|shape| self.at(look, at_shape(shape), None))
+                    .collect()
+            } else {
+                self.at_each(look, shapes.iter().map(at_shape).collect())
+            }
         };
         let regression = if shapes.len() > 1 {
             self.regression_look(candidate)
@@ -43,32 +51,35 @@ impl Screen<'_, '_> {
             look
         };
         let mut best: Option<(f64, Vec<f64>, Linearised)> = None;
-        for shape in shapes {
-            let begun = begun_at(regression, &shape)?;
-            let left = self.left_by_linear_step(&begun.candidate);
-            if best.as_ref().is_none_or(|(least, ..)| left < *least) {
-                best = Some((left, shape, begun));
+        for shapes in shapes.chunks(specimen.simulations_at_once()) {
+            for (shape, begun) in shapes.iter().zip(begun_at(regression, shapes)?) {
+                let left = self.left_by_linear_step(&begun.candidate);
+                if best.as_ref().is_none_or(|(least, ..)| left < *least) {
+                    best = Some((left, shape.clone(), begun));
+                }
             }
         }
         let Some((_, shape, mut begun)) = best else {
             return Ok(None);
         };
         if regression.truths.len() < look.truths.len() {
-            begun = begun_at(look, &shape)?;
+            begun = begun_at(look, std::slice::from_ref(&shape))?.pop().unwrap_or(begun);
         }
         self.step(look, &mut begun)?;
         let mut candidate_at_best = begun.candidate;
-        for start in starts
-            .iter()
+        let larger: Vec<Point> = (starts.iter())
             .filter(|start| shape_of(start) == shape && ***start != shape)
-        {
-            let point = fit.point.with_effect(specimen, candidate, start);
-            match self.cost_at(look, &point) {
-                Ok(tried) if tried.cost < candidate_at_best.cost => {
-                    candidate_at_best = self.at(look, point, tried.truths.as_deref())?.candidate;
+            .map(|start| fit.point.with_effect(specimen, candidate, start))
+            .collect();
+        for points in larger.chunks(specimen.simulations_at_once()) {
+            for (tried, point) in self.tried_at_each(look, points).into_iter().zip(points) {
+                match tried {
+                    Ok(tried) if tried.cost < candidate_at_best.cost => {
+                        candidate_at_best = self.at(look, point.clone(), tried.truths.as_deref())?.candidate;
+                    }
+                    Ok(_) | Err(DiagnoseError::Simulation { .. }) => {}
+                    Err(other) => return Err(other),
                 }
-                Ok(_) | Err(DiagnoseError::Simulation { .. }) => {}
-                Err(other) => return Err(other),
             }
         }
         if parameters.iter().any(|p| !p.is_size) {

@@ -199,9 +199,9 @@ impl Screen<'_, '_> {
             .collect();
         for points in points.chunks(self.specimen().simulations_at_once()) {
             let at: Vec<Point> = points.iter().map(|(point, _)| point.clone()).collect();
-            for (truths, (point, values)) in look.evaluation.truths_at_each(&at).into_iter().zip(points) {
-                let cost = match truths {
-                    Ok(truths) => self.tried(look, point, Some(truths)).cost,
+            for (tried, (_, values)) in self.tried_at_each(look, &at).into_iter().zip(points) {
+                let cost = match tried {
+                    Ok(tried) => tried.cost,
                     Err(DiagnoseError::Simulation { .. }) => return Ok(costs),
                     Err(other) => return Err(other),
                 };

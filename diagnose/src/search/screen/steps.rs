@@ -82,9 +82,30 @@ impl Screen<'_, '_> {
             self.truths_at(look, &point)?
         };
         let truths = known.or(simulated.as_deref()).unwrap_or(&look.truths);
+        let answering = self.answering(&point);
+        let added = look.evaluation.sensitivities(&point, &answering, Some(truths))?;
+        Ok(self.linearised(look, point, &answering, added))
+    }
+
+    /// A candidate at several points where the true quantities are those of the model so far.
+    pub(super) fn at_each(&self, look: &Look<'_>, points: Vec<Point>) -> Result<Vec<Linearised>, DiagnoseError> {
+        let answering: Vec<Vec<usize>> = points.iter().map(|point| self.answering(point)).collect();
+        let asked: Vec<(&Point, &[usize])> = points.iter().zip(answering.iter().map(Vec::as_slice)).collect();
+        let added = look.evaluation.sensitivities_at_each(&asked, &look.truths)?;
+        Ok((points.into_iter().zip(&answering).zip(added))
+            .map(|((point, answering), added)| self.linearised(look, point, answering, added))
+            .collect())
+    }
+
+    /// A candidate at a point with the derivatives along those of its coordinates that answer there.
+    fn linearised(
+        &self,
+        look: &Look<'_>,
+        point: Point,
+        answering: &[usize],
+        mut added: Vec<Sensitivity>,
+    ) -> Linearised {
         let new = self.fit.point.z.len()..point.z.len();
-        let answering: Vec<usize> = new.clone().filter(|&k| self.answers(&point, k)).collect();
-        let mut added = look.evaluation.sensitivities(&point, &answering, Some(truths))?;
         for s in &mut added {
             for k in new.clone().filter(|k| !answering.contains(k)) {
                 let nothing: Series = s.residual.iter().map(|channel| vec![0.0; channel.len()]).collect();
@@ -103,7 +124,13 @@ impl Screen<'_, '_> {
             partly: look.truths.len() < self.all.truths.len(),
             further_steps: 0,
         };
-        Ok(Linearised { candidate, added })
+        Linearised { candidate, added }
+    }
+
+    /// Coordinates of the candidate that change something at a point.
+    fn answering(&self, point: &Point) -> Vec<usize> {
+        let new = self.fit.point.z.len()..point.z.len();
+        new.filter(|&k| self.answers(point, k)).collect()
     }
 
     /// False for a coordinate of the candidate that changes nothing at a point: a number besides the sizes, while these are zero.
@@ -115,6 +142,17 @@ impl Screen<'_, '_> {
         let candidate = &specimen.candidates()[candidate];
         let own = coordinate - self.fit.point.z.len();
         candidate.parameters[own].is_size || !candidate.absent_at(&values)
+    }
+
+    /// What follows from the simulation of each of several points with the same candidate; an error where a point cannot be simulated.
+    pub(super) fn tried_at_each(&self, look: &Look<'_>, points: &[Point]) -> Vec<Result<Tried, DiagnoseError>> {
+        let candidate = points.first().and_then(|point| point.effects.last());
+        if candidate.is_some_and(|&c| self.leaves_physics_alone(c)) {
+            return points.iter().map(|point| Ok(self.tried(look, point, None))).collect();
+        }
+        (look.evaluation.truths_at_each(points).into_iter().zip(points))
+            .map(|(truths, point)| truths.map(|truths| self.tried(look, point, Some(truths))))
+            .collect()
     }
 
     /// The cost at a point, and what follows from its simulation.

@@ -28,23 +28,33 @@ use vehicle_campaign::{Case, TrueAtCorner, write};
 /// Effects that act on the force alone, which no log of a vehicle holds: nothing is the right answer.
 const ON_FORCE_ALONE: [EffectId; 3] = [EffectId::SealFriction, EffectId::SideLoadFriction, EffectId::BumpStop];
 
+const USAGE: &str = "usage: vehicle_logs DIR [--seeds N] [--first SEED] [CASE...]
+       vehicle_logs DIR --drawn N [--wrong-numbers] [--in-motion] [--first SEED]";
+
+/// Says how this program is called, and ends it.
+fn usage() -> ! {
+    eprintln!("{USAGE}");
+    std::process::exit(2)
+}
+
 fn main() {
     let mut words = std::env::args().skip(1);
     let (mut folder, mut seeds, mut drawn, mut first, mut wanted) = (None, 1, 0, 1, Vec::new());
     let (mut wrong_numbers, mut in_motion) = (false, false);
     while let Some(word) = words.next() {
-        let number = |next: Option<String>| next.and_then(|n| n.parse().ok()).expect("a whole number follows");
+        let number = |next: Option<String>| next.and_then(|n| n.parse().ok()).unwrap_or_else(|| usage());
         match word.as_str() {
             "--seeds" => seeds = number(words.next()),
             "--drawn" => drawn = number(words.next()),
             "--wrong-numbers" => wrong_numbers = true,
             "--in-motion" => in_motion = true,
             "--first" => first = number(words.next()),
+            _ if word.starts_with('-') => usage(),
             _ if folder.is_none() => folder = Some(PathBuf::from(word)),
             _ => wanted.push(word),
         }
     }
-    let folder = folder.expect("a folder for the campaigns");
+    let folder = folder.unwrap_or_else(|| usage());
     let cases: Vec<(String, Case)> = if drawn > 0 {
         let all = first..first + drawn;
         let case = if wrong_numbers {

@@ -109,7 +109,11 @@ impl<'a> Evaluation<'a> {
             .collect::<Vec<_>>()
             .into_iter();
         (points.iter())
-            .map(|_| simulated.by_ref().take(self.recordings.len()).collect())
+            .map(|_| {
+                // All of a point, also behind an error: what follows belongs to the next one.
+                let of_point: Vec<_> = simulated.by_ref().take(self.recordings.len()).collect();
+                of_point.into_iter().collect()
+            })
             .collect()
     }
 
@@ -336,5 +340,45 @@ impl Moved {
     /// Whether a recording changes along the coordinate.
     fn matters_in(&self, recording: usize) -> bool {
         self.matters && self.only_in.is_none_or(|only| only == recording)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analytic::{CUBIC, FRAGILE, GAIN, RUN, Recipe};
+
+    #[test]
+    fn several_points_give_what_each_gives_alone_also_behind_one_that_cannot_be_simulated() {
+        let specimen = Recipe::default().make();
+        let evaluation = Evaluation::new(&specimen, &RUN);
+        let with = |effect, value| Point::nominal(&specimen).with_effect(&specimen, effect, &[value]);
+        let points = [with(CUBIC, 0.1), with(FRAGILE, 2.0), with(CUBIC, 0.3)];
+        let together = evaluation.truths_at_each(&points);
+        assert_eq!(together.len(), points.len());
+        for (point, together) in points.iter().zip(together) {
+            assert_eq!(together.ok(), evaluation.truths(point).ok());
+        }
+    }
+
+    #[test]
+    fn several_points_answer_as_each_does_alone() {
+        let specimen = Recipe::default().make();
+        let evaluation = Evaluation::new(&specimen, &RUN);
+        let truths = evaluation.truths(&Point::nominal(&specimen)).expect("simulated");
+        let with = |effect| Point::nominal(&specimen).with_effect(&specimen, effect, &[0.0]);
+        let points = [with(CUBIC), with(GAIN)];
+        let coordinates: [&[usize]; 2] = [&[2, 0], &[2]];
+        let asked: Vec<(&Point, &[usize])> = points.iter().zip(coordinates).collect();
+        let together = evaluation.sensitivities_at_each(&asked, &truths).expect("derivatives");
+        for ((point, coordinates), together) in asked.into_iter().zip(together) {
+            let alone = evaluation
+                .sensitivities(point, coordinates, Some(&truths))
+                .expect("derivatives");
+            assert_eq!(together.len(), alone.len());
+            for (a, b) in together.iter().zip(&alone) {
+                assert_eq!((&a.residual, &a.columns), (&b.residual, &b.columns));
+            }
+        }
     }
 }

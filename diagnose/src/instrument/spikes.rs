@@ -12,7 +12,8 @@ use crate::recording::Recording;
 const NEAR: f64 = 2.5;
 /// A reading of another column is off at the same time if it misses its own parabola by this many.
 const ALSO: f64 = 3.0;
-/// Of the spikes of a column this part may coincide with what other columns show, by chance; above it they are not the instrument's.
+/// Of the spikes of a column this part may coincide with what other columns show, by chance; above it these are not the instrument's, and among pulses
+/// none of the others is known to be.
 const BY_CHANCE: f64 = 0.5;
 /// Passes: a spike near another is seen when that one is gone.
 const PASSES: usize = 3;
@@ -52,16 +53,27 @@ pub fn spikes(
     let samples: usize = recordings.iter().map(Recording::len).sum();
     for c in 0..columns {
         keep_how_recordings_begin_and_end(&mut found, c, recordings);
-        let (mut all, mut elsewhere) = (0, 0);
-        for (r, recording) in recordings.iter().enumerate() {
-            let also = |k: usize, other: usize| misses(&recording.columns[other], k) > ALSO * deviation(r, other, k);
-            let is_elsewhere = |spike: &&Spike| (0..columns).any(|other| other != c && also(spike.sample, other));
-            all += found[r][c].len();
-            elsewhere += found[r][c].iter().filter(is_elsewhere).count();
-        }
-        let too_many = all as f64 > LARGEST_PART * samples as f64;
-        if too_many || elsewhere as f64 > BY_CHANCE * all as f64 {
-            found.iter_mut().for_each(|of| of[c].clear());
+        let own: Vec<Vec<Spike>> = (recordings.iter().enumerate())
+            .map(|(r, recording)| {
+                let also =
+                    |k: usize, other: usize| misses(&recording.columns[other], k) > ALSO * deviation(r, other, k);
+                let is_elsewhere = |spike: &Spike| (0..columns).any(|other| other != c && also(spike.sample, other));
+                found[r][c]
+                    .iter()
+                    .copied()
+                    .filter(|spike| !is_elsewhere(spike))
+                    .collect()
+            })
+            .collect();
+        let all: usize = found.iter().map(|of| of[c].len()).sum();
+        let elsewhere = all - own.iter().map(Vec::len).sum::<usize>();
+        let shared = elsewhere as f64 > BY_CHANCE * all as f64;
+        for (of, own) in found.iter_mut().zip(own) {
+            if all as f64 > LARGEST_PART * samples as f64 || (shared && others == Course::WithPulses) {
+                of[c].clear();
+            } else if shared {
+                of[c] = own;
+            }
         }
     }
     found
@@ -207,19 +219,24 @@ impl Curve {
         Some(window.map(|i| (i as f64 - k as f64, series[i])).collect())
     }
 
-    /// The curve through points about zero: its value there, RMS of what the points miss it by, and the one that misses most.
+    /// The curve through points about zero: its value there, RMS of what the points miss it by, and the one without which they miss it least. That need
+    /// not be the one that misses most, because the curve follows its ends.
     fn through(&self, points: &[(f64, f64)]) -> Option<(f64, f64, usize)> {
         let mean = points.iter().map(|p| p.1).sum::<f64>() / points.len() as f64;
         let terms = self.degree + 1;
         let power = |x: f64, term: usize| (0..term).fold(1.0, |p, _| p * x / self.beside as f64);
         let rows = DMatrix::from_fn(points.len(), terms, |i, term| power(points[i].0, term));
         let values = DVector::from_iterator(points.len(), points.iter().map(|p| p.1 - mean));
-        let c = (rows.transpose() * &rows)
-            .cholesky()?
-            .solve(&(rows.transpose() * &values));
-        let missed = values - rows * &c;
+        let normal = (rows.transpose() * &rows).cholesky()?;
+        let c = normal.solve(&(rows.transpose() * &values));
+        let missed = values - &rows * &c;
         let freedom = points.len().saturating_sub(terms).max(1) as f64;
-        let worst = (0..points.len()).max_by(|&a, &b| missed[a].abs().total_cmp(&missed[b].abs()))?;
+        // Sum of squares that goes with a point: Belsley, Kuh & Welsch, Regression Diagnostics, Wiley 1980, section 2.1.
+        let goes_with = |i: usize| {
+            let row = rows.row(i).transpose();
+            missed[i] * missed[i] / (1.0 - row.dot(&normal.solve(&row))).max(f64::EPSILON)
+        };
+        let worst = (0..points.len()).max_by(|&a, &b| goes_with(a).total_cmp(&goes_with(b)))?;
         Some((mean + c[0], (missed.norm_squared() / freedom).sqrt(), worst))
     }
 }
@@ -265,6 +282,30 @@ mod tests {
             found(vec![series, noise(2, 2000, 0.0)]),
             [vec![300, 900, 902, 1500], vec![]]
         );
+    }
+
+    #[test]
+    fn a_spike_is_found_also_where_a_larger_one_is_the_last_that_is_seen_beside_it() {
+        let mut series = noise(1, 2000, 0.0);
+        for (k, size) in [(900, -23.0), (903, 57.0)] {
+            series[k] += size;
+        }
+        assert_eq!(found(vec![series, noise(2, 2000, 0.0)]), [vec![900, 903], vec![]]);
+    }
+
+    #[test]
+    fn of_what_a_model_leaves_spikes_that_no_other_column_shows_are_the_instruments() {
+        let with = |seed, off: &[usize]| {
+            let mut series = noise(seed, 2000, 0.0);
+            off.iter().for_each(|&k| series[k] += 30.0);
+            series
+        };
+        let columns = || vec![noise(8, 2000, 0.0), with(1, &[300, 700, 1100]), with(2, &[300, 700])];
+        let of = |others| spikes(&[recording(0.002, columns())], 3, others, &|_, _, _| 1.0).remove(0);
+        let samples = |own: &[Spike]| own.iter().map(|spike| spike.sample).collect::<Vec<_>>();
+        let left = of(Course::Smooth);
+        assert_eq!((samples(&left[1]), samples(&left[2])), (vec![1100], vec![]));
+        assert!(of(Course::WithPulses)[1].is_empty());
     }
 
     #[test]

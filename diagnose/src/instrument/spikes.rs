@@ -67,9 +67,10 @@ pub fn spikes(
             .collect();
         let all: usize = found.iter().map(|of| of[c].len()).sum();
         let elsewhere = all - own.iter().map(Vec::len).sum::<usize>();
+        let too_many = all as f64 > LARGEST_PART * samples as f64;
         let shared = elsewhere as f64 > BY_CHANCE * all as f64;
         for (of, own) in found.iter_mut().zip(own) {
-            if all as f64 > LARGEST_PART * samples as f64 || (shared && others == Course::WithPulses) {
+            if too_many || (shared && others == Course::WithPulses) {
                 of[c].clear();
             } else if shared {
                 of[c] = own;

@@ -29,7 +29,7 @@ pub struct Grown {
 
 /// A model that grows anew with laws open from the beginning, and without what its other effects explain; `None` unless it is better than the model found, or
 /// as good with fewer effects. Names that came before laws were tried may have a part each of what one law explains, so that no law is accepted beside them, and
-/// several instruments that are all at fault are rarer than one law of the specimen. A name is still preferred to a law that gains little more.
+/// several instruments that are all at fault, or many effects of any kind, are rarer than one law of the specimen. A name is still preferred to a law that gains little more.
 pub fn grown_with_laws_first(
     selector: &mut Selector<'_, '_>,
     calibrated: &Fit,
@@ -48,7 +48,11 @@ pub fn grown_with_laws_first(
     if !(incomplete && names_came_first || doubtful) || !selector.can_have_two_laws() {
         return Ok(None);
     }
-    let fraction = selector.fraction_of(best);
+    let fraction = if incomplete {
+        selector.fraction_of_incomplete()
+    } else {
+        acceptance.least_fraction
+    };
     let anew = grow(selector, calibrated, calibrated.clone(), Open::Laws, progress)?;
     let other = reduced(selector, anew.best.clone(), progress)?;
     let better = selector.improves(best, &other, fraction);

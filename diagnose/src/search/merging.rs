@@ -1,14 +1,14 @@
 //! Merging: a law and a number at one place may be one law of another shape.
 //!
 //! A friction that begins at a moment is nearly a friction that grows with time beside a friction of the seal that is too large. Both together leave
-//! so little that no other law is tried beside them, and yet one law of two numbers is all that is missing.
+//! so little that no other law is tried, and yet one law is all that is missing.
 
 use super::selector::{Selector, ranked};
 use crate::error::DiagnoseError;
 use crate::estimation::{Fit, Point};
 
 impl Selector<'_, '_> {
-    /// The model with one law in the place of two effects without a name at the same place, if it has fewer numbers and does as well.
+    /// The model with one law in the place of two effects without a name at the same place, if it has no more numbers than both and does as well.
     pub fn merged(&mut self, best: &Fit) -> Result<Option<Fit>, DiagnoseError> {
         for pair in self.pairs_at_one_place(&best.point) {
             if let Some(other) = self.merged_at(best, pair)? {
@@ -21,13 +21,13 @@ impl Selector<'_, '_> {
     fn merged_at(&mut self, best: &Fit, [first, second]: [usize; 2]) -> Result<Option<Fit>, DiagnoseError> {
         let specimen = self.specimen();
         let without = (best.point.without_effect(specimen, second)).without_effect(specimen, first);
-        let laws = self.laws_of_fewer_numbers(&without, [first, second].map(|k| best.point.effects[k]));
+        let laws = self.laws_of_no_more_numbers(&without, [first, second].map(|k| best.point.effects[k]));
         if laws.is_empty() {
             return Ok(None);
         }
         let less = self.fitted(without)?;
         let screened = self.screen_in_passing(&less, laws)?;
-        let fraction = self.fraction_of(best);
+        let fraction = self.criteria().acceptance.least_fraction;
         for (_, start) in ranked(&screened)
             .into_iter()
             .take(self.criteria().screening.sizes_refined)
@@ -53,8 +53,8 @@ impl Selector<'_, '_> {
             .collect()
     }
 
-    /// Laws at the place of two effects that have fewer numbers than both together, and which no other effect of the model excludes.
-    fn laws_of_fewer_numbers(&self, without: &Point, pair: [usize; 2]) -> Vec<usize> {
+    /// Laws at the place of two effects that have no more numbers than both together, and which no other effect of the model excludes.
+    fn laws_of_no_more_numbers(&self, without: &Point, pair: [usize; 2]) -> Vec<usize> {
         let [one, other] = pair.map(|e| self.candidate(e));
         let numbers = one.parameters.len() + other.parameters.len();
         (self.testable().iter().copied())

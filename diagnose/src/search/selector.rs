@@ -215,15 +215,6 @@ impl<'p, 'a> Selector<'p, 'a> {
         }
     }
 
-    /// Fraction of the unexplained cost that each effect of this model must explain.
-    pub fn fraction_of(&self, fit: &Fit) -> f64 {
-        if self.held_out_ratio(fit) > self.complete_up_to(fit) {
-            self.fraction_of_incomplete()
-        } else {
-            self.criteria().acceptance.least_fraction
-        }
-    }
-
     /// Whether a model leaves so little that no law without a name is looked for.
     pub fn reaches_noise(&self, fit: &Fit) -> bool {
         let limit = (self.criteria().completeness.law_noise_ratio).max(self.floor(fit));

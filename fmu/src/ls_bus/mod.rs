@@ -4,16 +4,17 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `operation` | the bus operations as bytes, and what becomes of bytes that are none |
+//! | `operation` | the bus operations |
+//! | `codec` | the operations as bytes, and what becomes of bytes that are none |
 //! | `confinement` | the error counters of a node, and what follows from them (ISO 11898-1) |
 //! | `transceiver` | the CAN peripheral of a node whose bus is a tool |
 //! | `terminal` | the four variables of a network, and the files that tell a tool of them |
 
+mod codec;
 mod confinement;
 pub(crate) mod operation;
 pub(crate) mod terminal;
 pub(crate) mod transceiver;
 
-pub use operation::{
-    ArbitrationLost, ErrorCode, ErrorFlag, Identifier, Malformed, NodeStatus, Operation, Setting, operations,
-};
+pub use codec::{Malformed, operations};
+pub use operation::{ArbitrationLost, ErrorCode, ErrorFlag, Identifier, NodeStatus, Operation, Setting};

@@ -13,8 +13,9 @@ use embedded_can::nb::Can;
 use embedded_can::{ErrorKind, ExtendedId, Id, StandardId};
 use serde::{Deserialize, Serialize};
 
+use super::codec::operations;
 use super::confinement::Confinement;
-use super::operation::{ArbitrationLost, Identifier, NodeStatus, Operation, Setting, operations};
+use super::operation::{ArbitrationLost, Identifier, NodeStatus, Operation, Setting};
 
 /// Mailboxes of the board's peripheral.
 const MAILBOXES: usize = 3;

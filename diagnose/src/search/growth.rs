@@ -10,8 +10,8 @@ use crate::estimation::{Fit, Point};
 /// So many faults of instruments are doubted where one law may do as well.
 const DOUBTFUL_FAULTS: usize = 3;
 
-/// So many effects of any kind are, too.
-const DOUBTFUL_EFFECTS: usize = 4;
+/// So many effects with a name of any kind are, too.
+const DOUBTFUL_NAMES: usize = 4;
 
 /// A model to which nothing more can be added.
 pub struct Grown {
@@ -29,7 +29,7 @@ pub struct Grown {
 
 /// A model that grows anew with laws open from the beginning, and without what its other effects explain; `None` unless it is better than the model found, or
 /// as good with fewer effects. Names that came before laws were tried may have a part each of what one law explains, so that no law is accepted beside them, and
-/// several instruments that are all at fault, or many effects of any kind, are rarer than one law of the specimen. A name is still preferred to a law that gains little more.
+/// several instruments that are all at fault, or many names of any kind, are rarer than one law of the specimen. A name is still preferred to a law that gains little more.
 pub fn grown_with_laws_first(
     selector: &mut Selector<'_, '_>,
     calibrated: &Fit,
@@ -38,13 +38,19 @@ pub fn grown_with_laws_first(
     progress: Progress<'_>,
 ) -> Result<Option<(Grown, Fit)>, DiagnoseError> {
     let acceptance = &selector.criteria().acceptance;
-    let has_named = |fit: &Fit| (fit.point.effects.iter()).any(|&e| !selector.candidate(e).is_unlisted());
+    let named = |fit: &Fit| {
+        (fit.point
+            .effects
+            .iter()
+            .filter(|&&e| !selector.candidate(e).is_unlisted()))
+        .count()
+    };
     let incomplete = selector.held_out_ratio(best) > selector.complete_up_to(best);
     // As many names as a model may have leave no room for a law.
     let no_room = grown.best.point.effects.len() >= acceptance.most_effects;
-    let names_came_first = (grown.open != Open::Names || no_room) && has_named(&grown.best);
+    let names_came_first = (grown.open != Open::Names || no_room) && named(&grown.best) > 0;
     let faults = (best.point.effects.iter()).filter(|&&e| selector.candidate(e).is_instrument_fault());
-    let doubtful = faults.count() >= DOUBTFUL_FAULTS || best.point.effects.len() >= DOUBTFUL_EFFECTS;
+    let doubtful = faults.count() >= DOUBTFUL_FAULTS || named(best) >= DOUBTFUL_NAMES;
     if !(incomplete && names_came_first || doubtful) || !selector.can_have_two_laws() {
         return Ok(None);
     }
@@ -262,7 +268,7 @@ mod tests {
     }
 
     #[test]
-    fn three_faults_of_instruments_or_four_effects_give_way_to_one_law_that_does_as_well_and_fewer_do_not() {
+    fn three_faults_of_instruments_or_four_names_give_way_to_one_law_that_does_as_well_and_fewer_do_not() {
         let anew = |effects: &[usize], faults: usize| {
             let mut specimen = Recipe {
                 truth: vec![(CUBIC, vec![0.4])],

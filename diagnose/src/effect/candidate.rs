@@ -202,6 +202,21 @@ impl Candidate {
         has_size && (self.parameters.iter().zip(values)).all(|(p, v)| !p.is_size || *v == 0.0)
     }
 
+    /// The values that a fit of it starts from: first those of its parameters, then the others.
+    #[must_use]
+    pub fn all_starts(&self) -> Vec<Vec<f64>> {
+        let own = self.parameters.iter().map(|p| p.start).collect();
+        std::iter::once(own).chain(self.starts.iter().cloned()).collect()
+    }
+
+    /// Values with each number that is a size made zero: what is left is the shape.
+    #[must_use]
+    pub fn without_sizes(&self, values: &[f64]) -> Vec<f64> {
+        (self.parameters.iter().zip(values))
+            .map(|(p, value)| if p.is_size { 0.0 } else { *value })
+            .collect()
+    }
+
     /// Values to start from beside another candidate with these values: its own under the keys that both have.
     #[must_use]
     pub fn values_shared_with(&self, other: &Self, values: &[f64]) -> Vec<f64> {

@@ -64,6 +64,14 @@ impl<'a> Evaluation<'a> {
     pub fn of_recordings(&self, recordings: &[usize]) -> Self {
         Self {
             recordings: recordings.into(),
+            ..self.of_many()
+        }
+    }
+
+    /// The same for one of many who ask at the same time.
+    #[must_use]
+    pub fn of_many(&self) -> Self {
+        Self {
             one_of_many: true,
             ..self.clone()
         }
@@ -168,53 +176,59 @@ impl<'a> Evaluation<'a> {
             simulated = self.truths(point)?;
             &simulated
         };
-        let mut one = self.sensitivities_at_each(&[(point, coordinates)], truths)?;
-        Ok(one.pop().unwrap_or_default())
+        let at = Wanted {
+            point,
+            coordinates,
+            truths,
+        };
+        self.sensitivities_at_each(&[at])
+            .pop()
+            .unwrap_or_else(|| Ok(Vec::new()))
     }
 
-    /// The same at several points, each with coordinates of its own, where the true quantities are the same and known.
-    ///
-    /// # Errors
-    /// As [`Self::truths`], of any of the points.
-    pub fn sensitivities_at_each(
-        &self,
-        points: &[(&Point, &[usize])],
-        truths: &[Series],
-    ) -> Result<Vec<Vec<Sensitivity>>, DiagnoseError> {
-        let asked: Vec<Asked> = (points.iter())
-            .map(|(point, coordinates)| Asked {
-                shown: self.observed(point, truths),
-                moved: coordinates.iter().map(|&k| self.moved(point, k)).collect(),
+    /// The same at several points, each on its own; an error where a derivative cannot be simulated.
+    #[must_use]
+    pub fn sensitivities_at_each(&self, wanted: &[Wanted<'_>]) -> Vec<Result<Vec<Sensitivity>, DiagnoseError>> {
+        let asked: Vec<Asked<'_>> = (wanted.iter())
+            .map(|at| Asked {
+                truths: at.truths,
+                shown: self.observed(at.point, at.truths),
+                moved: at.coordinates.iter().map(|&k| self.moved(at.point, k)).collect(),
             })
             .collect();
         // All (recording, coordinate) pairs at once keep every core busy; collect restores their order. Of a recording, its place among those that
         // are simulated.
         let matters = |place: usize, moved: &Moved| moved.matters_in(self.recordings[place]);
-        let pairs: Vec<(usize, &Asked, &Moved)> = (asked.iter())
-            .flat_map(|asked| (0..truths.len()).map(move |r| (r, asked)))
+        let pairs: Vec<(usize, &Asked<'_>, &Moved)> = (asked.iter())
+            .flat_map(|asked| (0..asked.truths.len()).map(move |r| (r, asked)))
             .flat_map(|(r, asked)| asked.moved.iter().map(move |moved| (r, asked, moved)))
             .filter(|&(r, _, moved)| matters(r, moved))
             .collect();
-        let derivatives: Vec<Vec<Series>> = (pairs.par_chunks(self.at_once(pairs.len())))
-            .map(|pairs| self.derivatives(pairs, truths))
-            .collect::<Result<_, _>>()?;
+        let derivatives: Vec<Vec<Result<Series, DiagnoseError>>> = (pairs.par_chunks(self.at_once(pairs.len())))
+            .map(|pairs| self.derivatives(pairs))
+            .collect();
         let mut derivatives = derivatives.into_iter().flatten();
-        let mut sensitivity = |asked: &Asked, r: usize, residual: Series| {
+        let mut sensitivity = |asked: &Asked<'_>, r: usize, residual: Series| {
             let unchanged = || residual.iter().map(|series| vec![0.0; series.len()]).collect();
-            let of = |moved| if matters(r, moved) { derivatives.next() } else { None };
-            let columns = (asked.moved.iter().map(of)).map(|column| column.unwrap_or_else(unchanged));
-            Sensitivity {
-                columns: columns.collect(),
+            // All of a point, also behind an error: what follows belongs to the next one.
+            let columns: Vec<Result<Series, DiagnoseError>> = (asked.moved.iter())
+                .map(|moved| if matters(r, moved) { derivatives.next() } else { None })
+                .map(|column| column.unwrap_or_else(|| Ok(unchanged())))
+                .collect();
+            Ok(Sensitivity {
+                columns: columns.into_iter().collect::<Result<_, _>>()?,
                 residual,
-            }
-        };
-        Ok((asked.iter())
-            .map(|asked| {
-                (self.residuals(&asked.shown).into_iter().enumerate())
-                    .map(|(r, residual)| sensitivity(asked, r, residual))
-                    .collect()
             })
-            .collect())
+        };
+        (asked.iter())
+            .map(|asked| {
+                let recordings: Vec<Result<Sensitivity, DiagnoseError>> = (self.residuals(&asked.shown).into_iter())
+                    .enumerate()
+                    .map(|(r, residual)| sensitivity(asked, r, residual))
+                    .collect();
+                recordings.into_iter().collect()
+            })
+            .collect()
     }
 
     /// A point moved along one coordinate, backwards where its range ends.
@@ -234,19 +248,20 @@ impl<'a> Evaluation<'a> {
     }
 
     /// Derivatives of recordings along coordinates, those that need a simulation by simulations together.
-    fn derivatives(&self, pairs: &[(usize, &Asked, &Moved)], truths: &[Series]) -> Result<Vec<Series>, DiagnoseError> {
+    fn derivatives(&self, pairs: &[(usize, &Asked<'_>, &Moved)]) -> Vec<Result<Series, DiagnoseError>> {
         let wanted: Vec<(&Hypothesis, usize)> = (pairs.iter())
             .filter(|(_, _, moved)| !moved.instrument_only)
             .map(|&(place, _, moved)| (&moved.hypothesis, self.recordings[place]))
             .collect();
-        let mut simulated = self.simulate_these(&wanted)?.into_iter();
-        Ok((pairs.iter())
+        let mut simulated = self.simulate_each(&wanted).into_iter();
+        (pairs.iter())
             .map(|&(place, asked, moved)| {
                 let simulated = if moved.instrument_only { None } else { simulated.next() };
-                let truth = simulated.as_ref().unwrap_or(&truths[place]);
-                self.derivative(moved, self.recordings[place], truth, &asked.shown[place])
+                let simulated = simulated.transpose()?;
+                let truth = simulated.as_ref().unwrap_or(&asked.truths[place]);
+                Ok(self.derivative(moved, self.recordings[place], truth, &asked.shown[place]))
             })
-            .collect())
+            .collect()
     }
 
     /// What the readings change by along a coordinate, where the true quantities there are known.
@@ -319,8 +334,20 @@ impl<'a> Evaluation<'a> {
     }
 }
 
+/// A point of which residuals and derivatives are wanted.
+#[derive(Debug, Clone, Copy)]
+pub struct Wanted<'w> {
+    /// The point.
+    pub point: &'w Point,
+    /// Coordinates along which derivatives are wanted.
+    pub coordinates: &'w [usize],
+    /// The true quantities at the point, one set of series a recording.
+    pub truths: &'w [Series],
+}
+
 /// A point of which derivatives are asked for.
-struct Asked {
+struct Asked<'w> {
+    truths: &'w [Series],
     /// What the instruments show there.
     shown: Vec<Series>,
     /// The point moved along each coordinate.
@@ -369,11 +396,18 @@ mod tests {
         let with = |effect| Point::nominal(&specimen).with_effect(&specimen, effect, &[0.0]);
         let points = [with(CUBIC), with(GAIN)];
         let coordinates: [&[usize]; 2] = [&[2, 0], &[2]];
-        let asked: Vec<(&Point, &[usize])> = points.iter().zip(coordinates).collect();
-        let together = evaluation.sensitivities_at_each(&asked, &truths).expect("derivatives");
-        for ((point, coordinates), together) in asked.into_iter().zip(together) {
+        let wanted: Vec<Wanted<'_>> = (points.iter().zip(coordinates))
+            .map(|(point, coordinates)| Wanted {
+                point,
+                coordinates,
+                truths: &truths,
+            })
+            .collect();
+        let together = evaluation.sensitivities_at_each(&wanted);
+        for (at, together) in wanted.into_iter().zip(together) {
+            let together = together.expect("derivatives");
             let alone = evaluation
-                .sensitivities(point, coordinates, Some(&truths))
+                .sensitivities(at.point, at.coordinates, Some(&truths))
                 .expect("derivatives");
             assert_eq!(together.len(), alone.len());
             for (a, b) in together.iter().zip(&alone) {

@@ -128,4 +128,13 @@ impl<'a> LeastSquares<'a> {
     pub fn cost_at(&self, point: &Point) -> Result<f64, DiagnoseError> {
         Ok(self.cost(point, &self.evaluation.residuals_at(point)?))
     }
+
+    /// Cost at each of several points, all simulated at once; an error where one cannot be simulated.
+    #[must_use]
+    pub fn costs_at_each(&self, points: &[Point]) -> Vec<Result<f64, DiagnoseError>> {
+        let evaluation = &self.evaluation;
+        (evaluation.truths_at_each(points).into_iter().zip(points))
+            .map(|(truths, point)| Ok(self.cost(point, &evaluation.residuals(&evaluation.observed(point, &truths?)))))
+            .collect()
+    }
 }

@@ -28,7 +28,7 @@ pub mod normal_equations;
 pub mod point;
 
 pub use blocks::{Block, Blocks};
-pub use evaluation::{Evaluation, Sensitivity};
+pub use evaluation::{Evaluation, Sensitivity, Wanted};
 pub use fit::{Fit, HeldOut};
 pub use gauss_newton::{carried_on, fit};
 pub use held_out::{cost_of_whole_recordings, held_out};

@@ -77,16 +77,22 @@ impl Selector<'_, '_> {
         let fitted: Vec<f64> = (description.parameters.iter().zip(&best.point.z[own.clone()]))
             .map(|(p, z)| p.value(*z))
             .collect();
+        let at = |values: Vec<f64>| {
+            let mut point = best.point.clone();
+            for (k, (p, value)) in own.clone().zip(description.parameters.iter().zip(values)) {
+                point.z[k] = p.z(value);
+            }
+            point
+        };
         let mut starts = Vec::new();
         for shape in shapes(description, fitted) {
+            let points: Vec<Point> = (starting_sizes(description, &shape).into_iter().flatten())
+                .map(at)
+                .collect();
             let mut least: Option<(f64, Point)> = None;
-            for values in starting_sizes(description, &shape).into_iter().flatten() {
-                let mut point = best.point.clone();
-                for (k, (p, value)) in own.clone().zip(description.parameters.iter().zip(values)) {
-                    point.z[k] = p.z(value);
-                }
-                match self.problem.cost_at(&point) {
-                    Ok(cost) if least.as_ref().is_none_or(|l| cost < l.0) => least = Some((cost, point)),
+            for (point, cost) in points.iter().zip(self.problem.costs_at_each(&points)) {
+                match cost {
+                    Ok(cost) if least.as_ref().is_none_or(|l| cost < l.0) => least = Some((cost, point.clone())),
                     Ok(_) | Err(DiagnoseError::Simulation { .. }) => {}
                     Err(other) => return Err(other),
                 }
@@ -146,8 +152,7 @@ impl Selector<'_, '_> {
 /// Numbers besides the sizes from which an effect is started again: those of its starts, the fitted ones, and those with one
 /// number moved either way by what would show.
 fn shapes(candidate: &Candidate, fitted: Vec<f64>) -> Vec<Vec<f64>> {
-    let mut all = vec![candidate.parameters.iter().map(|p| p.start).collect()];
-    all.extend(candidate.starts.iter().cloned());
+    let mut all = candidate.all_starts();
     for (k, parameter) in candidate.parameters.iter().enumerate().filter(|(_, p)| !p.is_size) {
         for steps in MOVED {
             let mut shape = fitted.clone();

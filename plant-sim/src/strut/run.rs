@@ -98,6 +98,12 @@ impl<'a> Run<'a> {
         self
     }
 
+    /// Whether another run's model has laws without a name of the same quantities at the same places.
+    pub fn has_laws_of(&self, other: &Self) -> bool {
+        let laws = |run: &Self| run.model.effects.unlisted.iter().map(|law| (law.place, law.depends_on));
+        laws(self).eq(laws(other))
+    }
+
     /// Number of samples, by which runs are ordered.
     pub fn samples(&self) -> usize {
         self.inputs.time_s.len()

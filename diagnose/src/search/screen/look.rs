@@ -4,6 +4,8 @@
 //! tenths of the cost. What only sorts out, such as the size of an effect to start from, is then asked of those that hold half of it; every candidate
 //! makes its first steps on those that hold seven tenths, with the others as the model so far leaves them; and the promising ones go on on all.
 
+use std::sync::Arc;
+
 use crate::error::DiagnoseError;
 use crate::estimation::{Evaluation, Fit, LeastSquares};
 use crate::specimen::Series;
@@ -13,7 +15,7 @@ pub struct Look<'a> {
     /// Simulates these recordings.
     pub evaluation: Evaluation<'a>,
     /// True quantities in the model so far, one series a recording.
-    pub truths: Vec<Series>,
+    pub truths: Arc<Vec<Series>>,
 }
 
 impl<'a> Look<'a> {
@@ -24,8 +26,16 @@ impl<'a> Look<'a> {
     pub fn at_all(problem: &LeastSquares<'a>, fit: &Fit) -> Result<Self, DiagnoseError> {
         Ok(Self {
             evaluation: problem.evaluation.clone(),
-            truths: problem.evaluation.truths(&fit.point)?,
+            truths: Arc::new(problem.evaluation.truths(&fit.point)?),
         })
+    }
+
+    /// The same look by one of many who look at the same time.
+    pub fn of_many(&self) -> Self {
+        Self {
+            evaluation: self.evaluation.of_many(),
+            truths: Arc::clone(&self.truths),
+        }
     }
 
     /// At the recordings that hold at least this part of what a fitted model leaves; `None` if these are all of them.
@@ -33,7 +43,7 @@ impl<'a> Look<'a> {
         let enough = holding(part, &cost_of_recordings(problem, fit));
         (enough.len() < self.truths.len()).then(|| Self {
             evaluation: self.evaluation.of_recordings(&enough),
-            truths: enough.iter().map(|&r| self.truths[r].clone()).collect(),
+            truths: Arc::new(enough.iter().map(|&r| self.truths[r].clone()).collect()),
         })
     }
 }

@@ -1,14 +1,19 @@
 //! Where candidates begin, how the promising ones go on, and what became of all of them.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use super::beside::{Screen, ScreenedCandidate, cost_of, finished, is_gross};
 use super::look::Look;
+use super::steps::{Moving, Start};
 use crate::criteria::Screening;
 use crate::error::DiagnoseError;
 use crate::estimation::{Fit, Point};
 use crate::search::sizes::starting_sizes;
-use crate::specimen::Series;
+
+/// From so many groups of candidates for each thread on, a group keeps one thread as busy as it can.
+const GROUPS_A_THREAD: usize = 2;
 
 /// A candidate after its first steps from its own starts, and larger sizes of it with the cost of each, the lowest first.
 struct Begun {
@@ -44,19 +49,27 @@ impl Screen<'_, '_> {
     pub fn begun(&self, candidates: &[usize]) -> Result<Vec<Option<ScreenedCandidate>>, DiagnoseError> {
         let all = self.specimen().candidates();
         let swings = (candidates.iter().any(|&c| all[c].oscillates)).then(|| self.swings());
-        let begun: Vec<Option<Begun>> = (candidates.par_iter())
-            .map(|&c| {
-                let begun = match &swings {
-                    Some(swings) if all[c].oscillates => self.begin_oscillation(c, swings).map(Begun::of),
-                    _ => self.begin(c),
-                };
-                // What cannot be simulated near the model so far is no candidate, and no failure of the diagnosis.
-                match begun {
-                    Err(DiagnoseError::Simulation { .. }) => Ok(None),
-                    other => other.map(Some),
+        let groups = self.groups(candidates);
+        let are_many = groups.len() >= GROUPS_A_THREAD * rayon::current_num_threads();
+        let begin = |group: &[usize]| -> Vec<Result<Begun, DiagnoseError>> {
+            match (&swings, group) {
+                (Some(swings), &[one]) if all[one].oscillates => {
+                    vec![self.begin_oscillation(one, swings).map(Begun::of)]
                 }
-            })
-            .collect::<Result<_, _>>()?;
+                _ => self.begin(group, are_many),
+            }
+        };
+        let of_groups: Vec<Vec<Result<Begun, DiagnoseError>>> = groups.par_iter().map(|group| begin(group)).collect();
+        let mut begun: BTreeMap<usize, Option<Begun>> = BTreeMap::new();
+        for (candidate, one) in groups.into_iter().flatten().zip(of_groups.into_iter().flatten()) {
+            let one = match one {
+                // What cannot be simulated near the model so far is no candidate, and no failure of the diagnosis.
+                Err(DiagnoseError::Simulation { .. }) => None,
+                other => Some(other?),
+            };
+            begun.insert(candidate, one);
+        }
+        let begun: Vec<Option<Begun>> = candidates.iter().map(|c| begun.remove(c).flatten()).collect();
         let least = (begun.iter().flatten())
             .flat_map(|b| [cost_of(&b.candidate), b.sizes.first().map_or(f64::INFINITY, |s| s.0)])
             .fold(self.fit.cost, f64::min);
@@ -74,27 +87,60 @@ impl Screen<'_, '_> {
         promising: impl Iterator<Item = &'c mut Option<ScreenedCandidate>>,
     ) -> Result<(), DiagnoseError> {
         let screening = &self.problem.criteria.screening;
-        let mut promising: Vec<(&mut ScreenedCandidate, Option<Vec<Series>>)> =
-            promising.flatten().map(|candidate| (candidate, None)).collect();
+        let mut promising: Vec<(&mut Option<ScreenedCandidate>, Moving)> = (promising)
+            .filter_map(|slot| slot.take().map(|candidate| (slot, Moving::from(candidate))))
+            .collect();
         for _ in 0..screening.more_steps {
-            let go_on = go_on(promising.iter().map(|(candidate, _)| &**candidate), self.fit, screening);
-            (promising.par_iter_mut().zip(go_on).filter(|(_, goes_on)| *goes_on)).try_for_each(
-                |((candidate, truths), _)| {
-                    candidate.further_steps += 1;
-                    // What was seen of a few recordings has not arrived on all.
-                    candidate.arrived &= !std::mem::take(&mut candidate.partly);
-                    match self.advance_once(&self.all, candidate, truths) {
-                        // A candidate whose derivatives cannot be simulated stays where its last step led.
-                        Err(DiagnoseError::Simulation { .. }) => {
-                            candidate.arrived = true;
-                            Ok(())
-                        }
-                        other => other,
-                    }
-                },
-            )?;
+            let go_on = go_on(
+                promising.iter().map(|(_, moving)| &moving.candidate),
+                self.fit,
+                screening,
+            );
+            let mut going: Vec<&mut Moving> = (promising.iter_mut().zip(go_on))
+                .filter(|(_, goes_on)| *goes_on)
+                .map(|((_, moving), _)| moving)
+                .collect();
+            for Moving { candidate, .. } in &mut going {
+                candidate.further_steps += 1;
+                // What was seen of a few recordings has not arrived on all.
+                candidate.arrived &= !std::mem::take(&mut candidate.partly);
+            }
+            let advanced = self.advance_each(&self.all, &mut going);
+            for (moving, advanced) in going.into_iter().zip(advanced) {
+                match advanced {
+                    // A candidate whose derivatives cannot be simulated stays where its last step led.
+                    Err(DiagnoseError::Simulation { .. }) => moving.candidate.arrived = true,
+                    other => other?,
+                }
+            }
+        }
+        for (slot, moving) in promising {
+            *slot = Some(moving.candidate);
         }
         Ok(())
+    }
+
+    /// Candidates of one kind that begin side by side: so many that their simulations fill the vectors of a thread. Those that need none, and those that
+    /// swing, begin alone.
+    fn groups(&self, candidates: &[usize]) -> Vec<Vec<usize>> {
+        let specimen = self.specimen();
+        let recordings = self.most.as_ref().unwrap_or(&self.all).truths.len();
+        let side_by_side = (specimen.simulations_at_once() / recordings.max(1)).max(1);
+        let begins_alone = |c: &usize| self.leaves_physics_alone(*c) || specimen.candidates()[*c].oscillates;
+        let (alone, simulated): (Vec<usize>, Vec<usize>) = candidates.iter().copied().partition(begins_alone);
+        let (laws, others): (Vec<usize>, Vec<usize>) = simulated.into_iter().partition(|&c| self.begins_as_law(c));
+        (laws
+            .chunks(side_by_side)
+            .chain(others.chunks(side_by_side))
+            .chain(alone.chunks(1)))
+        .map(<[usize]>::to_vec)
+        .collect()
+    }
+
+    /// Whether a candidate begins with the shape of it that explains most.
+    fn begins_as_law(&self, candidate: usize) -> bool {
+        let description = &self.specimen().candidates()[candidate];
+        description.is_law() && (description.all_starts().first()).is_some_and(|own| description.absent_at(own))
     }
 
     /// Where a candidate is looked at before it is known to be promising. What no simulation is needed for is looked at everywhere.
@@ -113,31 +159,61 @@ impl Screen<'_, '_> {
         }
     }
 
-    /// A candidate after its first steps from the best of its starts, and what larger sizes cost where the model so far is far off.
-    fn begin(&self, candidate: usize) -> Result<Begun, DiagnoseError> {
-        let description = &self.specimen().candidates()[candidate];
-        let own: Vec<f64> = description.parameters.iter().map(|p| p.start).collect();
-        let starts: Vec<&Vec<f64>> = std::iter::once(&own).chain(&description.starts).collect();
-        let look = self.first_look(candidate);
-        if description.is_law() && description.absent_at(&own) {
-            return self.begin_law(look, candidate, &starts).map(Begun::of);
+    /// Candidates of a group after their first steps from the best of their starts, and what larger sizes cost where the model so far is far off.
+    fn begin(&self, group: &[usize], is_one_of_many: bool) -> Vec<Result<Begun, DiagnoseError>> {
+        let Some(&first) = group.first() else { return vec![] };
+        let of_many;
+        let look = if is_one_of_many {
+            of_many = self.first_look(first).of_many();
+            &of_many
+        } else {
+            self.first_look(first)
+        };
+        if self.begins_as_law(first) {
+            return (self.begin_laws(look, group).into_iter())
+                .map(|begun| begun.map(|begun| Begun::of(Some(begun))))
+                .collect();
         }
-        let mut best: Option<ScreenedCandidate> = None;
-        for start in &starts {
-            let known = description.absent_at(start).then_some(look.truths.as_slice());
-            self.begin_at(look, candidate, start, known, &mut best)?;
-        }
-        let mut begun = Begun::of(best);
-        if description.is_law() || description.is_instrument_fault() || !is_gross(self.problem, self.fit) {
-            return Ok(begun);
-        }
-        for start in starts {
-            for direction in starting_sizes(description, start) {
-                begun.sizes.extend(self.costs_of(candidate, direction)?);
+        let all = self.specimen().candidates();
+        let starts: Vec<(usize, Vec<f64>)> = (group.iter().enumerate())
+            .flat_map(|(k, &c)| all[c].all_starts().into_iter().map(move |start| (k, start)))
+            .collect();
+        let mut best: Vec<Result<Option<ScreenedCandidate>, DiagnoseError>> = group.iter().map(|_| Ok(None)).collect();
+        for starts in starts.chunks(self.specimen().simulations_at_once()) {
+            let at = (starts.iter())
+                .map(|(k, values)| Start {
+                    point: self.fit.point.with_effect(self.specimen(), group[*k], values),
+                    truths: all[group[*k]].absent_at(values).then_some(look.truths.as_slice()),
+                })
+                .collect();
+            for ((k, _), begun) in starts.iter().zip(self.begin_at(look, at)) {
+                keep_lower(&mut best[*k], begun);
             }
         }
-        begun.sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
-        Ok(begun)
+        (group.iter().zip(best))
+            .map(|(&candidate, best)| {
+                Ok(Begun {
+                    sizes: self.larger_sizes(candidate)?,
+                    candidate: best?,
+                })
+            })
+            .collect()
+    }
+
+    /// Larger sizes of a candidate with the cost of each, the lowest first; none of a law or an instrument, or where the model so far is not far off.
+    fn larger_sizes(&self, candidate: usize) -> Result<Vec<(f64, Vec<f64>)>, DiagnoseError> {
+        let description = &self.specimen().candidates()[candidate];
+        let mut sizes = Vec::new();
+        if description.is_law() || description.is_instrument_fault() || !is_gross(self.problem, self.fit) {
+            return Ok(sizes);
+        }
+        for start in description.all_starts() {
+            for direction in starting_sizes(description, &start) {
+                sizes.extend(self.costs_of(candidate, direction)?);
+            }
+        }
+        sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(sizes)
     }
 
     /// A candidate stepped on from its larger sizes too, where these may lead lower. `least` is the lowest cost that any candidate has reached: beside
@@ -154,39 +230,39 @@ impl Screen<'_, '_> {
             let reached = best.as_ref().map_or(f64::INFINITY, |b| b.cost);
             let gains = self.fit.cost - cost > screening.gain_of_size * (self.fit.cost - least);
             if gains && cost < screening.size_contender * reached {
-                self.begin_at(look, candidate, &values, None, &mut best)?;
+                best = self.begin_lower(look, candidate, &values, best)?;
             }
         }
         Ok(best)
     }
 
-    /// The first steps of a candidate from a start, kept if they lead lower than `best`. A start that cannot be simulated is
-    /// passed over.
-    pub(super) fn begin_at(
+    /// The first steps of a candidate from a start, whose true quantities are not known, if they lead lower than `best`, and this otherwise.
+    pub(super) fn begin_lower(
         &self,
         look: &Look<'_>,
         candidate: usize,
         start: &[f64],
-        known: Option<&[Series]>,
-        best: &mut Option<ScreenedCandidate>,
-    ) -> Result<(), DiagnoseError> {
-        let point = self.fit.point.with_effect(self.specimen(), candidate, start);
-        let begun = self.at(look, point, known).and_then(|mut begun| {
-            self.step(look, &mut begun)?;
-            let mut begun = begun.candidate;
-            self.advance(
-                look,
-                &mut begun,
-                self.problem.criteria.screening.first_steps.saturating_sub(1),
-            )?;
-            Ok(begun)
-        });
-        match begun {
-            Ok(begun) if best.as_ref().is_none_or(|b| begun.cost < b.cost) => *best = Some(begun),
-            Ok(_) | Err(DiagnoseError::Simulation { .. }) => {}
-            Err(other) => return Err(other),
+        best: Option<ScreenedCandidate>,
+    ) -> Result<Option<ScreenedCandidate>, DiagnoseError> {
+        let at = Start {
+            point: self.fit.point.with_effect(self.specimen(), candidate, start),
+            truths: None,
+        };
+        let mut best = Ok(best);
+        for begun in self.begin_at(look, vec![at]) {
+            keep_lower(&mut best, begun);
         }
-        Ok(())
+        best
+    }
+
+    /// The first steps of candidates, each from a start.
+    fn begin_at(&self, look: &Look<'_>, starts: Vec<Start<'_>>) -> Vec<Result<ScreenedCandidate, DiagnoseError>> {
+        let mut begun = self.stepped(look, self.at_each(look, starts));
+        let more = self.problem.criteria.screening.first_steps.saturating_sub(1);
+        self.advance(look, &mut begun.iter_mut().collect::<Vec<_>>(), more);
+        (begun.into_iter())
+            .map(|begun| begun.map(|moving| moving.candidate))
+            .collect()
     }
 
     /// Sizes of a candidate, the smallest first, with the cost of each, up to the first that is too large.
@@ -221,6 +297,20 @@ impl Begun {
             candidate,
             sizes: Vec::new(),
         }
+    }
+}
+
+/// Keeps what has begun if it is lower. A start that cannot be simulated is passed over.
+fn keep_lower(
+    best: &mut Result<Option<ScreenedCandidate>, DiagnoseError>,
+    begun: Result<ScreenedCandidate, DiagnoseError>,
+) {
+    match (&best, begun) {
+        (Ok(lowest), Ok(begun)) if lowest.as_ref().is_none_or(|lowest| begun.cost < lowest.cost) => {
+            *best = Ok(Some(begun));
+        }
+        (Err(_), _) | (_, Ok(_) | Err(DiagnoseError::Simulation { .. })) => {}
+        (_, Err(other)) => *best = Err(other),
     }
 }
 

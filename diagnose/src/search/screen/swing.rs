@@ -89,10 +89,9 @@ impl Screen<'_, '_> {
                 best = Some((gain, vec![size, libm::atan2(b, a), f]));
             }
         }
-        let mut begun = None;
-        if let Some((_, start)) = best {
-            self.begin_at(look, candidate, &start, None, &mut begun)?;
+        match best {
+            Some((_, start)) => self.begin_lower(look, candidate, &start, None),
+            None => Ok(None),
         }
-        Ok(begun)
     }
 }

@@ -71,17 +71,13 @@ impl Chamber {
         let all = chambers.as_ref();
         let of = |value: fn(&Self) -> f64| like.gather(|lane| value(all[lane]));
         let same = |kind: fn(&Self) -> bool| all.iter().all(|chamber| kind(chamber) == kind(all[0]));
-        let alike = same(|chamber| chamber.counts_at_static_density)
-            && same(|chamber| chamber.air.is_some())
-            && same(|chamber| chamber.laws.is_some());
+        let alike = same(|chamber| chamber.counts_at_static_density) && same(|chamber| chamber.air.is_some());
         if !alike {
             return None;
         }
-        let laws = N::each_of(|lane| all[lane].laws.as_deref());
-        let laws = match &laws {
-            Some(laws) => Some(Box::new(ChamberLaws::abreast(laws, like)?)),
-            None => None,
-        };
+        let without = ChamberLaws::of(&[]);
+        let laws = N::each(|lane| all[lane].laws.as_deref().unwrap_or(&without));
+        let has_laws = all.iter().any(|chamber| chamber.laws.is_some());
         Some(Chamber {
             area_m2: of(|chamber| chamber.area_m2),
             oil_volume_m3: of(|chamber| chamber.oil_volume_m3),
@@ -93,7 +89,7 @@ impl Chamber {
                 polytropic_exponent: of(|chamber| chamber.air.map_or(1.0, |air| air.polytropic_exponent)),
             }),
             mount_m3_pa: of(|chamber| chamber.mount_m3_pa),
-            laws,
+            laws: has_laws.then(|| Box::new(ChamberLaws::abreast(&laws, like))),
         })
     }
 }

@@ -7,6 +7,10 @@ use crate::strut::flow_path::FlowPath;
 use crate::strut::model::StrutModel;
 use crate::strut::terms::{Course, LawArgument, LawPlace, LawTable, law_at, throttle, valve_in_time};
 
+/// The longest Newton step in the drops, Pa, that is taken linearly where the model has unmodelled laws: the kinks of
+/// their tables are not looked for.
+const UNLISTED_STEP_PA: f64 = 300.0;
+
 /// Main chamber, two paths, and valve 3 between the second path and its accumulator.
 #[derive(Debug, Clone)]
 pub(in crate::strut) struct Network<N: Number = f64> {
@@ -30,6 +34,8 @@ pub(in crate::strut) struct Network<N: Number = f64> {
     pub(super) transition_pa: N,
     /// Whether some table is read whose kinks the solver does not look for.
     pub has_laws: bool,
+    /// Longest Newton step in the drops that is then taken linearly, Pa.
+    pub(super) longest_step_pa: N,
 }
 
 impl Network {
@@ -54,14 +60,19 @@ impl Network {
                     .map_or(0.0, |line| line.at(0.0, &mut 0).1),
             transition_pa: model.orifice.transition_pressure_pa,
             has_laws: !effects.unlisted.is_empty(),
+            longest_step_pa: if effects.unlisted.is_empty() {
+                f64::INFINITY
+            } else {
+                UNLISTED_STEP_PA
+            },
         }
     }
 
     /// The networks of several struts side by side, `like` any number of their kind; none where they differ in kind.
     pub fn abreast<N: Number>(networks: &N::Each<&Self>, like: N) -> Option<Network<N>> {
         let all = networks.as_ref();
-        let has_laws = all[0].has_laws;
-        if (all.iter()).any(|network| network.has_laws != has_laws) {
+        // A throttled valve 3 is solved for in another way.
+        if (all.iter()).any(|network| network.valve3_throttle.is_none() != all[0].valve3_throttle.is_none()) {
             return None;
         }
         let table = |of: fn(&Self) -> &LawTable| LawTable::abreast(&N::each(|lane| of(all[lane])));
@@ -72,15 +83,16 @@ impl Network {
             paths: [path(FlowPath::One)?, path(FlowPath::Two)?],
             valve3_coefficient: of(|network| network.valve3_coefficient),
             valve3_leak: of(|network| network.valve3_leak),
-            valve3_throttle: table(|network| &network.valve3_throttle)?,
-            valve3_in_time: Course::abreast(&N::each(|lane| &all[lane].valve3_in_time), like)?,
+            valve3_throttle: table(|network| &network.valve3_throttle),
+            valve3_in_time: Course::abreast(&N::each(|lane| &all[lane].valve3_in_time), like),
             beside_valve3: [
-                table(|network| &network.beside_valve3[0])?,
-                table(|network| &network.beside_valve3[1])?,
+                table(|network| &network.beside_valve3[0]),
+                table(|network| &network.beside_valve3[1]),
             ],
             inertance_kg_m4: of(|network| network.inertance_kg_m4),
             transition_pa: of(|network| network.transition_pa),
-            has_laws,
+            has_laws: all.iter().any(|network| network.has_laws),
+            longest_step_pa: of(|network| network.longest_step_pa),
         })
     }
 }

@@ -141,14 +141,9 @@ impl Path {
     /// The same path of several struts side by side, `like` any number of their kind; none where they differ in kind.
     pub fn abreast<N: Number>(paths: &N::Each<&Self>, like: N) -> Option<Path<N>> {
         let all = paths.as_ref();
-        if (all.iter()).any(|path| path.laws.is_some() != all[0].laws.is_some()) {
-            return None;
-        }
-        let laws = N::each_of(|lane| all[lane].laws.as_deref());
-        let laws = match &laws {
-            Some(laws) => Some(Box::new(PathLaws::abreast(laws, like)?)),
-            None => None,
-        };
+        let without = PathLaws::of(&[], FlowPath::One, 1.0);
+        let laws = N::each(|lane| all[lane].laws.as_deref().unwrap_or(&without));
+        let has_laws = all.iter().any(|path| path.laws.is_some());
         let of = |value: fn(&Self) -> f64| like.gather(|lane| value(all[lane]));
         Some(Path {
             pack: N::each(|lane| all[lane].pack[0].clone()),
@@ -166,7 +161,7 @@ impl Path {
             fade: PackFade {
                 per_j: of(|path| path.fade.per_j),
             },
-            laws,
+            laws: has_laws.then(|| Box::new(PathLaws::abreast(&laws, like))),
         })
     }
 }

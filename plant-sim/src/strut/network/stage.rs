@@ -29,9 +29,6 @@ use crate::strut::orifice::{unit_drop, unit_flow};
 use crate::strut::pressure::absolute;
 use crate::strut::terms::{LEAST_BUBBLE_PRESSURE, OilColumn, passed, throttled};
 
-/// The longest Newton step in the drops, Pa, that is taken linearly where the model has unmodelled laws: the kinks of
-/// their tables are not looked for.
-const UNLISTED_STEP_PA: f64 = 300.0;
 /// No state has been seen that needs more than a third of this many rounds.
 const MOST_ROUNDS: u32 = 40;
 /// Kinks of the tables can make full Newton steps cycle between two lines. After this many rounds the steps are halved,
@@ -75,10 +72,10 @@ impl<N: Number> Network<N> {
         }
         let mut passes = open + self.valve3_leak;
         let [over_displacement, over_time] = &self.beside_valve3;
-        if let Some(beside) = over_displacement.value_at_least(0.0, at.displacement_m) {
+        if let Some(beside) = over_displacement.opening(at.displacement_m) {
             passes = passes + beside;
         }
-        if let Some(beside) = over_time.value_at_least(0.0, at.time_s) {
+        if let Some(beside) = over_time.opening(at.time_s) {
             passes = passes + beside;
         }
         passes
@@ -212,7 +209,7 @@ impl<N: Number> Network<N> {
                 nearly_linear = nearly_linear & (behind | passes.up_to(zero));
             }
             if LAWS {
-                let longest = zero.of(UNLISTED_STEP_PA);
+                let longest = self.longest_step_pa;
                 nearly_linear = nearly_linear & step1.abs().up_to(longest) & step2.abs().up_to(longest);
             }
             done = done | nearly_linear;

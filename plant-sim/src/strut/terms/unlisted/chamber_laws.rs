@@ -28,15 +28,16 @@ impl ChamberLaws {
         }
     }
 
-    /// Those of several struts side by side, `like` any number of their kind; none where they differ in kind.
-    pub fn abreast<N: Number>(each: &N::Each<&Self>, like: N) -> Option<ChamberLaws<N>> {
+    /// Those of several struts side by side, `like` any number of their kind.
+    pub fn abreast<N: Number>(each: &N::Each<&Self>, like: N) -> ChamberLaws<N> {
         let all = each.as_ref();
-        Some(ChamberLaws {
-            volume: LawTable::abreast(&N::each(|lane| &all[lane].volume))?,
-            loss: LawTable::abreast(&N::each(|lane| &all[lane].loss))?,
-            loss_in_time: Course::abreast(&N::each(|lane| &all[lane].loss_in_time), like)?,
-            mount: LawTable::abreast(&N::each(|lane| &all[lane].mount))?,
-        })
+        let table = |of: fn(&Self) -> &LawTable| LawTable::abreast(&N::each(|lane| of(all[lane])));
+        ChamberLaws {
+            volume: table(|laws| &laws.volume),
+            loss: table(|laws| &laws.loss),
+            loss_in_time: Course::abreast(&N::each(|lane| &all[lane].loss_in_time), like),
+            mount: table(|laws| &laws.mount),
+        }
     }
 }
 
@@ -44,19 +45,19 @@ impl<N: Number> ChamberLaws<N> {
     /// Volume taken up at a gauge pressure, m3, and its derivative, m3/Pa, if there is such a law.
     #[inline(always)]
     pub fn volume(&self, p1_pa: N) -> Option<(N, N)> {
-        self.volume.at(p1_pa)
+        self.volume.added(p1_pa)
     }
 
     /// By how much the mount yields under a force above the static one (N), m, and its derivative, m/N, if there is such a law.
     #[inline(always)]
     pub fn mount_m(&self, force_n: N) -> Option<(N, N)> {
-        self.mount.at(force_n)
+        self.mount.added(force_n)
     }
 
     /// Flow lost at a gauge pressure and a time, m3/s.
     #[inline(always)]
     pub fn loss(&self, p1_pa: N, time_s: N) -> N {
-        let by_pressure = self.loss.value(p1_pa).unwrap_or(p1_pa.of(0.0));
+        let by_pressure = self.loss.amount(p1_pa).unwrap_or(p1_pa.of(0.0));
         by_pressure + self.loss_in_time.sum(time_s)
     }
 }

@@ -55,25 +55,31 @@ impl Repeating {
 
     /// Rate at which the value changes at a time, 1/s.
     fn rate(&self, time_s: f64) -> f64 {
-        let turn = self.turn.at(phase(self.frequency_hz, time_s));
+        let turn = self.turn.added(phase(self.frequency_hz, time_s));
         turn.map_or(0.0, |(_, slope)| self.frequency_hz * slope)
     }
 }
 
 impl<N: Number> Repeating<N> {
-    /// Value at a time, if there is a law.
+    /// Phase at a time, turns, if there is a law.
     #[inline(always)]
-    fn value(&self, time_s: N) -> Option<N> {
+    fn phase(&self, time_s: N) -> Option<N> {
         if self.turn.is_none() {
             return None;
         }
-        self.turn.value((self.frequency_hz * time_s).map(part_of_turn))
+        Some((self.frequency_hz * time_s).map(part_of_turn))
     }
 
-    /// The same, where less than a bound counts as the bound.
+    /// Amount at a time, if there is a law.
     #[inline(always)]
-    fn value_at_least(&self, least: f64, time_s: N) -> Option<N> {
-        Some(self.value(time_s)?.at_least(time_s.of(least)))
+    fn amount(&self, time_s: N) -> Option<N> {
+        self.turn.amount(self.phase(time_s)?)
+    }
+
+    /// Factor at a time that is never less than a bound, if there is a law.
+    #[inline(always)]
+    fn factor(&self, time_s: N, least: f64) -> Option<N> {
+        self.turn.factor(self.phase(time_s)?, least)
     }
 }
 
@@ -99,21 +105,21 @@ impl Course {
         }
     }
 
-    /// Those of several struts side by side, `like` any number of their kind; none where they differ in kind.
-    pub fn abreast<N: Number>(each: &N::Each<&Self>, like: N) -> Option<Course<N>> {
+    /// Those of several struts side by side, `like` any number of their kind.
+    pub fn abreast<N: Number>(each: &N::Each<&Self>, like: N) -> Course<N> {
         let all = each.as_ref();
-        Some(Course {
-            since_start: LawTable::abreast(&N::each(|lane| &all[lane].since_start))?,
+        Course {
+            since_start: LawTable::abreast(&N::each(|lane| &all[lane].since_start)),
             repeating: Repeating {
                 frequency_hz: like.gather_from(all, |course| course.repeating.frequency_hz),
-                turn: LawTable::abreast(&N::each(|lane| &all[lane].repeating.turn))?,
+                turn: LawTable::abreast(&N::each(|lane| &all[lane].repeating.turn)),
             },
-        })
+        }
     }
 
     /// Rate at which the sum changes at a time, 1/s.
     pub fn rate(&self, time_s: f64) -> f64 {
-        self.since_start.at(time_s).map_or(0.0, |(_, slope)| slope) + self.repeating.rate(time_s)
+        self.since_start.added(time_s).map_or(0.0, |(_, slope)| slope) + self.repeating.rate(time_s)
     }
 }
 
@@ -127,15 +133,15 @@ impl<N: Number> Course<N> {
     /// What laws that are added give together at a time.
     #[inline(always)]
     pub fn sum(&self, time_s: N) -> N {
-        let sum = together(self.since_start.value(time_s), self.repeating.value(time_s), N::add);
+        let sum = together(self.since_start.amount(time_s), self.repeating.amount(time_s), N::add);
         sum.unwrap_or(time_s.of(0.0))
     }
 
     /// What laws that multiply give together at a time, neither of them less than `least`; none where there is no law.
     #[inline(always)]
     pub fn product(&self, time_s: N, least: f64) -> Option<N> {
-        let since_start = self.since_start.value_at_least(least, time_s);
-        together(since_start, self.repeating.value_at_least(least, time_s), N::mul)
+        let since_start = self.since_start.factor(time_s, least);
+        together(since_start, self.repeating.factor(time_s, least), N::mul)
     }
 }
 

@@ -62,7 +62,7 @@ impl InstrumentLaws {
                 }
             }
             if keeps_truth {
-                added += self.change.table.value(truth[k] - mean[k]).unwrap_or(0.0);
+                added += self.change.table.amount(truth[k] - mean[k]).unwrap_or(0.0);
             }
             *reading += added;
         }

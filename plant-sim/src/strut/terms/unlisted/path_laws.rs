@@ -92,29 +92,29 @@ impl PathLaws {
         }
     }
 
-    /// Those of several struts side by side, `like` any number of their kind; none where they differ in kind.
-    pub fn abreast<N: Number>(each: &N::Each<&Self>, like: N) -> Option<PathLaws<N>> {
+    /// Those of several struts side by side, `like` any number of their kind.
+    pub fn abreast<N: Number>(each: &N::Each<&Self>, like: N) -> PathLaws<N> {
         let all = each.as_ref();
         let table = |of: fn(&Self) -> &LawTable| LawTable::abreast(&N::each(|lane| of(all[lane])));
         let course = |of: fn(&Self) -> &Course| Course::abreast(&N::each(|lane| of(all[lane])), like);
         let remembered = |of: fn(&Self) -> &Remembered| Remembered::abreast(&N::each(|lane| of(all[lane])), like);
-        Some(PathLaws {
-            series: table(|laws| &laws.series)?,
-            parallel: table(|laws| &laws.parallel)?,
-            groove: table(|laws| &laws.groove)?,
-            groove_in_time: table(|laws| &laws.groove_in_time)?,
-            strength: table(|laws| &laws.strength)?,
-            strength_in_time: course(|laws| &laws.strength_in_time)?,
-            throttle: table(|laws| &laws.throttle)?,
-            valve_in_time: course(|laws| &laws.valve_in_time)?,
-            gas: table(|laws| &laws.gas)?,
-            gas_in_time: course(|laws| &laws.gas_in_time)?,
-            gas_memory: remembered(|laws| &laws.gas_memory)?,
-            gas_energy: remembered(|laws| &laws.gas_energy)?,
+        PathLaws {
+            series: table(|laws| &laws.series),
+            parallel: table(|laws| &laws.parallel),
+            groove: table(|laws| &laws.groove),
+            groove_in_time: table(|laws| &laws.groove_in_time),
+            strength: table(|laws| &laws.strength),
+            strength_in_time: course(|laws| &laws.strength_in_time),
+            throttle: table(|laws| &laws.throttle),
+            valve_in_time: course(|laws| &laws.valve_in_time),
+            gas: table(|laws| &laws.gas),
+            gas_in_time: course(|laws| &laws.gas_in_time),
+            gas_memory: remembered(|laws| &laws.gas_memory),
+            gas_energy: remembered(|laws| &laws.gas_energy),
             static_energy_j: like.gather_from(all, |laws| laws.static_energy_j),
-            pack_energy: remembered(|laws| &laws.pack_energy)?,
-            held_back: table(|laws| &laws.held_back)?,
-        })
+            pack_energy: remembered(|laws| &laws.pack_energy),
+            held_back: table(|laws| &laws.held_back),
+        }
     }
 }
 
@@ -122,27 +122,27 @@ impl<N: Number> PathLaws<N> {
     /// Drop in series with the path at a flow, Pa, and its derivative by the flow, if there is such a law.
     #[inline(always)]
     pub fn series_drop(&self, flow_m3_s: N) -> Option<(N, N)> {
-        self.series.at(flow_m3_s)
+        self.series.added(flow_m3_s)
     }
 
     /// Flow beside the pack at its drop, m3/s, and its derivative by the drop, if there is such a law.
     #[inline(always)]
     pub fn parallel_flow(&self, drop_pa: N) -> Option<(N, N)> {
-        self.parallel.at(drop_pa)
+        self.parallel.added(drop_pa)
     }
 
     /// Flow coefficient of a groove beside the pack at a displacement and a time, m3/s/sqrt(Pa), if there is one.
     #[inline(always)]
     pub fn groove(&self, displacement_m: N, time_s: N) -> Option<N> {
-        let over_displacement = self.groove.value_at_least(0.0, displacement_m);
-        let over_time = self.groove_in_time.value_at_least(0.0, time_s);
+        let over_displacement = self.groove.opening(displacement_m);
+        let over_time = self.groove_in_time.opening(time_s);
         together(over_displacement, over_time, N::add)
     }
 
     /// What the model's drop of the pack is divided by at a displacement and a time, if there is such a law.
     #[inline(always)]
     pub fn weakening(&self, displacement_m: N, time_s: N) -> Option<N> {
-        let by_displacement = self.strength.value_at_least(LEAST_FACTOR, displacement_m);
+        let by_displacement = self.strength.factor(displacement_m, LEAST_FACTOR);
         let by_time = self.strength_in_time.product(time_s, LEAST_FACTOR);
         together(recip(by_displacement), recip(by_time), N::mul)
     }
@@ -162,7 +162,7 @@ impl<N: Number> PathLaws<N> {
     /// What the model's drop of the pack is divided by while its oil holds an energy (J), if there is such a law.
     #[inline(always)]
     pub fn weakening_by_energy(&self, energy_j: N) -> Option<N> {
-        recip(self.pack_energy.table.value_at_least(LEAST_FACTOR, energy_j))
+        recip(self.pack_energy.table.factor(energy_j, LEAST_FACTOR))
     }
 
     /// Energy that the pack's oil holds after a power (W) for a while (s), J; what it was without a law over it.
@@ -177,9 +177,9 @@ impl<N: Number> PathLaws<N> {
     /// The factor on the gas pressure, if there is a law of it.
     #[inline(always)]
     pub fn gas(&self, at: &GasLawInputs<N>) -> Option<GasLawAnswer<N>> {
-        let by_volume = self.gas.value_at_least(LEAST_GAS_FACTOR, at.relative_volume);
+        let by_volume = self.gas.factor(at.relative_volume, LEAST_GAS_FACTOR);
         let by_time = self.gas_in_time.product(at.time_s, LEAST_GAS_FACTOR);
-        let by_change = self.gas_memory.table.value_at_least(LEAST_GAS_FACTOR, at.changed);
+        let by_change = self.gas_memory.table.factor(at.changed, LEAST_GAS_FACTOR);
         let factor = together(together(by_volume, by_time, N::mul), by_change, N::mul);
         if !self.gas_energy.is_none() {
             return Some(self.gas_by_energy(at, factor.unwrap_or(at.energy.of(1.0))));
@@ -202,10 +202,10 @@ impl<N: Number> PathLaws<N> {
         let without = at.duration_s * beside * at.pressure_pa / self.static_energy_j * left;
         let (mut by_flow, mut energy) = (without, at.energy);
         for _ in 0..ENERGY_ROUNDS {
-            by_flow = without * law.table.value_at_least(LEAST_GAS_FACTOR, energy).unwrap_or(one);
+            by_flow = without * law.table.factor(energy, LEAST_GAS_FACTOR).unwrap_or(one);
             energy = at.energy * left + by_flow * at.flow_m3_s;
         }
-        let (factor, slope) = law.table.at(energy).unwrap_or((one, one.of(0.0)));
+        let (factor, slope) = law.table.multiplied(energy).unwrap_or((one, one.of(0.0)));
         GasLawAnswer {
             factor: beside * factor.at_least(one.of(LEAST_GAS_FACTOR)),
             factor_by_flow: beside * slope * by_flow,
@@ -225,7 +225,7 @@ impl<N: Number> PathLaws<N> {
     /// Pressure that the floating piston holds back at a gas volume over the static one, Pa, if there is such a law.
     #[inline(always)]
     pub fn held_back_pa(&self, relative_volume: N) -> Option<N> {
-        self.held_back.value_at_least(0.0, relative_volume)
+        self.held_back.opening(relative_volume)
     }
 }
 
@@ -268,7 +268,7 @@ pub(in crate::strut) fn passed<N: Number>(law: &Course<N>, time_s: N) -> Option<
 /// Factor on a valve's flow at a pressure drop, if there is such a law.
 #[inline(always)]
 pub(in crate::strut) fn throttled<N: Number>(law: &LawTable<N>, drop_pa: N) -> Option<N> {
-    law.value_at_least(LEAST_FACTOR, drop_pa.abs())
+    law.factor(drop_pa.abs(), LEAST_FACTOR)
 }
 
 #[cfg(test)]

@@ -28,13 +28,13 @@ impl Remembered {
         }
     }
 
-    /// Those of several struts side by side, `like` any number of their kind; none where only some of them have one.
-    pub fn abreast<N: Number>(each: &N::Each<&Self>, like: N) -> Option<Remembered<N>> {
+    /// Those of several struts side by side, `like` any number of their kind.
+    pub fn abreast<N: Number>(each: &N::Each<&Self>, like: N) -> Remembered<N> {
         let all = each.as_ref();
-        Some(Remembered {
-            table: LawTable::abreast(&N::each(|lane| &all[lane].table))?,
+        Remembered {
+            table: LawTable::abreast(&N::each(|lane| &all[lane].table)),
             time_constant_s: like.gather_from(all, |law| law.time_constant_s),
-        })
+        }
     }
 }
 

@@ -352,6 +352,10 @@ impl Specimen for Analytic {
         &self.candidates
     }
 
+    fn simulations_at_once(&self) -> usize {
+        12
+    }
+
     fn simulate(&self, hypothesis: &Hypothesis, recording: usize) -> Result<Series, String> {
         let r = &self.recordings[recording];
         let mut out = vec![Vec::with_capacity(r.len()), Vec::with_capacity(r.len())];

@@ -389,6 +389,28 @@ mod tests {
     }
 
     #[test]
+    fn derivatives_at_a_point_that_cannot_be_simulated_are_an_error_of_that_point_only() {
+        let specimen = Recipe::default().make();
+        let evaluation = Evaluation::new(&specimen, &RUN);
+        let nominal = Point::nominal(&specimen);
+        let truths = evaluation.truths(&nominal).expect("simulated");
+        let with = |effect, value| nominal.with_effect(&specimen, effect, &[value]);
+        let points = [with(CUBIC, 0.0), with(FRAGILE, 2.0), with(CUBIC, 0.1)];
+        let coordinates = [2];
+        let answers = evaluation.sensitivities_at_each(&points.each_ref().map(|point| Wanted {
+            point,
+            coordinates: &coordinates,
+            truths: &truths,
+        }));
+        let [first, broken, last] = answers.try_into().expect("one each");
+        assert!(matches!(broken, Err(DiagnoseError::Simulation { .. })));
+        let columns = |answer: Result<Vec<Sensitivity>, _>| answer.expect("derivatives")[0].columns.clone();
+        assert_eq!(columns(first).len(), 1);
+        let alone = evaluation.sensitivities(&points[2], &coordinates, Some(&truths));
+        assert_eq!(columns(last), columns(alone));
+    }
+
+    #[test]
     fn several_points_answer_as_each_does_alone() {
         let specimen = Recipe::default().make();
         let evaluation = Evaluation::new(&specimen, &RUN);

@@ -8,9 +8,9 @@
 //! |---|---|
 //! | `beside` | the model so far, and a candidate beside it |
 //! | `look` | the recordings on which a candidate is looked at |
-//! | `steps` | the steps of a candidate to its best values |
+//! | `steps` | the steps of candidates to their best values, side by side |
 //! | `starts` | where candidates begin, and which of them go on |
-//! | `law` | the same of a law without a name, by its shape |
+//! | `law` | the same of laws without a name, by their shapes |
 //! | `swing` | the same of a law that swings in time, by its frequency |
 
 mod beside;

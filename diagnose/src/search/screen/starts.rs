@@ -533,10 +533,12 @@ mod tests {
         let mut specimen = with_cubic(0.3);
         specimen.move_start(FRAGILE, 2.0);
         let (problem, calibrated) = calibrated(&specimen);
-        let fits = Screen::new(&problem, &calibrated)
-            .and_then(|s| s.all(&[FRAGILE, CUBIC]))
-            .expect("screened");
-        assert!(fits[0].is_none() && fits[1].is_some());
+        let screen = Screen::new(&problem, &calibrated).expect("a screen");
+        // Also of those that begin side by side with it.
+        let groups = screen.groups(&[FRAGILE, CUBIC, FRICTION]);
+        assert!(groups.iter().any(|group| group.len() > 1), "{groups:?}");
+        let fits = screen.all(&[FRAGILE, CUBIC, FRICTION]).expect("screened");
+        assert!(fits[0].is_none() && fits[1].is_some() && fits[2].is_some());
     }
 
     #[test]

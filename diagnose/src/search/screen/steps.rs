@@ -1,4 +1,5 @@
-//! The steps of a candidate beside the model so far: damped Gauss-Newton steps of its own coordinates, to which those of the model respond linearly.
+//! The steps of candidates beside the model so far: damped Gauss-Newton steps of the own coordinates of each, to which those of the model respond linearly.
+//! Several candidates step side by side, each on its own, so that their simulations fill the vectors of the processor.
 
 use std::borrow::Cow;
 

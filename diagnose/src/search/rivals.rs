@@ -24,7 +24,7 @@ enum Kind {
     Number,
     /// Another form of the effect, which speaks no less for it.
     Form,
-    /// A name of physics in the place of a wrong number. It takes the place where it does as well.
+    /// A name in the place of what has none. It takes the place where it does as well.
     Name,
 }
 
@@ -46,7 +46,7 @@ impl Selector<'_, '_> {
             let (forms, rivals): (Vec<usize>, Vec<usize>) =
                 (open.into_iter()).partition(|&c| is_equal_form(self.candidate(c), effect));
             let names = (rivals.iter().copied())
-                .filter(|&c| is_name_of_number(self.candidate(c), effect))
+                .filter(|&c| is_name_of(self.candidate(c), effect))
                 .collect();
             for (kind, candidates) in [
                 (Kind::Other, rivals),
@@ -143,7 +143,7 @@ impl Selector<'_, '_> {
     }
 
     /// True if the rival belongs into the model in the place of the effect: it is clearly better, or it does as well and is the same effect in
-    /// fewer places (one damper fades, not both) or a name in the place of a wrong number.
+    /// fewer places (one damper fades, not both) or a name in the place of what has none.
     fn takes_the_place(&self, rival: &Rival, full: &Fit, candidate: usize, best: &Fit, gain: f64) -> bool {
         let criteria = self.criteria();
         let named = |fit: &Fit| fit.point.effects.iter().all(|&e| !self.candidate(e).is_unlisted());
@@ -161,7 +161,7 @@ impl Selector<'_, '_> {
             && other.parameters.len() < effect.parameters.len()
             && !self.accepts(&rival.lead, 0.0);
         let certainly = !is_number || self.improves(best, full, 0.0);
-        let named_as_well = is_name_of_number(other, effect) && !self.improves(full, best, 0.0);
+        let named_as_well = is_name_of(other, effect) && !self.improves(full, best, 0.0);
         ((clearly && certainly) || simpler || named_as_well) && !self.predicts_recordings_worse(best, full)
     }
 }
@@ -177,9 +177,12 @@ fn includes(wider: &Candidate, effect: &Candidate) -> bool {
     law || more_places || more_numbers
 }
 
-/// True if a candidate is physics with a name and the effect is a wrong number.
-fn is_name_of_number(other: &Candidate, effect: &Candidate) -> bool {
-    effect.is_believed_number && !other.is_unlisted() && !other.is_instrument_fault()
+/// True if a candidate has a name and may be what the effect, which has none, is: physics of a wrong number, and of a law what is at its place with no
+/// more numbers.
+fn is_name_of(other: &Candidate, effect: &Candidate) -> bool {
+    let of_number = effect.is_believed_number && !other.is_instrument_fault();
+    let of_law = effect.is_law() && other.place == effect.place && other.parameters.len() <= effect.parameters.len();
+    !other.is_unlisted() && (of_number || of_law)
 }
 
 /// True if a candidate is another form of the same effect with as many numbers.
@@ -264,6 +267,19 @@ mod tests {
         };
         assert_eq!(becomes(NEARLY_CUBIC, CUBIC), Some(vec![NEARLY_CUBIC]));
         assert_eq!(becomes(FRICTION, CUBIC), None);
+    }
+
+    #[test]
+    fn a_name_takes_the_place_of_a_law_at_its_place_if_it_does_as_well() {
+        let becomes = |site: Site, truth: usize| {
+            let mut specimen = specimen(&[(truth, &[0.4])], &[NEARLY_CUBIC, FRICTION, CUBIC]);
+            specimen.take_name(CUBIC, site);
+            better(usual(&specimen, &[(CUBIC, &[0.3])]))
+        };
+        assert_eq!(becomes(Site::Chamber, CUBIC), Some(vec![NEARLY_CUBIC]));
+        assert_eq!(becomes(Site::Mount, CUBIC), None);
+        // Friction explains next to nothing of it.
+        assert_eq!(becomes(Site::MainSeal, CUBIC), None);
     }
 
     /// A vibration `a sin(w t)` is orthogonal to all else in the model, so that leaving it out costs the sum of its squares

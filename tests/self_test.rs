@@ -176,6 +176,33 @@ fn a_spot_between_the_points_of_a_table_and_a_change_at_a_moment_are_found() {
     }
 }
 
+/// A stop whose stiffness was fitted to nothing at half its clearance, and a displacement that is read by half, which six other effects together did not explain.
+#[test]
+fn an_effect_is_not_left_in_a_local_minimum_and_a_gross_fault_of_the_displacement_is_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (term, size) in [("bump_stop", "3"), ("sensor_gain", "300")] {
+        let campaign = format!("5_{term}_21_{size}");
+        let folder = folder.path().join(term);
+        std::fs::create_dir(&folder).expect("a folder");
+        diagnose_saved(&folder, &format!("--terms {term} --seed 5 --campaigns 22"), &campaign);
+        let read = |name: &str| -> Value {
+            let text = std::fs::read_to_string(folder.join(name)).expect(name);
+            serde_json::from_str(&text).expect("JSON")
+        };
+        let effects = read("found/report.json")["effects"].take();
+        let truth = read(&format!("saved/{campaign}/answer.json"))["truth"].take();
+        let effects = effects.as_array().expect("a list");
+        assert_eq!((effects.len(), &effects[0]["id"]), (1, &term.into()), "{effects:?}");
+        for number in truth.as_array().expect("a list") {
+            let key = number["key"].as_str().expect("a key");
+            let ends = &effects[0]["parameters"][key]["ci95"];
+            let [low, high] = [0, 1].map(|end| ends[end].as_f64().expect("an end"));
+            let truth = number["value"].as_f64().expect("a number");
+            assert!(low <= truth && truth <= high, "{key}: {truth} in {low} to {high}");
+        }
+    }
+}
+
 /// Under all that the recordings hold a mount that yields does the same as a larger volume of oil that yields.
 #[test]
 fn a_number_that_may_be_wrong_in_the_place_of_an_effect_is_said_with_its_value() {

@@ -240,6 +240,12 @@ impl Acceptance {
     pub fn least_gain_of(&self, residuals: f64) -> f64 {
         self.least_gain.max(self.least_gain_per_residual * residuals)
     }
+
+    /// By how much the cost of a fit must be lower than that of a known one of the same effects to be another minimum.
+    #[must_use]
+    pub fn gain_of_other_minimum(&self) -> f64 {
+        self.better_start * self.least_gain
+    }
 }
 
 /// When a model counts as complete.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use strum::Display;
 
 use crate::error::DiagnoseError;
-use crate::estimation::{LeastSquares, Point};
+use crate::estimation::{LeastSquares, Point, interval};
 use crate::experiment;
 use crate::locate::{ChangedRelation, Location, locate, relations_changed_alone};
 use crate::search::{Progress, Selection, select};
@@ -113,7 +113,8 @@ impl Diagnosis {
             calibrated: held_out_residuals(problem, calibrated)?,
             improved: held_out_residuals(problem, best)?,
         };
-        let estimates = estimate::estimates(problem, best)?;
+        let derived = interval::derived_from_both_sides(problem, best)?;
+        let estimates = estimate::estimates(problem, &derived)?;
         let locations = locate(problem, &selection, &residuals.calibrated, &residuals.improved)?;
         let toml = |point: &Point| (specimen.model_toml(&point.hypothesis(specimen))).map_err(DiagnoseError::Output);
         Ok(Self {
@@ -125,7 +126,7 @@ impl Diagnosis {
             changed_relations: relations_changed_alone(specimen, &selection),
             channels: ChannelFigures::of(problem, &given, &residuals, &held_out),
             calibration: estimate::calibration(problem, best, &estimates),
-            correlations: estimate::correlations(problem, best),
+            correlations: estimate::correlations(problem, &derived),
             whiteness: whiteness(specimen, &held_out.improved),
             residuals,
             held_out,

@@ -78,8 +78,7 @@ impl Fits {
 
     /// The known fit of some effects, unless this cost is lower by enough to matter.
     fn known_unless(&self, problem: &LeastSquares<'_>, effects: &[usize], cost: f64) -> Option<&Fit> {
-        let acceptance = &problem.criteria.acceptance;
-        let matters = acceptance.better_start * acceptance.least_gain;
+        let matters = problem.criteria.acceptance.gain_of_other_minimum();
         (self.known.get(effects)).filter(|known| cost > known.cost - matters)
     }
 }

@@ -115,17 +115,20 @@ pub fn grow(
             continue;
         }
         let incomplete = selector.held_out_ratio(&best) > selector.complete_up_to(&best);
-        if incomplete && restarted_in_vain.as_ref() != Some(&best.point) {
+        if restarted_in_vain.as_ref() != Some(&best.point) {
             if let Some(better) = selector.restarted(&best)? {
                 best = better;
                 continue;
             }
-            if let Some(better) = selector.reshaped(&best, open)? {
+            if incomplete && let Some(better) = selector.reshaped(&best, open)? {
                 best = better;
                 continue;
             }
             restarted_in_vain = Some(best.point.clone());
-            if let (false, Some(split)) = (full, selector.split(&best)?) {
+            if incomplete
+                && !full
+                && let Some(split) = selector.split(&best)?
+            {
                 best = split;
                 continue;
             }

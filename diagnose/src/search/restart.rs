@@ -19,26 +19,32 @@ const STEPS_OF_SIZES: usize = 2;
 const DAMPING_OF_SIZES: f64 = 1e-9;
 /// Starts whose cost differs by less from that of the fit, as a part of it, are where the fit is.
 const SAME_COST: f64 = 1e-3;
+/// A size below this, in coordinates of order one, is none.
+const NO_SIZE: f64 = 1e-3;
 /// Numbers that differ by less, in coordinates of order one, are about the same.
 const SAME_SHAPE: f64 = 0.3;
 
 impl Selector<'_, '_> {
     /// The model fitted on where its fit ended before it had converged, or fitted again from other starts of one of its effects;
     /// `None` if neither ends lower by what an effect must gain. Only effects with numbers besides their size are started again:
-    /// of a size alone screening has tried all.
+    /// of a size alone screening has tried all. Where the noise is reached, only those are that have lost one of their sizes.
     pub fn restarted(&mut self, best: &Fit) -> Result<Option<Fit>, DiagnoseError> {
-        let least = self
-            .criteria()
-            .acceptance
-            .least_gain_of(self.problem.residuals() as f64);
         let continued = self.criteria().fitting.continued;
-        if !best.converged {
+        let has_misfit = !self.reaches_noise(best);
+        let least = match has_misfit {
+            true => (self.criteria().acceptance).least_gain_of(self.problem.residuals() as f64),
+            false => self.criteria().acceptance.gain_of_other_minimum(),
+        };
+        if has_misfit && !best.converged {
             let on = fit(self.problem, best.point.clone(), continued)?;
             if on.cost < best.cost - least && self.held_out_ratio(&on) < self.held_out_ratio(best) {
                 return self.fitted(on.point).map(Some);
             }
         }
         for position in 0..best.point.effects.len() {
+            if !has_misfit && !self.has_lost_a_size(&best.point, position) {
+                continue;
+            }
             let mut begun = Vec::new();
             for start in self.other_starts(best, position)? {
                 let quick = if_simulated(fit(self.problem, start, self.criteria().fitting.quick))?;
@@ -53,6 +59,16 @@ impl Selector<'_, '_> {
             }
         }
         Ok(None)
+    }
+
+    /// True if one of the sizes of the effect at a position has been fitted to nothing beside others that have not: a stop of a stiffness of zero, whose
+    /// clearance and progression have taken its part, is as likely the end of a wrong way as a stop that is purely progressive.
+    fn has_lost_a_size(&self, point: &Point, position: usize) -> bool {
+        let parameters = &self.candidate(point.effects[position]).parameters;
+        let own = point.coordinates_of(self.specimen(), position);
+        let sizes = (parameters.iter().zip(own)).filter(|(p, _)| p.is_size);
+        let (lost, kept): (Vec<usize>, Vec<usize>) = sizes.map(|(_, k)| k).partition(|&k| point.z[k].abs() < NO_SIZE);
+        !lost.is_empty() && !kept.is_empty()
     }
 
     /// True if two points have about the same numbers, sizes apart, for the effect at a position: the one is on its way back to
@@ -218,6 +234,19 @@ mod tests {
             "{sizes:?}"
         );
         assert!(cost < before && problem.cost_at(&point).expect("a cost") == cost);
+    }
+
+    #[test]
+    fn a_size_is_lost_where_it_is_nothing_beside_another() {
+        let specimen = Recipe::default().make();
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let selector = Selector::new(&problem);
+        let lost = |effect: usize, sizes: &[f64]| {
+            let point = Point::nominal(&specimen).with_effect(&specimen, effect, sizes);
+            selector.has_lost_a_size(&point, 0)
+        };
+        assert!(lost(FRICTION_OF_BOTH, &[0.0, 0.1]) && lost(FRICTION_OF_BOTH, &[0.1, 1e-6]));
+        assert!(!lost(FRICTION_OF_BOTH, &[0.1, 0.1]) && !lost(FRICTION_OF_BOTH, &[0.0, 0.0]) && !lost(CUBIC, &[0.0]));
     }
 
     #[test]

@@ -360,6 +360,7 @@ impl<'a> Ruler<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::estimation::normal_equations::{assemble, sum};
     use crate::estimation::{LeastSquares, fit};
     use crate::search::Screen;
 
@@ -420,6 +421,48 @@ mod tests {
             ratio < 1.06 && (level - 1.0).abs() < 0.05 && (volume - 1.0).abs() < 0.1,
             "{ratio} {found:?} {:?}",
             g.truth
+        );
+    }
+
+    /// Where the displacement is read with an offset, stops that are as much further away and gases that are filled for it do the same: of the offset nothing
+    /// is known but its tolerance, however gross the stops are.
+    #[test]
+    fn gross_stops_do_not_say_where_the_displacement_is_zero() {
+        let g = generate("5:bump_stop:9:300", &[(EffectId::BumpStop, 300.0)], &[], None).unwrap();
+        let mut without = g.complete;
+        let stops = without.effects.bump_stop.take().unwrap();
+        let strut = TwoStageStrut::new(without, g.recordings).unwrap();
+        let candidate = (strut.candidates().iter().position(|c| c.id == EffectId::BumpStop)).unwrap();
+        let far = |end: usize| strut.candidates()[candidate].parameters[end].upper;
+        let numbers = [
+            stops.bump_clearance_m.min(far(0)),
+            stops.rebound_clearance_m.min(far(1)),
+            stops.stiffness_n_m,
+            stops.progression_n_m3,
+        ];
+        let point = Point::nominal(&strut).with_effect(&strut, candidate, &numbers);
+        let stop = AtomicBool::new(false);
+        let problem = LeastSquares::new(&strut, &stop);
+        let all: Vec<usize> = (0..point.z.len()).collect();
+        let offset = (strut.calibration().iter())
+            .position(|p| p.key == "displacement_offset_m")
+            .unwrap();
+        let deviation = |evaluation: &Evaluation<'_>| {
+            let answers = evaluation.sensitivities(&point, &all, None).unwrap();
+            let z = vec![0.0; all.len()];
+            let (h, _) = sum(&assemble(&problem.blocks, &answers), &point.prior(&strut), &z);
+            // The clearance of a stop that is never touched shows nowhere.
+            let h = h + DMatrix::identity(all.len(), all.len()) * 1e-9;
+            h.try_inverse().unwrap()[(offset, offset)].sqrt()
+        };
+        let (one_side, both_sides) = (
+            deviation(&problem.evaluation),
+            deviation(&problem.evaluation.from_both_sides()),
+        );
+        // One is what the tolerance says.
+        assert!(
+            one_side < 0.3 && both_sides > 0.8 && both_sides < 1.001,
+            "{one_side} {both_sides}"
         );
     }
 

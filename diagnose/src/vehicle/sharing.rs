@@ -105,7 +105,7 @@ fn shared_by_all(
 fn estimated(strut: &LeastSquares<'_>, diagnosis: &Diagnosis, position: usize) -> Result<Vec<[f64; 2]>, DiagnoseError> {
     let best = &diagnosis.selection.best;
     let parameters = best.point.parameters(strut.specimen());
-    let deviations = interval::deviations(strut, best)?;
+    let deviations = interval::deviations(strut, &interval::derived_from_both_sides(strut, best)?)?;
     let own = best.point.coordinates_of(strut.specimen(), position);
     Ok(own
         .map(|k| [0.0, deviations[k]].map(|step| parameters[k].value(best.point.z[k] + step)))

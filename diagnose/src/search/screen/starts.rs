@@ -200,11 +200,12 @@ impl Screen<'_, '_> {
             .collect()
     }
 
-    /// Larger sizes of a candidate with the cost of each, the lowest first; none of a law or an instrument, or where the model so far is not far off.
+    /// Larger sizes of a candidate with the cost of each, the lowest first; none of a law or of an instrument that only shows, or where the model so far is
+    /// not far off. A displacement that is read by half drives the model by half, and is as far from linear as a gross effect of the specimen.
     fn larger_sizes(&self, candidate: usize) -> Result<Vec<(f64, Vec<f64>)>, DiagnoseError> {
         let description = &self.specimen().candidates()[candidate];
         let mut sizes = Vec::new();
-        if description.is_law() || description.is_instrument_fault() || !is_gross(self.problem, self.fit) {
+        if description.is_law() || self.leaves_physics_alone(candidate) || !is_gross(self.problem, self.fit) {
             return Ok(sizes);
         }
         for start in description.all_starts() {

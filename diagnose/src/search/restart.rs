@@ -27,7 +27,8 @@ const SAME_SHAPE: f64 = 0.3;
 impl Selector<'_, '_> {
     /// The model fitted on where its fit ended before it had converged, or fitted again from other starts of one of its effects;
     /// `None` if neither ends lower by what an effect must gain. Only effects with numbers besides their size are started again:
-    /// of a size alone screening has tried all. Where the noise is reached, only those are that have lost one of their sizes.
+    /// of a size alone screening has tried all. Where the noise is reached, only those are that have lost one of their sizes, and
+    /// they need gain no more than tells two minima apart.
     pub fn restarted(&mut self, best: &Fit) -> Result<Option<Fit>, DiagnoseError> {
         let continued = self.criteria().fitting.continued;
         let has_misfit = !self.reaches_noise(best);

@@ -45,6 +45,11 @@ pub const SECOND_OF_PAIR: usize = 10;
 
 /// A law without a name: a friction of the first output whose level swings; amplitude, phase (rad) and frequency (Hz).
 pub const SWING: usize = 11;
+/// A vibration of the first output that is 200 times weaker before [`LATE_FROM_S`]: what is before says next to nothing of its one number.
+pub const LATE: usize = 12;
+
+/// When the late vibration begins.
+const LATE_FROM_S: f64 = 60.0;
 
 /// Frequency of the vibration, rad/s.
 pub const FREQUENCY: f64 = 2.3;
@@ -146,7 +151,7 @@ impl Analytic {
 impl Recipe {
     /// Makes the specimen: simulates the truth and adds noise.
     pub fn make(&self) -> Analytic {
-        let mut candidates: Vec<Candidate> = (0..=SWING).map(candidate).collect();
+        let mut candidates: Vec<Candidate> = (0..=LATE).map(candidate).collect();
         for (k, c) in candidates.iter_mut().enumerate() {
             if !self.candidates.contains(&k) {
                 c.untestable = Some("not part of this test".to_owned());
@@ -257,6 +262,7 @@ fn candidate(index: usize) -> Candidate {
         ),
         FRAGILE => (EffectId::BumpStop, Site::EndStop.into(), vec![positive("stress")]),
         FIRST_OF_PAIR => (EffectId::DampingFade, Site::Mount.into(), vec![amount("first")]),
+        LATE => (EffectId::ValveDelay, Site::Mount.into(), vec![amount("late")]),
         SECOND_OF_PAIR => (EffectId::EntrainedAir, Site::Mount.into(), vec![amount("second")]),
         _ => (
             EffectId::SealFriction,
@@ -314,6 +320,10 @@ fn law(index: usize, v: &[f64], t: f64, x: f64, speed: f64) -> Result<[f64; 2], 
         FRAGILE if v[0] > 1.0 => return Err("broken".to_owned()),
         FRICTION_OF_BOTH => [v[0] * direction, v[1] * direction],
         FIRST_OF_PAIR => [v[0] * libm::sin(5.0 * t), 0.0],
+        LATE => {
+            let part = if t < LATE_FROM_S { 0.02 } else { 4.0 };
+            [v[0] * part * libm::sin(5.0 * t), 0.0]
+        }
         SECOND_OF_PAIR => [-v[0] * (0.95 * libm::sin(5.0 * t) + 0.31 * libm::sin(7.0 * t)), 0.0],
         _ => [0.0, 0.0],
     })

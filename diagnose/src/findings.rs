@@ -104,6 +104,9 @@ impl Findings {
         if !diagnosis.effects.is_empty() {
             let _ = write!(text, "{}", page::effects_table(diagnosis));
         }
+        if let Some(sentence) = page::complete_where_fitted(diagnosis) {
+            let _ = writeln!(text, "{sentence}");
+        }
         for equation in page::equations(diagnosis) {
             let _ = writeln!(text, "{equation}");
         }

@@ -120,6 +120,10 @@ pub fn headline(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> String {
     if diagnosis.selection.incomplete && diagnosis.verdict() == Verdict::MissingPhysics {
         text += " Part of the misfit remains, and none of the effects that were tried explains it.";
     }
+    if let Some(sentence) = complete_where_fitted(diagnosis) {
+        text += " ";
+        text += &sentence;
+    }
     for effect in &diagnosis.selection.effects {
         let said = |c: &Candidate| format!("{} {}", of(c.id).called(kind, &c.label), words::at(&c.place));
         if let Some(rival) = effect.ambiguous_rival() {
@@ -141,6 +145,18 @@ pub fn headline(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> String {
         }
     }
     text
+}
+
+/// Says why a model counts as complete although its held-out error is large; `None` where that is not so.
+#[must_use]
+pub fn complete_where_fitted(diagnosis: &Diagnosis) -> Option<String> {
+    diagnosis.selection.complete_where_fitted.map(|fitted| {
+        format!(
+            "Where the model was fitted, the error is {} times the noise: nothing is missing there. It is larger where held \
+             out because one part of the recordings alone determines a number.",
+            significant(fitted, 3)
+        )
+    })
 }
 
 /// The word for the effects found: the first for one effect, the second for several.

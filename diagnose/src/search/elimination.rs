@@ -13,7 +13,7 @@ impl Selector<'_, '_> {
     pub fn reduced(&mut self, grown: Fit) -> Result<Fit, DiagnoseError> {
         let mut fraction = self.criteria().acceptance.least_fraction;
         let mut best = self.eliminate(grown, fraction)?;
-        if self.held_out_ratio(&best) > self.complete_up_to(&best) {
+        if !self.is_complete(&best) {
             fraction = self.fraction_of_incomplete();
             best = self.eliminate(best, fraction)?;
         }

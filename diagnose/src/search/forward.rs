@@ -22,9 +22,8 @@ impl Selector<'_, '_> {
         };
         let gain_of = |fit: &Fit| self.gain(self.held_out(best), self.held_out(fit)).total;
         let (by_law, by_name) = (gain_of(&any), gain_of(&named));
-        let completes = |fit: &Fit| self.held_out_ratio(fit) <= self.complete_up_to(fit);
         let leads = by_law - by_name > self.criteria().rivalry.lead_over_named * by_name
-            || (completes(&any) && !completes(&named));
+            || (self.is_complete(&any) && !self.is_complete(&named));
         Ok(Some(if leads { any } else { named }))
     }
 

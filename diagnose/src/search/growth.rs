@@ -45,7 +45,7 @@ pub fn grown_with_laws_first(
             .filter(|&&e| !selector.candidate(e).is_unlisted()))
         .count()
     };
-    let incomplete = selector.held_out_ratio(best) > selector.complete_up_to(best);
+    let incomplete = !selector.is_complete(best);
     // As many names as a model may have leave no room for a law.
     let no_room = grown.best.point.effects.len() >= acceptance.most_effects;
     let names_came_first = (grown.open != Open::Names || no_room) && named(&grown.best) > 0;
@@ -114,7 +114,7 @@ pub fn grow(
             best = selector.with_last_law_reshaped(next)?;
             continue;
         }
-        let incomplete = selector.held_out_ratio(&best) > selector.complete_up_to(&best);
+        let incomplete = !selector.is_complete(&best);
         if restarted_in_vain.as_ref() != Some(&best.point) {
             if let Some(better) = selector.restarted(&best)? {
                 best = better;

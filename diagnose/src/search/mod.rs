@@ -19,6 +19,7 @@
 //! gain may be a wrong law that bends towards a missing one: a law must then explain much more to be reported.
 
 mod combinations;
+mod completeness;
 mod done;
 mod elimination;
 pub mod evidence;

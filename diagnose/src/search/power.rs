@@ -38,7 +38,7 @@ impl Selector<'_, '_> {
     /// The least size of each size of a candidate with a name, as screened beside a model. None where the model is not complete: what
     /// remains may then hide an effect of any size.
     pub fn least_sizes(&self, best: &Fit, candidate: usize, screened: &Fit) -> Vec<LeastSize> {
-        if self.candidate(candidate).is_unlisted() || self.held_out_ratio(best) > self.complete_up_to(best) {
+        if self.candidate(candidate).is_unlisted() || !self.is_complete(best) {
             return vec![];
         }
         let own = best.point.z.len();

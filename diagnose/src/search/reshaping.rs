@@ -31,7 +31,7 @@ impl Selector<'_, '_> {
             .effects
             .last()
             .is_some_and(|&last| self.candidate(last).is_law());
-        if !last_is_law || self.held_out_ratio(&best) <= self.complete_up_to(&best) {
+        if !last_is_law || self.is_complete(&best) {
             return Ok(best);
         }
         let other = self.reshaped_at(&best, best.point.effects.len() - 1)?;

@@ -69,7 +69,7 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
     }
     selector.score_added(&screened, &best, &mut scores);
     let improved_ratio = selector.held_out_ratio(&best);
-    let incomplete = improved_ratio > selector.complete_up_to(&best);
+    let incomplete = !selector.is_complete(&best);
     let of_excitation_hz = if incomplete && open != Open::Names {
         let left = problem.evaluation.residuals_at(&best.point)?;
         let left: Vec<&Series> = left.iter().collect();
@@ -81,6 +81,7 @@ pub fn select(problem: &LeastSquares<'_>, progress: Progress<'_>) -> Result<Sele
         calibrated_ratio: selector.held_out_ratio(&calibrated),
         improved_ratio,
         incomplete,
+        complete_where_fitted: selector.complete_where_fitted(&best),
         effects: comparison.effects,
         of_excitation_hz,
         law_pairs,
@@ -106,7 +107,7 @@ impl Selector<'_, '_> {
     /// go on.
     fn open_once_more(&self, reduced: &Fit, grown: &Grown) -> Option<Open> {
         let has_lost = reduced.point.effects.len() < grown.best.point.effects.len();
-        let incomplete = self.held_out_ratio(reduced) > self.complete_up_to(reduced);
+        let incomplete = !self.is_complete(reduced);
         let worth_it = has_lost && incomplete && self.can_have_two_laws();
         match self.laws_of(&reduced.point) {
             0 if worth_it => Some(Open::Laws),

@@ -31,6 +31,8 @@ pub struct Selection {
     pub law_pairs: LawPairs,
     /// True if the improved model is not complete: something predictable or large remains.
     pub incomplete: bool,
+    /// Noise ratio on the blocks that the improved model was fitted to, if it is complete by them and not by those held out.
+    pub complete_where_fitted: Option<f64>,
 }
 
 /// Whether laws without a name were tried in pairs.

@@ -215,12 +215,6 @@ impl<'p, 'a> Selector<'p, 'a> {
         }
     }
 
-    /// Whether a model leaves so little that no law without a name is looked for.
-    pub fn reaches_noise(&self, fit: &Fit) -> bool {
-        let limit = (self.criteria().completeness.law_noise_ratio).max(self.floor(fit));
-        self.held_out_ratio(fit) <= limit
-    }
-
     /// Noise ratio that a fitted model would reach if it were complete.
     pub fn floor(&self, fit: &Fit) -> f64 {
         self.problem.floor(fit)

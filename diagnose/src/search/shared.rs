@@ -56,11 +56,11 @@ pub fn with_shared(
         (score.added, score.least_sizes) = (None, vec![]);
     }
     selector.score_added(&screened, &best, &mut scores);
-    let improved_ratio = selector.held_out_ratio(&best);
     Ok(Some(Selection {
         effects,
-        improved_ratio,
-        incomplete: improved_ratio > selector.complete_up_to(&best),
+        improved_ratio: selector.held_out_ratio(&best),
+        incomplete: !selector.is_complete(&best),
+        complete_where_fitted: selector.complete_where_fitted(&best),
         best,
         scores,
         ..found.clone()

@@ -4,6 +4,7 @@
 //! [`hydraulics`](super::hydraulics).
 
 mod oil_swing;
+mod seal_shear;
 mod snapshot;
 
 use oleo_interface::{StrutValves, Valve};
@@ -24,6 +25,7 @@ use super::terms::{LawArgument, LawPlace, ValveTransition, law_at, longest_step_
 use super::valve::ValveMotion;
 
 use oil_swing::OilSwing;
+use seal_shear::SealShear;
 pub use snapshot::StrutSnapshot;
 
 /// Longest step while something moves fast, s.
@@ -130,6 +132,8 @@ pub struct Strut {
     transition: Option<ValveTransition>,
     /// The oil column of line 2, where it has mass.
     swing: Option<OilSwing>,
+    /// The seals of the floating pistons, where they rub.
+    seals: Option<SealShear>,
 
     time_s: f64,
     actuator_m: f64,
@@ -201,6 +205,7 @@ impl Strut {
         }
         Ok(Self {
             swing: OilSwing::of(&hydraulics.network, model.gas.temperature_k),
+            seals: SealShear::of(effects.accumulator_piston_friction.as_ref()),
             hydraulics,
             rod: RodForces::of(effects),
             response_polynomial_s: model.response_polynomial_s(),
@@ -293,6 +298,9 @@ impl Strut {
         let change_m_s = (from_m_s - self.speed_m_s).abs() + (to_m_s - from_m_s).abs();
         let kicked_s = (self.swing.as_ref()).map_or(f64::INFINITY, |swing| swing.longest_step_of_kick_s(change_m_s));
         let fast = from_m_s.abs() > SLOW_M_S || to_m_s.abs() > SLOW_M_S || (to_m_s - from_m_s).abs() > SLOW_M_S;
+        if fast && let Some(seals) = &mut self.seals {
+            seals.moves_fast_until(self.time_s + duration_s);
+        }
         Interval {
             start_s: self.time_s,
             duration_s,
@@ -383,7 +391,8 @@ impl Strut {
     #[inline(always)]
     fn step_length(&self, now_s: f64, left_s: f64, limit_s: f64) -> f64 {
         let swing_s = (self.swing.as_ref()).map_or(f64::INFINITY, OilSwing::longest_step_s);
-        let limit_s = limit_s.min(self.longest_step_s).min(swing_s);
+        let shear_s = (self.seals.as_ref()).map_or(f64::INFINITY, |seals| seals.longest_step_s(now_s, self.settled_s));
+        let limit_s = limit_s.min(self.longest_step_s).min(swing_s).min(shear_s);
         if now_s < self.settled_s {
             return self.step_length_while_valves_move(now_s, left_s, limit_s);
         }

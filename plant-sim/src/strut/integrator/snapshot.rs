@@ -4,6 +4,7 @@ use oleo_interface::StrutValves;
 use serde::{Deserialize, Serialize};
 
 use super::oil_swing::SwingCourse;
+use super::seal_shear::ShearCourse;
 use super::{Strut, settled_s};
 use crate::model_file::InvalidValue;
 use crate::strut::hydraulics::Flowing;
@@ -27,6 +28,7 @@ pub struct StrutSnapshot {
     valves: [ValveMotion; 3],
     friction_n: f64,
     swing: SwingCourse,
+    shear: ShearCourse,
 }
 
 impl Strut {
@@ -61,6 +63,10 @@ impl Strut {
                 .swing
                 .as_ref()
                 .map_or_else(SwingCourse::default, |swing| swing.course),
+            shear: self
+                .seals
+                .as_ref()
+                .map_or_else(ShearCourse::default, |seals| seals.course),
         }
     }
 
@@ -81,6 +87,9 @@ impl Strut {
         self.rod.set_friction_n(kept.friction_n);
         if let Some(swing) = &mut self.swing {
             swing.course = kept.swing;
+        }
+        if let Some(seals) = &mut self.seals {
+            seals.course = kept.shear;
         }
     }
 

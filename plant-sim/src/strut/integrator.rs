@@ -205,7 +205,7 @@ impl Strut {
         }
         Ok(Self {
             swing: OilSwing::of(&hydraulics.network, model.gas.temperature_k),
-            seals: SealShear::of(effects.accumulator_piston_friction.as_ref()),
+            seals: SealShear::of(effects),
             hydraulics,
             rod: RodForces::of(effects),
             response_polynomial_s: model.response_polynomial_s(),

@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::strut::flow_path::FlowPath;
-use crate::strut::terms::AccumulatorPistonFriction;
+use crate::strut::terms::{Effects, most_held_back_pa};
 
 /// Length of a step times the pressure that a seal holds back, Pa s. At 5 bar, 0.6 ms, recordings of a strut are met within their noise where the flow
 /// stops within a tenth of a second from 0.5 m/s; at 0.2 bar steps are as long as they are without a seal.
@@ -32,13 +32,14 @@ pub(super) struct ShearCourse {
 }
 
 impl SealShear {
-    /// The seals of the term; none where it is absent or holds nothing back.
-    pub fn of(friction: Option<&AccumulatorPistonFriction>) -> Option<Self> {
-        let friction = friction?;
-        let largest_pa = [FlowPath::One, FlowPath::Two]
-            .map(|path| friction.seal(path).breakaway_pa)
-            .into_iter()
-            .fold(0.0, f64::max);
+    /// The seals of the term and of laws without a name; none where they hold nothing back.
+    pub fn of(effects: &Effects) -> Option<Self> {
+        let held_back_pa = |path| {
+            let by_term =
+                (effects.accumulator_piston_friction.as_ref()).map_or(0.0, |term| term.seal(path).breakaway_pa);
+            by_term + most_held_back_pa(&effects.unlisted, path)
+        };
+        let largest_pa = FlowPath::ALL.map(held_back_pa).into_iter().fold(0.0, f64::max);
         (largest_pa > 0.0).then(|| Self {
             step_s: (STEP_PA_S / largest_pa).max(LEAST_STEP_S),
             course: ShearCourse::default(),
@@ -65,6 +66,7 @@ impl SealShear {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::strut::terms::AccumulatorPistonFriction;
     use crate::strut::{Strut, StrutModel};
     use oleo_interface::StrutValves;
 
@@ -116,13 +118,13 @@ mod tests {
 
     #[test]
     fn steps_are_as_long_as_ever_once_the_oil_rests_and_where_nothing_is_held_back() {
-        assert!(SealShear::of(model(0.0).effects.accumulator_piston_friction.as_ref()).is_none());
-        let mut seals = SealShear::of(model(5e5).effects.accumulator_piston_friction.as_ref()).unwrap();
+        assert!(SealShear::of(&model(0.0).effects).is_none());
+        let mut seals = SealShear::of(&model(5e5).effects).unwrap();
         seals.moves_fast_until(2.0);
         assert_eq!(seals.longest_step_s(2.05, f64::NEG_INFINITY), 6e-4);
         assert_eq!(seals.longest_step_s(2.15, f64::NEG_INFINITY), f64::INFINITY);
         assert_eq!(seals.longest_step_s(2.15, 2.1), 6e-4);
-        let gross = SealShear::of(model(1e9).effects.accumulator_piston_friction.as_ref()).unwrap();
+        let gross = SealShear::of(&model(1e9).effects).unwrap();
         assert_eq!(gross.longest_step_s(0.05, 0.0), LEAST_STEP_S);
     }
 }

@@ -71,6 +71,6 @@ pub(super) use seal_friction::SealLevel;
 pub(super) use side_load_friction::GuideLevel;
 pub(super) use unlisted::{
     ChamberLaws, Compressibility, Course, GasLawInputs, InstrumentLaws, LawTable, PathLaws, SealLaw, law_at,
-    longest_step_s, passed, presliding_m3, throttle, throttled, valve_in_time,
+    longest_step_s, most_held_back_pa, passed, presliding_m3, throttle, throttled, valve_in_time,
 };
 pub(super) use valve_delay::{COEFFICIENT as RESPONSE_COEFFICIENT, check_constant, total_response_s};

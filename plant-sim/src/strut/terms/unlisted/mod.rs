@@ -46,7 +46,7 @@ pub(in crate::strut) use instrument_laws::InstrumentLaws;
 pub(in crate::strut) use law::law_at;
 pub(in crate::strut) use law_table::LawTable;
 pub(in crate::strut) use path_laws::{
-    GasLawInputs, PathLaws, passed, presliding_m3, throttle, throttled, valve_in_time,
+    GasLawInputs, PathLaws, most_held_back_pa, passed, presliding_m3, throttle, throttled, valve_in_time,
 };
 pub(in crate::strut) use seal_law::SealLaw;
 

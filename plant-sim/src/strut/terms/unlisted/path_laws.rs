@@ -241,6 +241,12 @@ pub(in crate::strut) fn presliding_m3(laws: &[UnlistedLaw], path: FlowPath) -> f
     seal.and_then(|law| law.presliding_volume_m3).unwrap_or(PRESLIDING_M3)
 }
 
+/// Largest pressure that the seal of the floating piston of a path holds back at any point of its law, Pa; 0 without one.
+pub(in crate::strut) fn most_held_back_pa(laws: &[UnlistedLaw], path: FlowPath) -> f64 {
+    let of_seal = laws.iter().filter(|law| law.place == LawPlace::piston(path));
+    (of_seal.flat_map(|law| &law.value)).fold(0.0, |most, level| level.abs().max(most))
+}
+
 /// The law of the gas of an accumulator is its own or, where it has none, the one of both.
 pub(super) fn gas(laws: &[UnlistedLaw], path: FlowPath, over: LawArgument) -> Option<&UnlistedLaw> {
     [LawPlace::accumulator(path), LawPlace::Accumulators]
@@ -377,6 +383,10 @@ mod tests {
         ];
         let [one, two] = FlowPath::ALL.map(|path| PathLaws::of(&laws, path, 1.0));
         assert_eq!(FlowPath::ALL.map(|path| presliding_m3(&laws, path)), [1e-7, 6e-7]);
+        assert_eq!(
+            FlowPath::ALL.map(|path| most_held_back_pa(&laws[1..], path)),
+            [0.0, 5e4]
+        );
         assert_eq!((one.held_back_pa(1.0), two.held_back_pa(1.0)), (Some(3e4), Some(3e4)));
     }
 

@@ -152,8 +152,8 @@ pub fn headline(specimen: &dyn Specimen, diagnosis: &Diagnosis) -> String {
 pub fn complete_where_fitted(diagnosis: &Diagnosis) -> Option<String> {
     diagnosis.selection.complete_where_fitted.map(|fitted| {
         format!(
-            "Where the model was fitted, the error is {} times the noise: nothing is missing there. It is larger where held \
-             out because one part of the recordings alone determines a number.",
+            "Where the model was fitted, the error is {} times the noise: nothing is missing there. It is larger on \
+             parts that were held out, because the others do not determine every number well.",
             significant(fitted, 3)
         )
     })

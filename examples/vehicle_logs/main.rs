@@ -49,6 +49,10 @@ fn main() {
             "--wrong-numbers" => wrong_numbers = true,
             "--in-motion" => in_motion = true,
             "--first" => first = number(words.next()),
+            "--help" | "-h" => {
+                println!("{USAGE}");
+                return;
+            }
             _ if word.starts_with('-') => usage(),
             _ if folder.is_none() => folder = Some(PathBuf::from(word)),
             _ => wanted.push(word),

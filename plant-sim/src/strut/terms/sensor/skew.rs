@@ -37,17 +37,18 @@ pub fn undo(late_s: f64, times_s: &[f64], motion: &mut Motion) {
     }
     let shown = Shown::of(motion, times_s);
     let mut places = Places::over(times_s);
-    let mut times = times_s.iter().map(|time| time + late_s);
-    let Some(mut from) = times.next().map(|time| places.find(time)) else {
+    let mut places = times_s.iter().map(|time| {
+        let place = places.find(time + late_s);
+        (place, shown.between_smooth_samples(place))
+    });
+    let Some((mut from, mut smooth_from)) = places.next() else {
         return;
     };
-    for (segment, time) in motion.segments.iter_mut().zip(times) {
-        let to = places.find(time);
-        let smooth = |place: Place| shown.between_smooth_samples(place);
-        let (to_m, to_m_s) = smooth(to).unwrap_or_else(|| (to.of(&shown.displacement_m), to.of(&shown.before_m_s)));
-        segment.from_m_s = smooth(from).map_or_else(|| from.of(&shown.after_m_s), |(_, speed)| speed);
-        (segment.to_m, segment.to_m_s) = (to_m, to_m_s);
-        from = to;
+    for (segment, (to, smooth_to)) in motion.segments.iter_mut().zip(places) {
+        segment.from_m_s = smooth_from.map_or_else(|| from.of(&shown.after_m_s), |(_, speed_m_s)| speed_m_s);
+        (segment.to_m, segment.to_m_s) =
+            smooth_to.unwrap_or_else(|| (to.of(&shown.displacement_m), to.of(&shown.before_m_s)));
+        (from, smooth_from) = (to, smooth_to);
     }
 }
 

@@ -206,30 +206,28 @@ fn an_effect_is_not_left_in_a_local_minimum_and_a_gross_fault_of_the_displacemen
 /// One block alone determines the square of the response's polynomial. A law of valve 3, which that block does not shake, had taken the effect's place.
 #[test]
 fn a_name_that_one_block_determines_is_kept_and_the_verdict_says_why() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let campaigns = "--terms valve_delay --seed 5 --campaigns 24";
-    diagnose_saved(folder.path(), campaigns, "5_valve_delay_23_1");
-    assert_eq!(effects_found(folder.path()), ["valve_delay"]);
-    let page = std::fs::read_to_string(folder.path().join("found/report.html")).expect("a page");
+    let (effects, page) = effects_and_page("--terms valve_delay --seed 5 --campaigns 24", "5_valve_delay_23_1");
+    assert_eq!(effects, ["valve_delay"]);
     assert!(page.contains("Where the model was fitted, the error is 1.0"));
 }
 
 /// The oil column of a line, which brings finer steps, had stood beside it.
 #[test]
 fn a_floating_piston_that_holds_back_five_bar_brings_no_other_effect() {
-    let folder = tempfile::tempdir().expect("a folder");
     let campaigns = "--terms accumulator_piston_friction --seed 31 --campaigns 9";
-    diagnose_saved(folder.path(), campaigns, "31_accumulator_piston_friction_8_300");
-    assert_eq!(effects_found(folder.path()), ["accumulator_piston_friction"]);
+    let (effects, _) = effects_and_page(campaigns, "31_accumulator_piston_friction_8_300");
+    assert_eq!(effects, ["accumulator_piston_friction"]);
 }
 
-/// The effects of a saved campaign that was diagnosed.
-fn effects_found(folder: &Path) -> Vec<String> {
-    let text = std::fs::read_to_string(folder.join("found/report.json")).expect("a report");
-    let report: Value = serde_json::from_str(&text).expect("JSON");
+/// The effects that are found in one of the first campaigns of a self-test, and the page about it.
+fn effects_and_page(campaigns: &str, campaign: &str) -> (Vec<String>, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    diagnose_saved(folder.path(), campaigns, campaign);
+    let read = |name: &str| std::fs::read_to_string(folder.path().join("found").join(name)).expect(name);
+    let report: Value = serde_json::from_str(&read("report.json")).expect("JSON");
     let effects = report["effects"].as_array().expect("a list");
     let id = |effect: &Value| effect["id"].as_str().expect("an id").to_owned();
-    effects.iter().map(id).collect()
+    (effects.iter().map(id).collect(), read("report.html"))
 }
 
 /// Under all that the recordings hold a mount that yields does the same as a larger volume of oil that yields.

@@ -37,14 +37,14 @@ pub fn undo(late_s: f64, times_s: &[f64], motion: &mut Motion) {
     }
     let shown = Shown::of(motion, times_s);
     let mut places = Places::over(times_s);
-    let mut places = times_s.iter().map(|time| {
+    let mut at_samples = times_s.iter().map(|time| {
         let place = places.find(time + late_s);
         (place, shown.between_smooth_samples(place))
     });
-    let Some((mut from, mut smooth_from)) = places.next() else {
+    let Some((mut from, mut smooth_from)) = at_samples.next() else {
         return;
     };
-    for (segment, (to, smooth_to)) in motion.segments.iter_mut().zip(places) {
+    for (segment, (to, smooth_to)) in motion.segments.iter_mut().zip(at_samples) {
         segment.from_m_s = smooth_from.map_or_else(|| from.of(&shown.after_m_s), |(_, speed_m_s)| speed_m_s);
         (segment.to_m, segment.to_m_s) =
             smooth_to.unwrap_or_else(|| (to.of(&shown.displacement_m), to.of(&shown.before_m_s)));

@@ -81,34 +81,69 @@ impl Motion {
     /// Acceleration at each sample, m/s2, where all motion is known. It is taken across the sample, or from that side of it on which it changes much less: where the
     /// acceleration jumps, a mean of both sides is neither.
     pub(super) fn accelerations_m_s2(&self, time_s: &[f64]) -> Vec<f64> {
-        let mean = |k: usize| {
-            let (segment, time) = (self.segments.get(k)?, time_s.get(k..k + 2)?);
-            Some((segment.to_m_s - segment.from_m_s) / (time[1] - time[0]))
+        self.accelerations(time_s, |at| at.steadier_m_s2)
+    }
+
+    /// Acceleration just before each sample and just after it, m/s2. They differ where it jumps at the sample itself; where it jumps within an interval, both of a
+    /// sample are those of its other interval.
+    pub(super) fn accelerations_beside_samples_m_s2(&self, time_s: &[f64]) -> Vec<[f64; 2]> {
+        self.accelerations(time_s, |at| at.beside_m_s2)
+    }
+
+    fn accelerations<T>(&self, time_s: &[f64], of: impl Fn(Acceleration) -> T) -> Vec<T> {
+        let means: Vec<f64> = (self.segments.iter().zip(time_s.windows(2)))
+            .map(|(segment, time)| (segment.to_m_s - segment.from_m_s) / (time[1] - time[0]))
+            .collect();
+        let mean = |k: Option<usize>| means.get(k?).copied();
+        let around = |k: usize| {
+            [
+                mean(k.checked_sub(2)),
+                mean(k.checked_sub(1)),
+                mean(Some(k)),
+                mean(Some(k + 1)),
+            ]
         };
-        let at = |k: usize| {
-            let before = k.checked_sub(1).and_then(mean);
-            let after = mean(k);
-            let (Some(before), Some(after)) = (before, after) else {
-                return before.or(after).unwrap_or(0.0);
-            };
-            let change = after - before;
-            // From either side by a line through the means of two intervals.
-            let from_before = k.checked_sub(2).and_then(mean).map(|m| before - m);
-            let from_after = mean(k + 1).map(|m| m - after);
-            let sides = [
-                from_before.map(|c| (c, before + 0.5 * c)),
-                from_after.map(|c| (c, after - 0.5 * c)),
-            ];
-            let side = sides
-                .into_iter()
-                .flatten()
-                .min_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
-            match side {
-                Some((c, m_s2)) if JUMPS * c.abs() < change.abs() => m_s2,
-                _ => before + 0.5 * change,
+        (0..=self.segments.len())
+            .map(|k| of(Acceleration::between(around(k))))
+            .collect()
+    }
+}
+
+/// Acceleration at a sample, m/s2.
+struct Acceleration {
+    /// From the side on which it changes less, if it jumps; else across the sample.
+    steadier_m_s2: f64,
+    /// Just before the sample and just after it.
+    beside_m_s2: [f64; 2],
+}
+
+impl Acceleration {
+    /// Between the means of two intervals before a sample and two after it, m/s2.
+    fn between([second_last, last, next, second_next]: [Option<f64>; 4]) -> Self {
+        let everywhere = |m_s2: f64| Self {
+            steadier_m_s2: m_s2,
+            beside_m_s2: [m_s2; 2],
+        };
+        let (Some(before), Some(after)) = (last, next) else {
+            return everywhere(last.or(next).unwrap_or(0.0));
+        };
+        let change = after - before;
+        // From either side by a line through the means of two intervals, if it changes much less there.
+        let steady = |c: &f64| JUMPS * c.abs() < change.abs();
+        let from_before = second_last.map(|m| before - m).filter(steady);
+        let from_after = second_next.map(|m| m - after).filter(steady);
+        match (from_before, from_after) {
+            (None, None) => everywhere(before + 0.5 * change),
+            (Some(c), None) => everywhere(before + 0.5 * c),
+            (None, Some(c)) => everywhere(after - 0.5 * c),
+            (Some(c), Some(d)) => {
+                let beside_m_s2 = [before + 0.5 * c, after - 0.5 * d];
+                Self {
+                    steadier_m_s2: beside_m_s2[usize::from(d.abs() < c.abs())],
+                    beside_m_s2,
+                }
             }
-        };
-        (0..=self.segments.len()).map(at).collect()
+        }
     }
 }
 
@@ -210,6 +245,29 @@ mod tests {
         for (k, a) in motion.accelerations_m_s2(&time_s).into_iter().enumerate() {
             let exact = if k <= 5 { 1.0 } else { -3.0 };
             assert!((a - exact).abs() < 1e-9, "{k}: {a} {exact}");
+        }
+    }
+
+    #[test]
+    fn beside_a_sample_the_acceleration_is_that_of_each_side_only_where_it_jumps() {
+        // From 1 to -3 m/s2 at sample 5, and within the interval after it.
+        for (jumps_s, at_sample_5) in [(0.05, [1.0, -3.0]), (0.055, [1.0, 1.0])] {
+            let speed: Vec<f64> = (0..12)
+                .map(|k| 0.01 * f64::from(k))
+                .map(|t| t.min(jumps_s) - 3.0 * (t - jumps_s).max(0.0))
+                .collect();
+            let (time_s, motion) = through_speeds(&speed, 0.01);
+            for (k, beside) in motion.accelerations_beside_samples_m_s2(&time_s).iter().enumerate() {
+                let exact = match k {
+                    0..5 => [1.0; 2],
+                    5 => at_sample_5,
+                    _ => [-3.0; 2],
+                };
+                assert!(
+                    beside.iter().zip(exact).all(|(a, b)| (a - b).abs() < 1e-9),
+                    "{k}: {beside:?}"
+                );
+            }
         }
     }
 

@@ -21,35 +21,39 @@ impl Place {
         }
     }
 
-    /// Value of a signal `y` over `x` there, curved between its samples.
-    pub fn of_curved(self, x: &[f64], y: &[f64]) -> f64 {
+    /// Value of a signal `y` over `x` there, curved between its samples by its curvatures.
+    pub fn of_curved(self, x: &[f64], y: &[f64], curvatures: &[f64]) -> f64 {
         let line = self.of(y);
         match self {
             Self::At(_) => line,
-            Self::Before(i, part) => {
-                let point = |k: usize| Some((*x.get(k)?, *y.get(k)?));
-                let around = [i.checked_sub(2).and_then(point), point(i - 1), point(i), point(i + 1)];
-                line - part * (1.0 - part) * bend(around)
-            }
+            Self::Before(i, part) => line - part * (1.0 - part) * bend(&curvatures[i - 1..=i], x[i] - x[i - 1]),
         }
     }
 }
 
-/// What the curvature of a signal adds over the interval from one point `(x, y)` to the next: half its second derivative times the interval squared. `around` the
-/// interval are the point before, the two points, and the one after. Of the second derivatives at both ends the smaller one counts, and none where they have different
-/// signs (minmod, Roe, Ann. Rev. Fluid Mech. 18, 1986), so that nothing overshoots where the signal jumps. 0 where a point is missing.
-pub(super) fn bend(around: [Option<(f64, f64)>; 4]) -> f64 {
-    let [Some(before), Some(begin), Some(end), Some(after)] = around else {
-        return 0.0;
-    };
-    let slope = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1) / (b.0 - a.0);
-    let halved = |a: (f64, f64), b: (f64, f64), c: (f64, f64)| (slope(b, c) - slope(a, b)) / (c.0 - a.0);
-    let (first, second) = (halved(before, begin, end), halved(begin, end, after));
+/// Half the second derivative of a signal `y` over increasing `x` at each sample, by its neighbours; 0 at the ends, which have one.
+pub(super) fn curvatures(x: &[f64], y: &[f64]) -> Vec<f64> {
+    let mut all = vec![0.0; y.len()];
+    let slope = |a: usize, b: usize| (y[b] - y[a]) / (x[b] - x[a]);
+    let mut before = if y.len() > 1 { slope(0, 1) } else { 0.0 };
+    for k in 1..y.len().saturating_sub(1) {
+        let after = slope(k, k + 1);
+        all[k] = (after - before) / (x[k + 1] - x[k - 1]);
+        before = after;
+    }
+    all
+}
+
+/// What the curvature of a signal adds over an interval: half its second derivative times the interval squared. Of the curvatures at both ends the smaller one counts,
+/// and none where they have different signs (minmod, Roe, Ann. Rev. Fluid Mech. 18, 1986), so that nothing overshoots where the signal jumps, nor where an end is
+/// that of the signal.
+pub(super) fn bend(at_ends: &[f64], interval: f64) -> f64 {
+    let &[first, second] = at_ends else { return 0.0 };
     if first * second <= 0.0 {
         return 0.0;
     }
     let smaller = if first.abs() < second.abs() { first } else { second };
-    smaller * (end.0 - begin.0) * (end.0 - begin.0)
+    smaller * interval * interval
 }
 
 /// Finds places over increasing `x` one after the other: from the place that was found last, the next one is usually a sample further.
@@ -99,10 +103,10 @@ mod tests {
                 let exact = 2.0 - 3.0 * inside;
                 let found = places.find(at);
                 proptest::prop_assert!((found.of(&y) - exact).abs() < 1e-9);
-                proptest::prop_assert!((found.of_curved(&x, &y) - exact).abs() < 1e-9);
+                proptest::prop_assert!((found.of_curved(&x, &y, &curvatures(&x, &y)) - exact).abs() < 1e-9);
                 // A parabola too, where there is a sample on either side of the interval.
                 let parabola: Vec<f64> = x.iter().map(|x| x * x).collect();
-                let curved = (found.of_curved(&x, &parabola) - inside * inside).abs();
+                let curved = (found.of_curved(&x, &parabola, &curvatures(&x, &parabola)) - inside * inside).abs();
                 proptest::prop_assert!(curved < 1e-9 || inside < x[1] || inside > x[38]);
                 // To the bit, whatever was asked for before.
                 proptest::prop_assert_eq!(found, Places::over(&x).find(at));
@@ -113,6 +117,8 @@ mod tests {
     #[test]
     fn an_empty_signal_and_one_sample_have_a_value_everywhere() {
         assert_eq!(Places::over(&[]).find(1.0).of(&[]), 0.0);
+        assert!(curvatures(&[], &[]).is_empty());
+        assert_eq!(curvatures(&[0.0], &[7.0]), [0.0]);
         for at in [-1.0, 0.0, 1.0] {
             assert_eq!(Places::over(&[0.0]).find(at).of(&[7.0]), 7.0);
         }

@@ -1,6 +1,6 @@
 //! `sensor_skew`: an instrument whose clock is late, `y(t) = x(t - s)`.
 
-use super::interpolate::{Place, Places};
+use super::interpolate::{Place, Places, curvatures};
 use crate::model_file::{Quantity, Range};
 use crate::strut::motion::{Cubic, Motion, Segment};
 use crate::strut::terms::equation::Equation;
@@ -21,9 +21,10 @@ pub const EQUATION: Equation = Equation {
 /// What the instrument shows of a true signal.
 pub fn record(late_s: f64, times_s: &[f64], signal: &mut [f64]) {
     let truth = signal.to_vec();
+    let curvatures = curvatures(times_s, &truth);
     let mut places = Places::over(times_s);
     for (shown, t) in signal.iter_mut().zip(times_s) {
-        *shown = places.find(t - late_s).of_curved(times_s, &truth);
+        *shown = places.find(t - late_s).of_curved(times_s, &truth, &curvatures);
     }
 }
 

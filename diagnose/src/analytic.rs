@@ -48,6 +48,11 @@ pub const SWING: usize = 11;
 /// A vibration of the first output that is 200 times weaker before [`LATE_FROM_S`]: what is before says next to nothing of its one number.
 pub const LATE: usize = 12;
 
+/// A vibration of the first output at 3 rad/s, whose phase is a number of the model; one number. With the phase that is believed it explains nothing.
+pub const PHASED: usize = 13;
+/// The phase that is true beyond the one that is believed, rad.
+const PHASE: f64 = std::f64::consts::FRAC_PI_2;
+
 /// When the late vibration begins.
 const LATE_FROM_S: f64 = 60.0;
 
@@ -142,6 +147,16 @@ impl Analytic {
         self.candidates[candidate].joins = joins;
     }
 
+    /// Makes the phase of [`PHASED`] a number of the model that matters only beside it.
+    pub fn let_phase_sleep(&mut self) {
+        self.calibration.push(Parameter {
+            lower: -4.0,
+            upper: 4.0,
+            only_beside: Some(EffectId::GasHeatTransfer),
+            ..Parameter::calibration("phase", 2.0)
+        });
+    }
+
     /// Another start of a candidate's first parameter.
     pub fn move_start(&mut self, candidate: usize, start: f64) {
         self.candidates[candidate].parameters[0].start = start;
@@ -151,7 +166,7 @@ impl Analytic {
 impl Recipe {
     /// Makes the specimen: simulates the truth and adds noise.
     pub fn make(&self) -> Analytic {
-        let mut candidates: Vec<Candidate> = (0..=LATE).map(candidate).collect();
+        let mut candidates: Vec<Candidate> = (0..=PHASED).map(candidate).collect();
         for (k, c) in candidates.iter_mut().enumerate() {
             if !self.candidates.contains(&k) {
                 c.untestable = Some("not part of this test".to_owned());
@@ -263,6 +278,12 @@ fn candidate(index: usize) -> Candidate {
         FRAGILE => (EffectId::BumpStop, Site::EndStop.into(), vec![positive("stress")]),
         FIRST_OF_PAIR => (EffectId::DampingFade, Site::Mount.into(), vec![amount("first")]),
         LATE => (EffectId::ValveDelay, Site::Mount.into(), vec![amount("late")]),
+        PHASED => (
+            EffectId::GasHeatTransfer,
+            Site::Mount.into(),
+            // It begins with a size, without which a phase says nothing.
+            vec![Parameter::linear("phased", 0.1, 0.05, (-5.0, 5.0))],
+        ),
         SECOND_OF_PAIR => (EffectId::EntrainedAir, Site::Mount.into(), vec![amount("second")]),
         _ => (
             EffectId::SealFriction,
@@ -373,7 +394,10 @@ impl Specimen for Analytic {
             let c = &hypothesis.calibration;
             let mut y = [BELIEVED[0] * (1.0 + c[0]) * x, BELIEVED[1] * (1.0 + c[1]) * speed];
             for (index, values) in &hypothesis.effects {
-                let added = law(*index, values, t, x, speed)?;
+                let added = match (*index, c.get(2)) {
+                    (PHASED, phase) => [values[0] * libm::sin(3.0 * t + phase.copied().unwrap_or(PHASE)), 0.0],
+                    _ => law(*index, values, t, x, speed)?,
+                };
                 y = [y[0] + added[0], y[1] + added[1]];
             }
             out.iter_mut().zip(y).for_each(|(series, y)| series.push(y));

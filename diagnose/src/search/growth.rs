@@ -143,6 +143,13 @@ pub fn grow(
                 continue;
             }
         }
+        if open == Open::Names
+            && lacks_more
+            && let Some(woken) = selector.with_dormant_numbers([&best, calibrated])?
+        {
+            best = woken;
+            continue;
+        }
         if open == Open::Names && lacks_more {
             progress(
                 "trying other numbers of the model",

@@ -3,8 +3,8 @@
 //! ```text
 //! calibrate within tolerance
 //!     |
-//!     v            (until no candidate is accepted; then with wrong numbers of the model, if these complete it; then with laws without a name; then with a
-//!     |             second law at another place)
+//!     v            (until no candidate is accepted; then with effects that wake a number of the model; then with wrong numbers of the model, if these complete
+//!     |             it; then with laws without a name; then with a second law at another place)
 //! screen all candidates --> fit the finalists --> accept the best that held-out blocks confirm -----+
 //!     ^       (none, and far above the noise: pairs and triples of names; at last pairs with laws)  |
 //!     +---------------------------------------------------------------------------------------------+
@@ -21,6 +21,7 @@
 mod combinations;
 mod completeness;
 mod done;
+mod dormant;
 mod elimination;
 pub mod evidence;
 mod fits;

@@ -171,12 +171,19 @@ pub fn without_first_readings(recording: &mut Recording, layout: Layout) {
 
 /// What is not known of these recordings, with its parameters.
 pub fn unknowns(recordings: &[Recording], model: &StrutModel) -> (Vec<Unknown>, Vec<Parameter>) {
-    let is_sought = model.effects.damping_fade.is_none();
+    let fade_is_sought = model.effects.damping_fade.is_none();
+    let heat_transfer_is_sought = model.effects.gas_heat_transfer.is_none();
+    let only_beside = |quantity: Quantity| match quantity {
+        Quantity::Pressure(_) => None,
+        // Gas that is believed to stay at ambient temperature has the volume that follows from its pressure.
+        Quantity::Volume | Quantity::Temperature => heat_transfer_is_sought.then_some(EffectId::GasHeatTransfer),
+        Quantity::Heated => fade_is_sought.then_some(EffectId::DampingFade),
+    };
     let of = |(recording, named): (usize, &Recording)| {
         Quantity::ALL.map(|quantity| {
             let parameter = Parameter {
                 only_in: Some(recording),
-                only_beside: (quantity == Quantity::Heated && is_sought).then_some(EffectId::DampingFade),
+                only_beside: only_beside(quantity),
                 ..quantity.parameter(&named.name)
             };
             (Unknown { recording, quantity }, parameter)

@@ -2,7 +2,7 @@
 //!
 //! Volume and temperature of the gas in both accumulators are unknown. Fitted are the pressures, which are nearly what was read, and do not change with
 //! an error of the charge, as volumes would; the volume of both together, which the displacement says as long as no oil is lost; and one temperature. Where the
-//! dampers fade, it is unknown too for how long they have been heated.
+//! dampers fade, it is unknown too for how long they have been heated, and in what proportion: before, oil may have taken the other path.
 
 use oleo_plant_sim::strut::{ATMOSPHERE_PA, Beginning, Effects, InMotion, StrutModel, true_first_value};
 
@@ -30,6 +30,10 @@ const TEMPERATURE_WITHIN_K: (f64, f64) = (40.0, 250.0);
 const HEATED_USUALLY_S: f64 = 60.0;
 const HEATED_FACTOR: f64 = 1.5;
 const HEATED_WITHIN_S: (f64, f64) = (0.1, 36e3);
+/// The mean power of damper 2 before the recording over that in it, with damper 1 as it is: the factor that is its standard deviation, as a logarithm; and how small
+/// and large it may be.
+const SECOND_POWER_FACTOR: f64 = 1.0;
+const SECOND_POWER_WITHIN: (f64, f64) = (0.05, 20.0);
 
 /// Something that is not known of the beginning of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,15 +52,18 @@ enum Quantity {
     Temperature,
     /// Time for which dampers have been heated as they are in the recording, s.
     Heated,
+    /// Mean power of damper 2 before the recording, relative to that in it.
+    SecondPower,
 }
 
 impl Quantity {
-    const ALL: [Self; 5] = [
+    const ALL: [Self; 6] = [
         Self::Pressure(Branch::First),
         Self::Pressure(Branch::Second),
         Self::Volume,
         Self::Temperature,
         Self::Heated,
+        Self::SecondPower,
     ];
 
     /// Its parameter in a recording of this name.
@@ -76,6 +83,11 @@ impl Quantity {
                 scale: Scale::Log(HEATED_FACTOR),
                 prior: true,
                 ..Parameter::log(key("dampers_heated_s"), HEATED_USUALLY_S, HEATED_WITHIN_S)
+            },
+            Self::SecondPower => Parameter {
+                scale: Scale::Log(SECOND_POWER_FACTOR),
+                prior: true,
+                ..Parameter::log(key("damper_2_power"), 1.0, SECOND_POWER_WITHIN)
             },
         }
     }
@@ -177,7 +189,7 @@ pub fn unknowns(recordings: &[Recording], model: &StrutModel) -> (Vec<Unknown>, 
         Quantity::Pressure(_) => None,
         // Gas that is believed to stay at ambient temperature has the volume that follows from its pressure.
         Quantity::Volume | Quantity::Temperature => heat_transfer_is_sought.then_some(EffectId::GasHeatTransfer),
-        Quantity::Heated => fade_is_sought.then_some(EffectId::DampingFade),
+        Quantity::Heated | Quantity::SecondPower => fade_is_sought.then_some(EffectId::DampingFade),
     };
     let of = |(recording, named): (usize, &Recording)| {
         Quantity::ALL.map(|quantity| {
@@ -206,6 +218,7 @@ impl Unknown {
                 Quantity::Volume => in_motion.volume_beyond += value,
                 Quantity::Temperature => in_motion.first_beyond_k += value,
                 Quantity::Heated => in_motion.heated_s = value,
+                Quantity::SecondPower => in_motion.heating_w[1] *= value,
             }
         }
     }
@@ -307,17 +320,18 @@ mod tests {
     #[test]
     fn a_deviation_is_of_one_recording_and_one_quantity() {
         let (unknowns, parameters) = unknowns(&[recording(), recording()], &model());
-        assert_eq!((unknowns.len(), parameters.len()), (10, 10));
+        assert_eq!((unknowns.len(), parameters.len()), (12, 12));
         assert_eq!(parameters[1].key, "gas_pressure_2 at the beginning of a");
         let mut begins = Beginning::InMotion(InMotion {
             chamber_pa: 4e6,
             gas_pa: [4e6, 4e6],
+            heating_w: [300.0, 200.0],
             ..InMotion::default()
         });
         let before = begins;
-        unknowns[5].apply(0, &mut begins, 0.01);
+        unknowns[6].apply(0, &mut begins, 0.01);
         assert_eq!(begins, before);
-        for unknown in &unknowns[..5] {
+        for unknown in &unknowns[..6] {
             unknown.apply(0, &mut begins, 0.01);
         }
         let pa = 4e6 + 0.01 * (4e6 + ATMOSPHERE_PA);
@@ -326,8 +340,8 @@ mod tests {
             gas_pa: [pa, pa],
             first_beyond_k: 0.01,
             volume_beyond: 0.01,
+            heating_w: [300.0, 2.0],
             heated_s: 0.01,
-            ..InMotion::default()
         };
         assert_eq!(begins, Beginning::InMotion(moved));
     }

@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::effect::{Candidate, ExclusionGroup, Joins};
-use crate::parameter::Parameter;
+use crate::parameter::{Beside, Parameter};
 use crate::recording::Recording;
 use crate::specimen::{Channel, Hypothesis, Series, Specimen, StateSeries};
 use crate::vocabulary::{Column, EffectId, Place, Site, SpecimenKind, State};
@@ -152,7 +152,7 @@ impl Analytic {
         self.calibration.push(Parameter {
             lower: -4.0,
             upper: 4.0,
-            only_beside: Some(EffectId::GasHeatTransfer),
+            only_beside: Some(Beside::anywhere(EffectId::GasHeatTransfer)),
             ..Parameter::calibration("phase", 2.0)
         });
     }

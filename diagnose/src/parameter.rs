@@ -3,7 +3,7 @@
 //! Fits work in a coordinate `z` of order one, so that steps, damping and convergence need no knowledge of units. For a
 //! calibration value `z` is the deviation over its prior standard deviation, half of the stated tolerance.
 
-use crate::vocabulary::EffectId;
+use crate::vocabulary::{EffectId, Place, Site};
 
 /// How `z` maps to the value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,11 +46,34 @@ pub struct Parameter {
     /// The only recording in which it matters, by its index; `None` if it may matter in all.
     pub only_in: Option<usize>,
     /// The effect beside which alone it matters; `None` if it matters without any.
-    pub only_beside: Option<EffectId>,
+    pub only_beside: Option<Beside>,
     /// The size of the effect: zero is "not there", and every larger value is more of it.
     pub is_size: bool,
     /// How the number is reported.
     pub shown: Shown,
+}
+
+/// An effect that a number waits for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Beside {
+    /// The effect.
+    pub effect: EffectId,
+    /// The site at which it has to act; `None` if any will do.
+    pub site: Option<Site>,
+}
+
+impl Beside {
+    /// An effect, wherever it acts.
+    #[must_use]
+    pub const fn anywhere(effect: EffectId) -> Self {
+        Self { effect, site: None }
+    }
+
+    /// Whether it is the effect of this id at this place.
+    #[must_use]
+    pub fn is(&self, effect: EffectId, place: &Place) -> bool {
+        effect == self.effect && self.site.as_ref().is_none_or(|site| *site == place.site)
+    }
 }
 
 /// How a fitted number is reported.

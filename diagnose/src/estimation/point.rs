@@ -43,7 +43,10 @@ impl Point {
     pub fn matters(&self, specimen: &dyn Specimen, coordinate: usize) -> bool {
         let candidates = specimen.candidates();
         let parameter = self.parameters(specimen)[coordinate];
-        let needs = (parameter.only_beside).is_none_or(|id| self.effects.iter().any(|&e| candidates[e].id == id));
+        let needs = (parameter.only_beside.as_ref()).is_none_or(|beside| {
+            let mut effects = self.effects.iter().map(|&e| &candidates[e]);
+            effects.any(|effect| beside.is(effect.id, &effect.place))
+        });
         needs && !self.is_replaced(specimen, coordinate)
     }
 

@@ -40,8 +40,8 @@ impl Selector<'_, '_> {
     fn awakening(&self) -> Vec<usize> {
         let calibration = self.specimen().calibration();
         let wakes = |candidate: &Candidate| {
-            let of_it = |id| id == Some(candidate.id);
-            !candidate.is_unlisted() && calibration.iter().any(|p| of_it(p.only_beside))
+            let mut awaited = calibration.iter().filter_map(|number| number.only_beside.as_ref());
+            !candidate.is_unlisted() && awaited.any(|beside| beside.is(candidate.id, &candidate.place))
         };
         (self.testable().iter().copied())
             .filter(|&c| wakes(self.candidate(c)))

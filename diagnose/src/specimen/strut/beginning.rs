@@ -9,9 +9,9 @@ use oleo_plant_sim::strut::{ATMOSPHERE_PA, Beginning, Effects, InMotion, StrutMo
 use super::channels::{CHANNELS, Layout, P1, P2, P3, P4};
 use super::heating;
 use crate::median::median;
-use crate::parameter::{Parameter, Scale};
+use crate::parameter::{Beside, Parameter, Scale};
 use crate::recording::Recording;
-use crate::vocabulary::{Branch, EffectId};
+use crate::vocabulary::{Branch, EffectId, Site};
 
 /// A valve has moved after this time, s: it takes 90 ms at most.
 const MOVED_S: f64 = 0.1;
@@ -183,25 +183,35 @@ pub fn without_first_readings(recording: &mut Recording, layout: Layout) {
 
 /// What is not known of these recordings, with its parameters.
 pub fn unknowns(recordings: &[Recording], model: &StrutModel) -> (Vec<Unknown>, Vec<Parameter>) {
-    let fade_is_sought = model.effects.damping_fade.is_none();
+    let fade = model.effects.damping_fade.as_ref();
     let heat_transfer_is_sought = model.effects.gas_heat_transfer.is_none();
+    let beside = |is_sought: bool, effect: EffectId| is_sought.then_some(Beside::anywhere(effect));
     let only_beside = |quantity: Quantity| match quantity {
         Quantity::Pressure(_) => None,
         // Gas that is believed to stay at ambient temperature has the volume that follows from its pressure.
-        Quantity::Volume | Quantity::Temperature => heat_transfer_is_sought.then_some(EffectId::GasHeatTransfer),
-        Quantity::Heated | Quantity::SecondPower => fade_is_sought.then_some(EffectId::DampingFade),
+        Quantity::Volume | Quantity::Temperature => beside(heat_transfer_is_sought, EffectId::GasHeatTransfer),
+        Quantity::Heated => beside(fade.is_none(), EffectId::DampingFade),
+        // Where damper 2 alone fades, the time that it has been heated for says it all.
+        Quantity::SecondPower => fade.is_none().then_some(Beside {
+            effect: EffectId::DampingFade,
+            site: Some(Site::Paths),
+        }),
     };
-    let of = |(recording, named): (usize, &Recording)| {
-        Quantity::ALL.map(|quantity| {
-            let parameter = Parameter {
-                only_in: Some(recording),
-                only_beside: only_beside(quantity),
-                ..quantity.parameter(&named.name)
-            };
-            (Unknown { recording, quantity }, parameter)
-        })
+    let both_fade = fade.is_none_or(|fade| fade.fade_1_per_j > 0.0 && fade.fade_2_per_j > 0.0);
+    let mut quantities = Quantity::ALL.to_vec();
+    quantities.retain(|quantity| *quantity != Quantity::SecondPower || both_fade);
+    let of = |recording: usize, quantity: Quantity| {
+        let parameter = Parameter {
+            only_in: Some(recording),
+            only_beside: only_beside(quantity),
+            ..quantity.parameter(&recordings[recording].name)
+        };
+        (Unknown { recording, quantity }, parameter)
     };
-    recordings.iter().enumerate().flat_map(of).unzip()
+    (0..recordings.len())
+        .flat_map(|recording| quantities.iter().map(move |&quantity| (recording, quantity)))
+        .map(|(recording, quantity)| of(recording, quantity))
+        .unzip()
 }
 
 impl Unknown {
@@ -227,6 +237,7 @@ impl Unknown {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oleo_plant_sim::strut::DampingFade;
 
     const NONE: f64 = f64::NAN;
 
@@ -315,6 +326,24 @@ mod tests {
         };
         assert_eq!((behind.chamber_pa, behind.gas_pa), (4e6, [5e6, 3.9e6]));
         assert_eq!(behind_readings(Beginning::AtRest, &effects), Beginning::AtRest);
+    }
+
+    #[test]
+    fn the_power_of_damper_2_is_unknown_beside_the_fade_of_both_dampers() {
+        let keys = |fades: Option<[f64; 2]>| {
+            let mut model = model();
+            model.effects.damping_fade = fades.map(|[fade_1_per_j, fade_2_per_j]| DampingFade {
+                fade_1_per_j,
+                fade_2_per_j,
+                cooling_time_s: 60.0,
+            });
+            unknowns(&[recording()], &model).1
+        };
+        let power = |all: Vec<Parameter>| all.into_iter().find(|p| p.key.starts_with("damper_2_power"));
+        let sought = power(keys(None)).and_then(|p| p.only_beside);
+        assert_eq!(sought.and_then(|beside| beside.site), Some(Site::Paths));
+        assert_eq!(power(keys(Some([1e-5, 1e-5]))).map(|p| p.only_beside), Some(None));
+        assert!(power(keys(Some([0.0, 1e-5]))).is_none() && power(keys(Some([1e-5, 0.0]))).is_none());
     }
 
     #[test]

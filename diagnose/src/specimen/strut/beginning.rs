@@ -200,18 +200,18 @@ pub fn unknowns(recordings: &[Recording], model: &StrutModel) -> (Vec<Unknown>, 
     let both_fade = fade.is_none_or(|fade| fade.fade_1_per_j > 0.0 && fade.fade_2_per_j > 0.0);
     let mut quantities = Quantity::ALL.to_vec();
     quantities.retain(|quantity| *quantity != Quantity::SecondPower || both_fade);
-    let of = |recording: usize, quantity: Quantity| {
-        let parameter = Parameter {
-            only_in: Some(recording),
-            only_beside: only_beside(quantity),
-            ..quantity.parameter(&recordings[recording].name)
-        };
-        (Unknown { recording, quantity }, parameter)
-    };
-    (0..recordings.len())
-        .flat_map(|recording| quantities.iter().map(move |&quantity| (recording, quantity)))
-        .map(|(recording, quantity)| of(recording, quantity))
-        .unzip()
+    let (mut unknowns, mut parameters) = (Vec::new(), Vec::new());
+    for (recording, named) in recordings.iter().enumerate() {
+        for &quantity in &quantities {
+            unknowns.push(Unknown { recording, quantity });
+            parameters.push(Parameter {
+                only_in: Some(recording),
+                only_beside: only_beside(quantity),
+                ..quantity.parameter(&named.name)
+            });
+        }
+    }
+    (unknowns, parameters)
 }
 
 impl Unknown {
@@ -330,20 +330,20 @@ mod tests {
 
     #[test]
     fn the_power_of_damper_2_is_unknown_beside_the_fade_of_both_dampers() {
-        let keys = |fades: Option<[f64; 2]>| {
+        let power = |fades: Option<[f64; 2]>| {
             let mut model = model();
             model.effects.damping_fade = fades.map(|[fade_1_per_j, fade_2_per_j]| DampingFade {
                 fade_1_per_j,
                 fade_2_per_j,
                 cooling_time_s: 60.0,
             });
-            unknowns(&[recording()], &model).1
+            let (_, all) = unknowns(&[recording()], &model);
+            all.into_iter().find(|p| p.key.starts_with("damper_2_power"))
         };
-        let power = |all: Vec<Parameter>| all.into_iter().find(|p| p.key.starts_with("damper_2_power"));
-        let sought = power(keys(None)).and_then(|p| p.only_beside);
+        let sought = power(None).and_then(|p| p.only_beside);
         assert_eq!(sought.and_then(|beside| beside.site), Some(Site::Paths));
-        assert_eq!(power(keys(Some([1e-5, 1e-5]))).map(|p| p.only_beside), Some(None));
-        assert!(power(keys(Some([0.0, 1e-5]))).is_none() && power(keys(Some([1e-5, 0.0]))).is_none());
+        assert_eq!(power(Some([1e-5, 1e-5])).map(|p| p.only_beside), Some(None));
+        assert!(power(Some([0.0, 1e-5])).is_none() && power(Some([1e-5, 0.0])).is_none());
     }
 
     #[test]

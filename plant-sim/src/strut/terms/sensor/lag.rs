@@ -69,7 +69,8 @@ impl Approach {
 
 /// The motion that the instrument followed: `x = y + tau dy/dt`.
 ///
-/// Its speed asks for the acceleration at the samples. The mean of an interval is that of its middle, and a wheel that hops would be given a speed that is wrong by a tenth.
+/// Its speed needs the acceleration at the samples. The mean acceleration of an interval is that of its middle: behind a lag of 5 ms, samples of 5 ms would give a wheel that hops at
+/// 12 Hz a speed that is wrong by 7 %.
 pub fn undo(tau_s: f64, times_s: &[f64], motion: &mut Motion) {
     let beside = motion.accelerations_beside_samples_m_s2(times_s);
     for (k, segment) in motion.segments.iter_mut().enumerate() {
@@ -150,13 +151,13 @@ mod tests {
         }
     }
 
-    /// A motion between even samples with these speeds beside them.
-    fn between(x: impl Fn(f64) -> f64, speed_beside: impl Fn(f64) -> [f64; 2], t: &[f64]) -> Motion {
+    /// A motion through samples, without a jump of its speed.
+    fn through(t: &[f64], x: impl Fn(f64) -> f64, speed: impl Fn(f64) -> f64) -> Motion {
         let segments = (t.windows(2))
             .map(|t| Segment {
                 to_m: x(t[1]),
-                from_m_s: speed_beside(t[0])[1],
-                to_m_s: speed_beside(t[1])[0],
+                from_m_s: speed(t[0]),
+                to_m_s: speed(t[1]),
             })
             .collect();
         Motion {
@@ -173,7 +174,7 @@ mod tests {
         let size = 1.0 / (1.0 + w * w * tau * tau);
         let shown = |t: f64| size * (libm::sin(w * t) - w * tau * libm::cos(w * t));
         let speed = |t: f64| size * w * (libm::cos(w * t) + w * tau * libm::sin(w * t));
-        let mut motion = between(shown, |t| [speed(t); 2], &t);
+        let mut motion = through(&t, shown, speed);
         undo(tau, &t, &mut motion);
         for (segment, time) in motion.segments.iter().zip(t.windows(2)).skip(2).take(395) {
             assert!((segment.to_m - libm::sin(w * time[1])).abs() < 1e-9);
@@ -191,13 +192,13 @@ mod tests {
         let t: Vec<f64> = (0..100).map(|i| 0.002 * f64::from(i)).collect();
         let left = |t: f64| libm::exp(-(t - stop).max(0.0) / tau);
         let shown = |t: f64| t.min(stop) - tau * left(t);
-        let speed = |t: f64| left(t);
-        let mut motion = between(shown, |t| [speed(t); 2], &t);
+        let mut motion = through(&t, shown, left);
         undo(tau, &t, &mut motion);
         for (segment, time) in motion.segments.iter().zip(&t) {
             let exact = if *time < stop - 0.001 { 1.0 } else { 0.0 };
             for found in [segment.from_m_s, segment.to_m_s] {
-                assert!((found - exact).abs() < 0.005, "{found} after {time}");
+                // A line through the means of two intervals misses an exponential by a third of (2 ms / 20 ms)^2.
+                assert!((found - exact).abs() < 0.004, "{found} after {time}");
             }
         }
     }

@@ -157,6 +157,11 @@ impl Analytic {
         });
     }
 
+    /// Lets the stiffness be told by one recording alone.
+    pub fn tie_stiffness_to(&mut self, recording: usize) {
+        self.calibration[0].only_in = Some(recording);
+    }
+
     /// Another start of a candidate's first parameter.
     pub fn move_start(&mut self, candidate: usize, start: f64) {
         self.candidates[candidate].parameters[0].start = start;
@@ -392,7 +397,9 @@ impl Specimen for Analytic {
         let mut out = vec![Vec::with_capacity(r.len()), Vec::with_capacity(r.len())];
         for ((&t, &x), speed) in r.time_s.iter().zip(&r.columns[0]).zip(speed(r)) {
             let c = &hypothesis.calibration;
-            let mut y = [BELIEVED[0] * (1.0 + c[0]) * x, BELIEVED[1] * (1.0 + c[1]) * speed];
+            let stiffness_matters = self.calibration[0].only_in.is_none_or(|only| only == recording);
+            let stiffer = if stiffness_matters { c[0] } else { 0.0 };
+            let mut y = [BELIEVED[0] * (1.0 + stiffer) * x, BELIEVED[1] * (1.0 + c[1]) * speed];
             for (index, values) in &hypothesis.effects {
                 let added = match (*index, c.get(2)) {
                     (PHASED, phase) => [values[0] * libm::sin(3.0 * t + phase.copied().unwrap_or(PHASE)), 0.0],

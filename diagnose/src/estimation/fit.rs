@@ -87,10 +87,10 @@ impl Fit {
     }
 
     /// The change of coordinates when the selected blocks are left out, in the linear approximation. No coordinate changes by
-    /// more than `largest` or leaves its range, and one that the rest does not determine stays where it is. `None` where the
-    /// rest is singular even so.
+    /// more than `largest` or leaves its range, and one that is held or that the rest does not determine stays where it is. `None`
+    /// where the rest is singular even so.
     #[must_use]
-    pub fn step_without(&self, left_out: impl Fn(usize) -> bool, largest: f64) -> Option<DVector<f64>> {
+    pub fn step_without(&self, left_out: impl Fn(usize) -> bool, held: &[usize], largest: f64) -> Option<DVector<f64>> {
         let z = &self.point.z;
         let kept = (self.normals.iter().enumerate())
             .filter(|(k, _)| !left_out(*k))
@@ -99,9 +99,10 @@ impl Fit {
         // Only the difference that leaving out makes: the gradient left at the full fit is rounding and bounds.
         let (_, full) = sum(&self.normals, &self.prior, z);
         g -= full;
-        let near: Vec<(f64, f64)> = (self.ranges.iter().zip(z))
+        let mut near: Vec<(f64, f64)> = (self.ranges.iter().zip(z))
             .map(|(r, z)| (r.0.max(z - largest), r.1.min(z + largest)))
             .collect();
+        held.iter().for_each(|&k| near[k] = (z[k], z[k]));
         bounded_step(&h, &g, DAMPING, z, &near)
     }
 }
@@ -185,11 +186,11 @@ mod tests {
                 .map(|(_, b)| b);
             let (x, y) = stacked(rest);
             let expected = solved(x, &y) - &z;
-            let step = fit.step_without(|k| k == left_out, 10.0).expect("a step");
+            let step = fit.step_without(|k| k == left_out, &[], 10.0).expect("a step");
             assert!(expected.norm() > 0.01 && (step - &expected).norm() < 1e-4 * expected.norm());
         }
         // Nothing left out changes nothing.
-        assert!(fit.step_without(|_| false, 10.0).expect("a step").norm() < 1e-12);
+        assert!(fit.step_without(|_| false, &[], 10.0).expect("a step").norm() < 1e-12);
     }
 
     /// A mean of one number for each block with a prior: `z = sum(y) / (n + 1)`, whatever is left out.
@@ -201,7 +202,7 @@ mod tests {
             .collect();
         let fit = fitted(&blocks, &DVector::from_element(1, 9.0 / 4.0), 1.0, FAR);
         for (left_out, y) in y.iter().enumerate() {
-            let step = fit.step_without(|k| k == left_out, 10.0).expect("a step")[0];
+            let step = fit.step_without(|k| k == left_out, &[], 10.0).expect("a step")[0];
             let expected = (9.0 - y) / 3.0 - 9.0 / 4.0;
             assert!((step - expected).abs() < 1e-5, "{step} {expected}");
         }
@@ -217,7 +218,7 @@ mod tests {
         // Without the third block the mean is 0, without the first it is 4.5.
         let step = |range, left_out, largest| {
             let fit = fitted(&blocks, &mean, 0.0, range);
-            fit.step_without(|k| k == left_out, largest).expect("a step")[0]
+            fit.step_without(|k| k == left_out, &[], largest).expect("a step")[0]
         };
         assert!((step(FAR, 2, 10.0) + 3.0).abs() < 1e-5 && (step(FAR, 0, 10.0) - 1.5).abs() < 1e-5);
         assert_eq!(step(FAR, 2, 0.25), -0.25);
@@ -231,7 +232,7 @@ mod tests {
         let one = |row: [f64; 2], y: f64| (DMatrix::from_row_slice(1, 2, &row), DVector::from_element(1, y));
         let blocks = [one([1.0, 0.0], 1.0), one([1.0, 0.0], 3.0), one([0.0, 1.0], 5.0)];
         let fit = fitted(&blocks, &DVector::from_vec(vec![2.0, 5.0]), 0.0, FAR);
-        let step = fit.step_without(|k| k == 2, 10.0).expect("a step");
+        let step = fit.step_without(|k| k == 2, &[], 10.0).expect("a step");
         assert!(step.norm() < 1e-12, "{step}");
     }
 

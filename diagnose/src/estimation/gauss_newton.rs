@@ -4,7 +4,6 @@
 //! parameters would be re-laid-out for it at every step, and the sums over blocks that held-out figures and intervals are
 //! made of would have to be formed again. The step itself is Marquardt's (J. SIAM 11(2), 1963), with bounds.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::bounded_step::bounded_step;
@@ -75,7 +74,7 @@ pub struct Start {
     /// By how much steps with these derivatives have lowered the cost already.
     gained: f64,
     /// Coordinates that keep their value.
-    held: Range<usize>,
+    held: Vec<usize>,
 }
 
 impl Start {
@@ -95,13 +94,13 @@ impl Start {
             point,
             sensitivities,
             gained: 0.0,
-            held: 0..0,
+            held: vec![],
         })
     }
 
     /// The same with coordinates that keep their value.
     #[must_use]
-    pub fn holding(self, held: Range<usize>) -> Self {
+    pub fn holding(self, held: Vec<usize>) -> Self {
         Self { held, ..self }
     }
 
@@ -117,7 +116,7 @@ impl Start {
             point: fitted.point,
             sensitivities: Arc::unwrap_or_clone(kept),
             gained: 0.0,
-            held: 0..0,
+            held: vec![],
         })
     }
 }
@@ -319,7 +318,7 @@ mod tests {
         let friction = start.coordinates_of(&specimen, 1);
         let effort = problem.criteria.fitting.converged;
         let held = Start::at(&problem, start.clone())
-            .and_then(|at| fit_from(&problem, at.holding(friction.clone()), effort))
+            .and_then(|at| fit_from(&problem, at.holding(friction.clone().collect()), effort))
             .expect("a fit");
         let free = fit(&problem, start.clone(), effort).expect("a fit");
         let k = friction.start;

@@ -1,11 +1,16 @@
 //! A model judged on what had no say in its fit: each fold is left out in turn.
+//!
+//! Numbers of one recording, like the gas temperature with which a drive begins, keep their fitted values unless the whole recording is left out. No other
+//! recording knows them, so that the part of a recording that is left would have to find them anew, and its errors would hide what the model predicts.
 
-use super::blocks::Block;
+use super::blocks::{Block, Blocks};
 use super::fit::{Fit, HeldOut};
 use super::gauss_newton::{Start, fit_from};
 use super::least_squares::LeastSquares;
 use super::normal_equations::total_cost;
+use super::point::Point;
 use crate::criteria::Effort;
+use crate::specimen::Specimen;
 
 /// Costs of the blocks when their fold is held out, and the points fitted without each fold; computed once for each fit.
 ///
@@ -62,7 +67,10 @@ fn refitted(
     let start = Start::of(problem, fitted.clone()).ok();
     for part in 0..parts {
         let rest = problem.keeping(|b| part_of(b) != part);
-        let refit = start.clone().and_then(|start| fit_from(&rest, start, effort).ok());
+        let held = of_recordings_in(&rest.blocks, problem.specimen(), &fitted.point);
+        let refit = start
+            .clone()
+            .and_then(|start| fit_from(&rest, start.holding(held), effort).ok());
         let point = refit.map_or_else(|| fitted.point.clone(), |f| f.point);
         if let Ok(residuals) = problem.evaluation.residuals_at(&point) {
             for (k, cost) in problem.block_costs(&residuals).into_iter().enumerate() {
@@ -76,13 +84,24 @@ fn refitted(
     HeldOut { costs, points }
 }
 
+/// Coordinates of numbers that belong to one recording, of which a part is kept.
+fn of_recordings_in(kept: &Blocks, specimen: &dyn Specimen, point: &Point) -> Vec<usize> {
+    let is_kept = |recording: usize| kept.as_slice().iter().any(|b| b.recording == recording);
+    (point.parameters(specimen).iter().enumerate())
+        .filter_map(|(k, parameter)| parameter.only_in.is_some_and(is_kept).then_some(k))
+        .collect()
+}
+
 /// The same in the linear approximation around the fit.
 fn linear(fitted: &Fit, problem: &LeastSquares<'_>) -> HeldOut {
     let blocks = problem.blocks.as_slice();
     let mut costs = vec![0.0; fitted.normals.len()];
     let mut points = Vec::with_capacity(problem.blocks.folds());
     for fold in 0..problem.blocks.folds() {
-        let step = fitted.step_without(|k| blocks[k].fold == fold, problem.criteria.fitting.largest_linear_step);
+        let rest = problem.blocks.keeping(|b| b.fold != fold);
+        let held = of_recordings_in(&rest, problem.specimen(), &fitted.point);
+        let largest = problem.criteria.fitting.largest_linear_step;
+        let step = fitted.step_without(|k| blocks[k].fold == fold, &held, largest);
         let own = fitted
             .normals
             .iter()
@@ -107,7 +126,7 @@ mod tests {
     use super::*;
     use crate::analytic::{CUBIC, FORTY_SINES, RUN, Recipe};
     use crate::criteria::Criteria;
-    use crate::estimation::{Point, fit};
+    use crate::estimation::fit;
 
     /// The analytic specimen is linear, so that the approximation must equal the fits themselves.
     #[test]
@@ -159,6 +178,25 @@ mod tests {
         assert!(simulated(0.5 * (by_fit + by_approximation)) > 0);
         // Complete by both, and by neither.
         assert_eq!((simulated(1.01 * by_approximation), simulated(0.99 * by_fit)), (0, 0));
+    }
+
+    #[test]
+    fn a_number_of_one_recording_is_held_unless_the_whole_recording_is_left_out() {
+        let mut specimen = Recipe::default().make();
+        specimen.tie_stiffness_to(0);
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let effort = problem.criteria.fitting.converged;
+        let fitted = fit(&problem, Point::nominal(&specimen), effort).expect("a fit");
+        let folds = problem.blocks.folds();
+        let by_folds = refitted(&fitted, &problem, folds, |b| b.fold, effort);
+        for points in [linear(&fitted, &problem).points, by_folds.points] {
+            let moved = |k: usize| points.iter().filter(|p| p.z[k] != fitted.point.z[k]).count();
+            assert_eq!((moved(0), moved(1)), (0, folds));
+        }
+        let recordings = specimen.recordings().len();
+        let by_recordings = refitted(&fitted, &problem, recordings, |b| b.recording, effort).points;
+        let moved: Vec<bool> = (by_recordings.iter()).map(|p| p.z[0] != fitted.point.z[0]).collect();
+        assert!(moved[0] && !moved[1..].contains(&true), "{moved:?}");
     }
 
     #[test]

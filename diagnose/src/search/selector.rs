@@ -85,7 +85,7 @@ impl<'p, 'a> Selector<'p, 'a> {
     pub fn fitted_holding(&self, start: Point, held: Range<usize>) -> Result<Option<Fit>, DiagnoseError> {
         let start = Start::at(self.problem, start);
         let effort = self.criteria().fitting.converged;
-        if_simulated(start.and_then(|start| fit_from(self.problem, start.holding(held), effort)))
+        if_simulated(start.and_then(|start| fit_from(self.problem, start.holding(held.collect()), effort)))
     }
 
     /// Costs of the blocks, each held out.

@@ -19,8 +19,10 @@ pub enum Beginning {
 pub struct InMotion {
     /// Gauge pressure of the main chamber, Pa.
     pub chamber_pa: f64,
-    /// Gauge pressure of the gas in accumulators 1 and 2, Pa.
-    pub gas_pa: [f64; 2],
+    /// Gauge pressure of the oil in accumulators 1 and 2, Pa; the gas behind a piston that rubs has what the seal does not hold back.
+    pub accumulator_pa: [f64; 2],
+    /// Shear of the seals of both floating pistons, -1 to 1. It matters where they rub.
+    pub seal_shear: [f64; 2],
     /// Temperature of the gas in accumulator 1 beyond that which both would have if they were equally warm, K.
     pub first_beyond_k: f64,
     /// Volume of both gases together beyond what displacement and pressures say, relative. The recordings' equation does not conserve oil: what the dampers

@@ -201,7 +201,7 @@ impl Strut {
         }
         let mut pressure_pa = [state.p1_pa; 4];
         if let Beginning::InMotion(begins) = begins {
-            [pressure_pa[1], pressure_pa[3]] = begins.gas_pa;
+            [pressure_pa[1], pressure_pa[3]] = begins.accumulator_pa;
         }
         Ok(Self {
             swing: OilSwing::of(&hydraulics.network, model.gas.temperature_k),

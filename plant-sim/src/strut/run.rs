@@ -207,7 +207,9 @@ mod tests {
     use crate::strut::beginning::InMotion;
     use crate::strut::gas::GasState;
     use crate::strut::replay::replay;
-    use crate::strut::terms::{DampingFade, Effects, LawPlace, OilCompressibility, OilCount, UnlistedLaw};
+    use crate::strut::terms::{
+        AccumulatorPistonFriction, DampingFade, Effects, LawPlace, OilCompressibility, OilCount, UnlistedLaw,
+    };
 
     /// Samples of a motion with all valves open, from one on.
     fn inputs(from: usize, to: usize) -> Inputs {
@@ -241,7 +243,8 @@ mod tests {
         let output = run.strut.output();
         let mut begins = InMotion {
             chamber_pa: output.pressure_pa[0],
-            gas_pa: [output.pressure_pa[1], output.pressure_pa[3]],
+            accumulator_pa: [output.pressure_pa[1], output.pressure_pa[3]],
+            seal_shear: run.strut.flowing.state.shear,
             ..InMotion::default()
         };
         let equally_warm = begun_gas(model, first, begins)[0].temperature_k;
@@ -300,13 +303,25 @@ mod tests {
 
     #[test]
     fn a_drive_goes_on_from_its_middle_as_from_its_start() {
-        const MIDDLE: usize = 400;
         // Real gas, heat, undissolved air, and oil that is counted at its static density and not lost.
         let model = StrutModel::defender110(6000.0);
+        goes_on_from_its_middle(&model);
+        // The seals of the floating pistons hold back two bar and one.
+        let mut rubs = model;
+        rubs.effects.accumulator_piston_friction = Some(AccumulatorPistonFriction {
+            pressure_1_pa: 2e5,
+            pressure_2_pa: 1e5,
+            presliding_volume_m3: 4e-7,
+        });
+        goes_on_from_its_middle(&rubs);
+    }
+
+    fn goes_on_from_its_middle(model: &StrutModel) {
+        const MIDDLE: usize = 400;
         let (first, rest, whole) = (inputs(0, MIDDLE), inputs(MIDDLE, 1200), inputs(0, 1200));
-        let (to_the_middle, begins) = middle_of(&model, &first);
+        let (to_the_middle, begins) = middle_of(model, &first);
         let truth = to_the_middle.strut.flowing.state.gas;
-        let mut from_the_middle = Run::begin(&model, &rest, &Beginning::InMotion(begins)).unwrap();
+        let mut from_the_middle = Run::begin(model, &rest, &Beginning::InMotion(begins)).unwrap();
         let begun = from_the_middle.strut.flowing.state.gas;
         for (begun, truth) in begun.iter().zip(&truth) {
             assert!(
@@ -319,7 +334,7 @@ mod tests {
             );
         }
         from_the_middle.go_on_to_the_end();
-        let from_rest = replay(&model, &whole).unwrap();
+        let from_rest = replay(model, &whole).unwrap();
         let from_the_middle = from_the_middle.into_replayed().prediction;
         for point in 0..4 {
             let (a, b) = (
@@ -362,7 +377,7 @@ mod tests {
         let mut model = StrutModel::defender110(6000.0);
         let begins = InMotion {
             chamber_pa: 5e6,
-            gas_pa: [4e6, 3e6],
+            accumulator_pa: [4e6, 3e6],
             heating_w: [200.0, 50.0],
             heated_s: 40.0,
             ..InMotion::default()
@@ -391,11 +406,12 @@ mod tests {
         for pa in [f64::NAN, f64::NEG_INFINITY, f64::INFINITY] {
             let begins = InMotion {
                 chamber_pa: pa,
-                gas_pa: [pa; 2],
+                accumulator_pa: [pa; 2],
                 volume_beyond: pa,
                 first_beyond_k: pa,
                 heating_w: [pa; 2],
                 heated_s: pa,
+                seal_shear: [pa; 2],
             };
             // Whatever it gives, it returns.
             assert!(Run::begin(&model, &some, &Beginning::InMotion(begins)).is_ok());
@@ -408,7 +424,7 @@ mod tests {
         model.effects.gas_heat_transfer = None;
         let begins = InMotion {
             chamber_pa: 5e6,
-            gas_pa: [4e6, 3e6],
+            accumulator_pa: [4e6, 3e6],
             first_beyond_k: 40.0,
             volume_beyond: -0.2,
             ..InMotion::default()

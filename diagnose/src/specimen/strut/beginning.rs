@@ -2,7 +2,8 @@
 //!
 //! Volume and temperature of the gas in both accumulators are unknown. Fitted are the pressures, which are nearly what was read, and do not change with
 //! an error of the charge, as volumes would; the volume of both together, which the displacement says as long as no oil is lost; and one temperature. Where the
-//! dampers fade, it is unknown too for how long they have been heated, and in what proportion: before, oil may have taken the other path.
+//! dampers fade, it is unknown too for how long they have been heated, and in what proportion: before, oil may have taken the other path. Where floating
+//! pistons rub, the gas has another pressure than the oil, by what the sheared seal holds back.
 
 use oleo_plant_sim::strut::{ATMOSPHERE_PA, Beginning, Effects, InMotion, StrutModel, true_first_value};
 
@@ -35,6 +36,9 @@ const HEATED_WITHIN_S: (f64, f64) = (0.1, 36e3);
 const SECOND_POWER_FACTOR: f64 = 1.0;
 const SECOND_POWER_WITHIN: (f64, f64) = (0.05, 20.0);
 
+/// The shear of a piston's seal: twice its standard deviation, if it is anything between its ends; and how large it may be.
+const SHEAR_WITHIN: (f64, f64) = (1.2, 1.0);
+
 /// Something that is not known of the beginning of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Unknown {
@@ -44,7 +48,7 @@ pub struct Unknown {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Quantity {
-    /// Gas pressure of an accumulator, relative to the absolute pressure that was read.
+    /// Pressure of an accumulator, relative to the absolute pressure that was read.
     Pressure(Branch),
     /// Volume of both gases beyond what the displacement says, relative.
     Volume,
@@ -54,16 +58,20 @@ enum Quantity {
     Heated,
     /// Mean power of damper 2 before the recording, relative to that in it.
     SecondPower,
+    /// Shear of the seal of a floating piston.
+    Shear(Branch),
 }
 
 impl Quantity {
-    const ALL: [Self; 6] = [
+    const ALL: [Self; 8] = [
         Self::Pressure(Branch::First),
         Self::Pressure(Branch::Second),
         Self::Volume,
         Self::Temperature,
         Self::Heated,
         Self::SecondPower,
+        Self::Shear(Branch::First),
+        Self::Shear(Branch::Second),
     ];
 
     /// Its parameter in a recording of this name.
@@ -89,6 +97,8 @@ impl Quantity {
                 prior: true,
                 ..Parameter::log(key("damper_2_power"), 1.0, SECOND_POWER_WITHIN)
             },
+            Self::Shear(Branch::First) => beside_nothing("piston_seal_shear_1", SHEAR_WITHIN),
+            Self::Shear(Branch::Second) => beside_nothing("piston_seal_shear_2", SHEAR_WITHIN),
         }
     }
 }
@@ -145,7 +155,7 @@ pub fn as_read(recording: &Recording, layout: Layout, model: &StrutModel) -> Opt
     };
     Some(Beginning::InMotion(InMotion {
         chamber_pa: first(P1)?,
-        gas_pa: [first(P2)?, first(P4)?],
+        accumulator_pa: [first(P2)?, first(P4)?],
         heating_w: heating::of_dampers_w(recording, layout, model),
         heated_s: HEATED_USUALLY_S,
         ..InMotion::default()
@@ -161,10 +171,10 @@ pub fn behind_readings(begins: Beginning, effects: &Effects) -> Beginning {
         let pa = true_first_value(effects, CHANNELS[channel], reading);
         if pa.is_finite() { pa } else { reading }
     };
-    let [gas_1, gas_2] = read.gas_pa;
+    let [gas_1, gas_2] = read.accumulator_pa;
     Beginning::InMotion(InMotion {
         chamber_pa: truth(P1, read.chamber_pa),
-        gas_pa: [truth(P2, gas_1), truth(P4, gas_2)],
+        accumulator_pa: [truth(P2, gas_1), truth(P4, gas_2)],
         ..read
     })
 }
@@ -184,6 +194,7 @@ pub fn without_first_readings(recording: &mut Recording, layout: Layout) {
 /// What is not known of these recordings, with its parameters.
 pub fn unknowns(recordings: &[Recording], model: &StrutModel) -> (Vec<Unknown>, Vec<Parameter>) {
     let fade = model.effects.damping_fade.as_ref();
+    let rubs = model.effects.accumulator_piston_friction.as_ref();
     let heat_transfer_is_sought = model.effects.gas_heat_transfer.is_none();
     let beside = |is_sought: bool, effect: EffectId| is_sought.then_some(Beside::anywhere(effect));
     let only_beside = |quantity: Quantity| match quantity {
@@ -196,10 +207,20 @@ pub fn unknowns(recordings: &[Recording], model: &StrutModel) -> (Vec<Unknown>, 
             effect: EffectId::DampingFade,
             site: Some(Site::Paths),
         }),
+        Quantity::Shear(branch) => rubs.is_none().then_some(Beside {
+            effect: EffectId::AccumulatorPistonFriction,
+            site: Some(Site::Accumulator(branch)),
+        }),
     };
     let both_fade = fade.is_none_or(|fade| fade.fade_1_per_j > 0.0 && fade.fade_2_per_j > 0.0);
     let mut quantities = Quantity::ALL.to_vec();
-    quantities.retain(|quantity| *quantity != Quantity::SecondPower || both_fade);
+    quantities.retain(|quantity| match quantity {
+        Quantity::SecondPower => both_fade,
+        Quantity::Shear(branch) => {
+            rubs.is_none_or(|rubs| [rubs.pressure_1_pa, rubs.pressure_2_pa][branch.number() - 1] > 0.0)
+        }
+        _ => true,
+    });
     let (mut unknowns, mut parameters) = (Vec::new(), Vec::new());
     for (recording, named) in recordings.iter().enumerate() {
         for &quantity in &quantities {
@@ -222,13 +243,14 @@ impl Unknown {
         {
             match self.quantity {
                 Quantity::Pressure(branch) => {
-                    let pressure_pa = &mut in_motion.gas_pa[branch.number() - 1];
+                    let pressure_pa = &mut in_motion.accumulator_pa[branch.number() - 1];
                     *pressure_pa += value * (*pressure_pa + ATMOSPHERE_PA);
                 }
                 Quantity::Volume => in_motion.volume_beyond += value,
                 Quantity::Temperature => in_motion.first_beyond_k += value,
                 Quantity::Heated => in_motion.heated_s = value,
                 Quantity::SecondPower => in_motion.heating_w[1] *= value,
+                Quantity::Shear(branch) => in_motion.seal_shear[branch.number() - 1] = value,
             }
         }
     }
@@ -237,7 +259,7 @@ impl Unknown {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use oleo_plant_sim::strut::DampingFade;
+    use oleo_plant_sim::strut::{AccumulatorPistonFriction, DampingFade};
 
     const NONE: f64 = f64::NAN;
 
@@ -274,7 +296,7 @@ mod tests {
         let Some(Beginning::InMotion(read)) = as_read(&recording, Layout::VEHICLE, &model()) else {
             panic!("it begins in motion");
         };
-        assert_eq!((read.chamber_pa, read.gas_pa), (2e6, [2.1e6, 2.3e6]));
+        assert_eq!((read.chamber_pa, read.accumulator_pa), (2e6, [2.1e6, 2.3e6]));
         // Three samples are within 0.1 s; the accumulators keep their first reading.
         without_first_readings(&mut recording, Layout::VEHICLE);
         let counted = [1, 2, 3, 4].map(|c| recording.columns[c].iter().filter(|p| p.is_finite()).count());
@@ -312,7 +334,7 @@ mod tests {
         assert_eq!(read, None);
         let begins = Beginning::InMotion(InMotion {
             chamber_pa: 4e6,
-            gas_pa: [4e6, 4e6],
+            accumulator_pa: [4e6, 4e6],
             ..InMotion::default()
         });
         let mut effects = Effects::default();
@@ -324,7 +346,7 @@ mod tests {
         let Beginning::InMotion(behind) = behind_readings(begins, &effects) else {
             panic!("it begins in motion");
         };
-        assert_eq!((behind.chamber_pa, behind.gas_pa), (4e6, [5e6, 3.9e6]));
+        assert_eq!((behind.chamber_pa, behind.accumulator_pa), (4e6, [5e6, 3.9e6]));
         assert_eq!(behind_readings(Beginning::AtRest, &effects), Beginning::AtRest);
     }
 
@@ -347,30 +369,56 @@ mod tests {
     }
 
     #[test]
+    fn the_shear_of_a_seal_is_unknown_where_its_piston_rubs() {
+        let shears = |rub: Option<[f64; 2]>| {
+            let mut model = model();
+            model.effects.accumulator_piston_friction =
+                rub.map(|[pressure_1_pa, pressure_2_pa]| AccumulatorPistonFriction {
+                    pressure_1_pa,
+                    pressure_2_pa,
+                    presliding_volume_m3: 1e-7,
+                });
+            let (_, mut all) = unknowns(&[recording()], &model);
+            all.retain(|p| p.key.starts_with("piston_seal_shear"));
+            all
+        };
+        let sites: Vec<_> = (shears(None).into_iter())
+            .map(|p| p.only_beside.and_then(|beside| beside.site))
+            .collect();
+        assert_eq!(sites, Branch::ALL.map(|branch| Some(Site::Accumulator(branch))));
+        let [second] = shears(Some([0.0, 1e5])).try_into().expect("of one piston");
+        assert_eq!(
+            (second.key.as_str(), second.only_beside),
+            ("piston_seal_shear_2 at the beginning of a", None)
+        );
+    }
+
+    #[test]
     fn a_deviation_is_of_one_recording_and_one_quantity() {
         let (unknowns, parameters) = unknowns(&[recording(), recording()], &model());
-        assert_eq!((unknowns.len(), parameters.len()), (12, 12));
+        assert_eq!((unknowns.len(), parameters.len()), (16, 16));
         assert_eq!(parameters[1].key, "gas_pressure_2 at the beginning of a");
         let mut begins = Beginning::InMotion(InMotion {
             chamber_pa: 4e6,
-            gas_pa: [4e6, 4e6],
+            accumulator_pa: [4e6, 4e6],
             heating_w: [300.0, 200.0],
             ..InMotion::default()
         });
         let before = begins;
-        unknowns[6].apply(0, &mut begins, 0.01);
+        unknowns[8].apply(0, &mut begins, 0.01);
         assert_eq!(begins, before);
-        for unknown in &unknowns[..6] {
+        for unknown in &unknowns[..8] {
             unknown.apply(0, &mut begins, 0.01);
         }
         let pa = 4e6 + 0.01 * (4e6 + ATMOSPHERE_PA);
         let moved = InMotion {
             chamber_pa: 4e6,
-            gas_pa: [pa, pa],
+            accumulator_pa: [pa, pa],
             first_beyond_k: 0.01,
             volume_beyond: 0.01,
             heating_w: [300.0, 2.0],
             heated_s: 0.01,
+            seal_shear: [0.01; 2],
         };
         assert_eq!(begins, Beginning::InMotion(moved));
     }

@@ -30,7 +30,7 @@ pub(super) struct Path<N: Number = f64> {
     line: LaminarLine<N>,
     pub gas: Gas<N>,
     pub static_gas_m3: N,
-    piston_seal: PistonSeal<N>,
+    pub piston_seal: PistonSeal<N>,
     pub fade: PackFade<N>,
     /// Unmodelled laws; `None` where the model has none.
     laws: Option<Box<PathLaws<N>>>,

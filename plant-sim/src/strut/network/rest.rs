@@ -34,7 +34,11 @@ impl Network {
     pub fn in_motion(&self, displacement_m: f64, ambient_k: f64, begins: &InMotion) -> State {
         let possible = |pa: f64| Gauge(pa.clamp(LOWEST_PA, HIGHEST_PA));
         let chamber = possible(begins.chamber_pa);
-        let gas_pa = begins.gas_pa.map(|pa| possible(pa).absolute());
+        let shear = begins.seal_shear.map(|shear| shear.clamp(-1.0, 1.0));
+        let gas_pa = [0, 1].map(|i| {
+            let held_back_pa = self.paths[i].piston_seal.breakaway_pa * shear[i];
+            possible(begins.accumulator_pa[i] - held_back_pa).absolute()
+        });
         let gas = |i: usize, temperature_k: f64| {
             let gas = &self.paths[i].gas;
             let temperature_k = if gas.is_isothermal() {
@@ -64,7 +68,10 @@ impl Network {
         // What is left is never nothing, whatever a fit asks for.
         let left = (together - first.volume_m3).max(LEAST_SHARE * together);
         let second = gas(1, self.paths[1].gas.temperature_at(gas_pa[1], left));
-        self.without_flow(displacement_m, chamber, [first, second])
+        State {
+            shear,
+            ..self.without_flow(displacement_m, chamber, [first, second])
+        }
     }
 
     /// A state in which no oil flows and nothing has been heated.

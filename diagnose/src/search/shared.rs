@@ -1,14 +1,15 @@
 //! An effect that specimens of one kind have in common, tried where the search did not find it.
 //!
 //! Its numbers are known from the others, so that it spends none here. It need not gain what an effect of this specimen alone must: it joins the model if
-//! the recordings do not speak against it.
+//! the recordings do not speak against it or, where one other alone shows it, if they speak for it.
 
 use super::selection::Selection;
 use super::selector::{Open, Selector};
 use crate::error::DiagnoseError;
 use crate::estimation::{Fit, LeastSquares, Point};
 
-/// What a search found, with an effect that others have with these coordinates; `None` if the recordings meet the model worse with it.
+/// What a search found, with an effect that others have with these coordinates; `None` if the recordings do not meet the model better with it, by this
+/// much of the cost.
 ///
 /// Effects that it makes superfluous leave the model, and so do those that exclude it; in place of one that leaves so the model may cost as much more as
 /// an effect must gain.
@@ -20,6 +21,7 @@ pub fn with_shared(
     found: &Selection,
     shared: usize,
     coordinates: &[f64],
+    better_by: f64,
 ) -> Result<Option<Selection>, DiagnoseError> {
     let mut selector = Selector::new(problem);
     if !selector.testable().contains(&shared) {
@@ -28,7 +30,7 @@ pub fn with_shared(
     let specimen = problem.specimen();
     let least_gain = (selector.criteria().acceptance).least_gain_of(problem.residuals() as f64);
     let mut point = found.best.point.clone();
-    let mut most = found.best.cost;
+    let mut most = found.best.cost - better_by;
     let excluded = |e: &usize| selector.candidate(*e).excludes(selector.candidate(shared));
     while let Some(position) = point.effects.iter().position(excluded) {
         point = point.without_effect(specimen, position);
@@ -104,11 +106,16 @@ mod tests {
 
     /// The model that comes of what a search finds and of an effect of this size that others have; `None` if it does not join.
     fn joined(specimen: &Analytic, shared: usize, size: f64) -> Option<Vec<usize>> {
+        joined_if(specimen, shared, size, 0.0)
+    }
+
+    /// The same if it lowers the cost by this much.
+    fn joined_if(specimen: &Analytic, shared: usize, size: f64, better_by: f64) -> Option<Vec<usize>> {
         let problem = LeastSquares::new(specimen, &RUN);
         let found = select(&problem, &|_, _| {}).expect("a selection");
         assert!(!found.best.point.effects.contains(&shared));
         let z = specimen.candidates()[shared].parameters[0].z(size);
-        let joined = with_shared(&problem, &found, shared, &[z]).expect("fits");
+        let joined = with_shared(&problem, &found, shared, &[z], better_by).expect("fits");
         joined.map(|selection| {
             let named: Vec<usize> = selection.effects.iter().map(|e| e.candidate).collect();
             let mut effects = selection.best.point.effects;
@@ -122,6 +129,9 @@ mod tests {
     fn what_is_too_weak_to_be_found_joins_and_what_is_not_there_does_not() {
         let weak = specimen(vec![(FRICTION, vec![0.003])], &[CUBIC, FRICTION]);
         assert_eq!(joined(&weak, FRICTION, 0.003), Some(vec![FRICTION]));
+        // The recordings speak for it, but not aloud.
+        assert_eq!(joined_if(&weak, FRICTION, 0.003, 1.0), Some(vec![FRICTION]));
+        assert_eq!(joined_if(&weak, FRICTION, 0.003, 30.0), None);
         // The recordings speak against a friction that is three times as strong.
         assert_eq!(joined(&weak, FRICTION, 0.009), None);
         let without = specimen(vec![], &[CUBIC, FRICTION]);
@@ -140,7 +150,7 @@ mod tests {
             .with_effect(&specimen, FRICTION, &[0.1]);
         found.best = Selector::new(&problem).fitted(wrong).expect("a fit");
         let z = specimen.candidates()[CUBIC].parameters[0].z(0.3);
-        let with_it = with_shared(&problem, &found, CUBIC, &[z])
+        let with_it = with_shared(&problem, &found, CUBIC, &[z], 0.0)
             .expect("fits")
             .expect("it joins");
         assert_eq!(with_it.best.point.effects, [FRICTION, CUBIC]);

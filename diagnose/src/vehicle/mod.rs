@@ -10,7 +10,7 @@
 //! ```
 //!
 //! A corner is a strut as on a test rig, with three differences: no force is recorded, readings are rounded to the steps of the
-//! bus, and some are missing. What is common to all four is decided afterwards, from the four estimates and their intervals; what two or three corners show
+//! bus, and some are missing. What is common to all four is decided afterwards, from the four estimates and their intervals; what some corners show
 //! of the oil, the gas or the design is tried at the others.
 //!
 //! This module knows nothing of CAN: a [`Drive`] may come from any log.

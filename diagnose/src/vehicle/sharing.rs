@@ -2,7 +2,7 @@
 //!
 //! What all four struts share may be too weak to be found at each of them: one strut moves less than the others, or something else explains it as well
 //! there. Where two or three corners show such an effect with estimates that agree, and the recordings of every other corner do not speak against it
-//! ([`with_shared`]), it is an effect of the vehicle.
+//! ([`with_shared`]), it is an effect of the vehicle. Where one corner alone shows it, the recordings of all others must speak for it, with the number of this one.
 
 use std::sync::atomic::AtomicBool;
 
@@ -17,6 +17,10 @@ use crate::error::DiagnoseError;
 use crate::estimation::{LeastSquares, interval};
 use crate::parameter::Parameter;
 use crate::search::with_shared;
+
+/// By how much the cost of every other corner falls with what one corner alone shows, if it is an effect of the vehicle: three standard deviations of its size,
+/// which is not fitted there. An effect of one corner makes the cost of the others rise.
+const SPEAKS_FOR_IT: f64 = 9.0;
 
 /// The diagnoses of the corners, with what all of them share.
 ///
@@ -46,7 +50,7 @@ pub fn with_what_all_share(
     Ok(corners)
 }
 
-/// Candidates that two or three corners have in their models, of effects that a vehicle's struts share.
+/// Candidates that one to three corners have in their models, of effects that a vehicle's struts share.
 fn shown_by_some<'a>(struts: &Corners<LeastSquares<'a>>, corners: &Corners<Diagnosis>) -> Vec<&'a Candidate> {
     let mut shown: Vec<(&Candidate, usize)> = Vec::new();
     for (corner, diagnosis) in corners.iter() {
@@ -60,7 +64,7 @@ fn shown_by_some<'a>(struts: &Corners<LeastSquares<'a>>, corners: &Corners<Diagn
             }
         }
     }
-    let some = |&(candidate, times): &(&'a Candidate, usize)| (2..=3).contains(&times).then_some(candidate);
+    let some = |&(candidate, times): &(&'a Candidate, usize)| (1..=3).contains(&times).then_some(candidate);
     shown.iter().filter_map(some).collect()
 }
 
@@ -84,13 +88,14 @@ fn shared_by_all(
             None => others.push((corner, candidates.iter().position(|c| is_same(c, effect)))),
         }
     }
+    let better_by = if estimates.len() == 1 { SPEAKS_FOR_IT } else { 0.0 };
     let mut with_it = Corners::from_fn(|_| None);
     for (corner, candidate) in others {
         let (strut, found) = (&struts[corner], &corners[corner].selection);
         let known =
             candidate.and_then(|c| Some((c, pooled(&estimates, &strut.specimen().candidates()[c].parameters)?)));
         let joined = match known {
-            Some((candidate, coordinates)) => with_shared(strut, found, candidate, &coordinates)?,
+            Some((candidate, coordinates)) => with_shared(strut, found, candidate, &coordinates, better_by)?,
             None => None,
         };
         let Some(selection) = joined else {
@@ -112,8 +117,13 @@ fn estimated(strut: &LeastSquares<'_>, diagnosis: &Diagnosis, position: usize) -
         .collect())
 }
 
-/// The mean of what the corners show, as coordinates of parameters; `None` if they contradict each other.
+/// The mean of what the corners show, as coordinates of parameters; `None` if they contradict each other. Of one corner it is what this shows.
 fn pooled(estimates: &[Vec<[f64; 2]>], parameters: &[Parameter]) -> Option<Vec<f64>> {
+    if let [alone] = estimates {
+        return (parameters.iter().enumerate())
+            .map(|(k, parameter)| Some(parameter.z(alone.get(k)?[0])).filter(|z| z.is_finite()))
+            .collect();
+    }
     (parameters.iter().enumerate())
         .map(|(k, parameter)| {
             let of_corners = estimates.iter().map(|numbers| {
@@ -144,10 +154,9 @@ mod tests {
     }
 
     #[test]
-    fn of_one_corner_nothing_is_pooled() {
+    fn of_one_corner_it_is_what_this_shows_and_of_none_with_this_number_nothing() {
         let size = [Parameter::amount("share", 0.1, 1.0)];
-        assert_eq!(pooled(&[vec![[0.2, 0.21]]], &size), None);
-        // Nor from corners that have other numbers.
+        assert_eq!(pooled(&[vec![[0.2, 0.21]]], &size), Some(vec![2.0]));
         assert_eq!(pooled(&[vec![], vec![]], &size), None);
     }
 }

@@ -162,6 +162,29 @@ fn logs_that_begin_in_motion_are_diagnosed_and_their_files_say_so_again() {
 }
 
 #[test]
+fn a_floating_piston_that_rubs_holds_pressure_back_where_a_log_begins_in_motion() {
+    let concealed = Concealed::new(EffectId::AccumulatorPistonFriction, 1, 4e5, vec![Corner::RearLeft]);
+    let case = Case {
+        begins_s: 2.5,
+        ..case(9, vec![concealed])
+    };
+    let (_folder, report, truth) = diagnosed(&case);
+    assert_eq!(
+        effects(&report),
+        ["accumulator_piston_friction@rear-left/accumulator-2"],
+        "{:#}",
+        report["fit"]
+    );
+    for TrueAtCorner { number, .. } in truth {
+        let interval = &report["effects"][0]["parameters"][&number.key]["ci95"];
+        let [low, high] = [&interval[0], &interval[1]].map(|v| v.as_f64().expect("a number"));
+        assert!(low < number.value && number.value < high, "{number:?} in {interval}");
+    }
+    let left = &report["effects"][0]["held_out_noise_ratio"]["with"];
+    assert!(left.as_f64().expect("a ratio") < 1.02, "{left}");
+}
+
+#[test]
 fn what_three_corners_show_of_the_oil_is_the_vehicles() {
     // At 44 GPa all corners show it alone, at 46 GPa one.
     let concealed = Concealed::new(EffectId::OilCompressibility, 0, 1.0 / 45e9, Corner::ALL.to_vec());

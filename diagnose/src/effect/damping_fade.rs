@@ -14,10 +14,6 @@ const FIRST: usize = 0;
 /// Variant in which damper 2 alone fades; in the third both do.
 const SECOND: usize = 1;
 
-/// Rates at which dampers cool, 1/s: usual, a difference that shows, and how small and large they may be. A rate is fitted and not a time: recordings that are too
-/// short to show any cooling tell no long time from a longer one, but they do not tell how large the fade is either, and a rate of zero says so.
-const COOLING_RATES_1_S: (f64, f64, (f64, f64)) = (1.0 / 60.0, 0.01, (1e-5, 1.0));
-
 pub struct DampingFade;
 
 impl Effect for DampingFade {
@@ -61,10 +57,10 @@ impl ActsOn<Strut> for DampingFade {
         if model.effects.damping_fade.is_some() {
             return vec![];
         }
-        let cooling = || {
-            let (usual, visible, range) = COOLING_RATES_1_S;
-            Parameter::linear("cooling_rate_1_s", usual, visible, range).shown_as_inverse("cooling_time_s")
-        };
+        // A rate is fitted and not a time: recordings that are too short to show any cooling tell no long time from a longer one, but they do not tell how large
+        // the fade is either, and near a rate of zero both answer together.
+        let cooling =
+            || Parameter::linear("cooling_rate_1_s", 1.0 / 60.0, 0.01, (1e-5, 1.0)).shown_as_inverse("cooling_time_s");
         let fade = |branch: Branch| Parameter::amount(format!("fade_{}_per_J", branch.number()), 1e-5, 1e-2);
         let one = Branch::ALL.map(|branch| {
             Candidate::new(self.id(), Site::Path(branch), vec![fade(branch), cooling()])

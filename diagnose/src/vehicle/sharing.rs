@@ -117,13 +117,8 @@ fn estimated(strut: &LeastSquares<'_>, diagnosis: &Diagnosis, position: usize) -
         .collect())
 }
 
-/// The mean of what the corners show, as coordinates of parameters; `None` if they contradict each other. Of one corner it is what this shows.
+/// The mean of what the corners show, as coordinates of parameters; `None` if they contradict each other.
 fn pooled(estimates: &[Vec<[f64; 2]>], parameters: &[Parameter]) -> Option<Vec<f64>> {
-    if let [alone] = estimates {
-        return (parameters.iter().enumerate())
-            .map(|(k, parameter)| Some(parameter.z(alone.get(k)?[0])).filter(|z| z.is_finite()))
-            .collect();
-    }
     (parameters.iter().enumerate())
         .map(|(k, parameter)| {
             let of_corners = estimates.iter().map(|numbers| {

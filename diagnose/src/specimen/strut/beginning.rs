@@ -171,10 +171,10 @@ pub fn behind_readings(begins: Beginning, effects: &Effects) -> Beginning {
         let pa = true_first_value(effects, CHANNELS[channel], reading);
         if pa.is_finite() { pa } else { reading }
     };
-    let [gas_1, gas_2] = read.accumulator_pa;
+    let [first, second] = read.accumulator_pa;
     Beginning::InMotion(InMotion {
         chamber_pa: truth(P1, read.chamber_pa),
-        accumulator_pa: [truth(P2, gas_1), truth(P4, gas_2)],
+        accumulator_pa: [truth(P2, first), truth(P4, second)],
         ..read
     })
 }

@@ -10,6 +10,7 @@
 //! | file | what it holds |
 //! |---|---|
 //! | `local_fit` | polynomials over a neighbourhood, and how wide it may be |
+//! | `projection` | orthonormal polynomials, and what samples are made of them |
 //! | `chi_square` | how much noise alone can leave |
 //! | `holds` | stretches without motion, and how moves begin and end at them |
 //! | `noise` | the noise of the samples |
@@ -22,6 +23,7 @@ mod free_motion;
 mod holds;
 mod local_fit;
 mod noise;
+mod projection;
 mod samples;
 mod smooth;
 

@@ -2,7 +2,7 @@
 
 use super::chi_square::largest_chi_square;
 use super::noise::Noise;
-use super::projection::Basis;
+use super::projection::{Basis, HIGHEST_DEGREE};
 
 /// Window lengths that are tried to one side, samples.
 const LENGTHS: [usize; 13] = [4, 5, 6, 8, 11, 15, 20, 27, 36, 48, 64, 86, 114];
@@ -11,7 +11,7 @@ pub(super) const FEWEST_SAMPLES: usize = LENGTHS[0];
 /// Degree of the polynomials next to corners.
 pub(super) const CUBIC: usize = 3;
 /// Degree of the polynomials where the motion is smooth.
-pub(super) const QUINTIC: usize = 5;
+pub(super) const QUINTIC: usize = HIGHEST_DEGREE;
 /// Samples of the longest neighbourhood.
 const LONGEST: usize = 2 * LENGTHS[LENGTHS.len() - 1];
 

@@ -45,6 +45,8 @@ pub(super) struct Step<N = f64> {
     pub duration_s: N,
     /// Displacement of the actuator at its beginning, m.
     pub from_m: N,
+    /// Gauge pressure p1 at its beginning, Pa.
+    pub from_p1_pa: N,
     /// Displacement, m, and speed, m/s, of the actuator at the end of the first stage.
     pub middle: [N; 2],
     /// The same at its end.
@@ -105,6 +107,7 @@ impl Step<[f64; LANES]> {
         self.begins_s[lane] = step.begins_s;
         self.duration_s[lane] = step.duration_s;
         self.from_m[lane] = step.from_m;
+        self.from_p1_pa[lane] = step.from_p1_pa;
         for i in 0..2 {
             self.middle[i][lane] = step.middle[i];
             self.end[i][lane] = step.end[i];
@@ -129,6 +132,7 @@ impl Step<[f64; LANES]> {
             begins_s: self.begins_s[lane],
             duration_s: self.duration_s[lane],
             from_m: self.from_m[lane],
+            from_p1_pa: self.from_p1_pa[lane],
             middle: [self.middle[0][lane], self.middle[1][lane]],
             end: [self.end[0][lane], self.end[1][lane]],
             opening: [opening(0), opening(1)],
@@ -151,6 +155,7 @@ impl Step<[f64; LANES]> {
             begins_s: of(&self.begins_s),
             duration_s: of(&self.duration_s),
             from_m: of(&self.from_m),
+            from_p1_pa: of(&self.from_p1_pa),
             middle: [of(&self.middle[0]), of(&self.middle[1])],
             end: [of(&self.end[0]), of(&self.end[1])],
             opening: [opening(0), opening(1)],

@@ -20,7 +20,7 @@ use super::motion::{Cubic, Segment, StrutMove};
 use super::network::LastSolution;
 use super::rod_course::RodCourse;
 use super::rod_forces::RodForces;
-use super::rod_state::{Acceleration, RodState};
+use super::rod_state::{Acceleration, RodState, RodStep};
 use super::terms::{LawArgument, LawPlace, ValveTransition, law_at, longest_step_s, total_response_s};
 use super::valve::ValveMotion;
 
@@ -334,6 +334,7 @@ impl Strut {
             begins_s: now_s,
             duration_s: h,
             from_m: self.actuator_m,
+            from_p1_pa: self.flowing.pressure_pa[0],
             middle: [middle_m, middle_m_s],
             end: [end_m, end_m_s],
             // Sampled a nanosecond before the end: an opening that steps there belongs to the next step.
@@ -354,18 +355,25 @@ impl Strut {
         if let Some(swing) = &mut self.swing {
             swing.follow(step.duration_s, self.flowing.state.q2_m3_s);
         }
+        let through = |strut: &Self| RodStep {
+            stroke_m,
+            duration_s: step.duration_s,
+            begun_p1_pa: step.from_p1_pa,
+            begun_oil_force_n: strut.hydraulics.network.chamber.area_m2 * step.from_p1_pa,
+            end: strut.rod_state(),
+        };
         match friction_n {
             Some(friction_n) => self.rod.set_friction_n(friction_n),
             None if self.rod.rubs() => {
-                let rod = self.rod_state();
-                self.rod.follow(stroke_m, step.duration_s, &rod);
+                let step = through(self);
+                self.rod.follow(&step);
             }
             None => {}
         }
         if self.course.is_some() {
-            let rod = self.rod_state();
+            let step = through(self);
             if let Some(course) = &mut self.course {
-                course.push_step(stroke_m, step.duration_s, rod);
+                course.push_step(step);
             }
         }
         interval.done_s += step.duration_s;

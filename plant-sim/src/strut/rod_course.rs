@@ -5,21 +5,14 @@
 
 use super::model::StrutModel;
 use super::rod_forces::RodForces;
-use super::rod_state::RodState;
+use super::rod_state::{RodState, RodStep};
 use super::terms::{Effects, LawArgument, LawPlace, UnlistedLaw};
 
-/// The rod's states in a simulation: at the end of every step, and at the samples.
+/// What the rod has gone through in a simulation: every step, and its states at the samples.
 #[derive(Debug, Clone, Default)]
 pub struct RodCourse {
-    steps: Vec<Step>,
+    steps: Vec<RodStep>,
     samples: Vec<Sample>,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Step {
-    stroke_m: f64,
-    duration_s: f64,
-    end: RodState,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -31,12 +24,8 @@ struct Sample {
 
 impl RodCourse {
     /// A step of the integrator has ended.
-    pub(super) fn push_step(&mut self, stroke_m: f64, duration_s: f64, end: RodState) {
-        self.steps.push(Step {
-            stroke_m,
-            duration_s,
-            end,
-        });
+    pub(super) fn push_step(&mut self, step: RodStep) {
+        self.steps.push(step);
     }
 
     /// A sample is due.
@@ -55,7 +44,7 @@ impl RodCourse {
         (self.samples.iter())
             .map(|sample| {
                 for step in &self.steps[done..sample.steps] {
-                    forces.follow(step.stroke_m, step.duration_s, &step.end);
+                    forces.follow(step);
                 }
                 done = sample.steps;
                 forces.total_n(&sample.rod)

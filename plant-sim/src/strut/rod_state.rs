@@ -19,6 +19,34 @@ pub(super) struct RodState {
     pub time_s: f64,
 }
 
+/// What a rod has gone through in a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct RodStep {
+    /// The way that it took, m, jounce positive.
+    pub stroke_m: f64,
+    /// The time that it took, s.
+    pub duration_s: f64,
+    /// Gauge pressure p1 at its beginning, Pa.
+    pub begun_p1_pa: f64,
+    /// Force of the oil on the rod at its beginning, N.
+    pub begun_oil_force_n: f64,
+    /// The state that it has led to.
+    pub end: RodState,
+}
+
+impl RodStep {
+    /// The state at its beginning, except that speed and acceleration are those of the end.
+    pub fn begun(&self) -> RodState {
+        RodState {
+            displacement_m: self.end.displacement_m - self.stroke_m,
+            p1_pa: self.begun_p1_pa,
+            oil_force_n: self.begun_oil_force_n,
+            time_s: self.end.time_s - self.duration_s,
+            ..self.end
+        }
+    }
+}
+
 /// Acceleration of the rod at the end of an interval, from the speeds gained in this interval and in the one before. It is worked out
 /// where a law asks for it only.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

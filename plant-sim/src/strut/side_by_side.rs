@@ -124,11 +124,8 @@ impl<S: Simd> pulp::NullaryFnOnce for Rub<'_, S> {
             stroke_m: displacement_m - of(&self.steps.from_m),
             duration_s: of(&self.steps.duration_s),
             displacement_m,
-            oil_force_n: self.area_m2 * self.p1_pa,
+            oil_forces_n: [of(&self.steps.from_p1_pa), self.p1_pa].map(|p1_pa| self.area_m2 * p1_pa),
         };
-        let level_n = self.friction.level_n(&rod);
-        self.friction
-            .after_n(of(&self.steps.friction_n), &rod, level_n)
-            .into_array()
+        self.friction.after_n(of(&self.steps.friction_n), &rod).into_array()
     }
 }

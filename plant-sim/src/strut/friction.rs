@@ -11,7 +11,7 @@ use crate::lanes::{Number, decay};
 /// the seal).
 pub const PRESLIDING_STIFFNESS_N_M: f64 = 2e6;
 
-/// A stroke over the distance along which the seal shears that is short.
+/// A stroke over the distance along which the seal shears, below which the exponential is a straight line.
 const SHORT: f64 = 1e-5;
 
 /// Friction force after a stroke of `stroke_m`, from `force_n` before it, where it slides at `level_n`; N, positive
@@ -55,7 +55,7 @@ pub(super) fn after_stroke_between<N: Number>(force_n: N, stroke_m: N, levels_n:
     let [begin_n, end_n] = levels_n.map(|level_n| N::choose(forward, level_n, -level_n));
     let shears = stiffness_n_m * stroke_m.abs() / ((levels_n[0] + levels_n[1]) * 0.5);
     let left = decay(-shears);
-    // Of a stroke that is too short for the difference to one the mean is the series.
+    // Where the seal hardly shears, the difference to one would have no digits left.
     let mean_left = N::choose(
         shears.above(force_n.of(SHORT)),
         (one - left) / shears,

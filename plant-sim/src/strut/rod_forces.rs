@@ -46,9 +46,6 @@ impl RodForces {
             oil_forces_n: [step.begun_oil_force_n, step.end.oil_force_n],
         };
         self.friction_n = if self.friction_laws.is_empty() {
-            if self.friction.is_none() {
-                return;
-            }
             self.friction.after_n(self.friction_n, &stroke)
         } else {
             let [begin_n, end_n] = self.friction.levels_n(&stroke);

@@ -134,6 +134,24 @@ mod tests {
         assert!((both.friction_n() - 260.0).abs() < 1e-9);
     }
 
+    /// Force, N, of a strut with closed valves whose rod is at a displacement (m) with a speed (m/s) at a time, sampled at an interval.
+    fn recorded_n(model: &StrutModel, interval_s: f64, samples: usize, rod: impl Fn(f64) -> (f64, f64)) -> Vec<f64> {
+        let time_s: Vec<f64> = (0..=samples).map(|k| interval_s * k as f64).collect();
+        let segments = (time_s.windows(2))
+            .map(|t| Segment {
+                to_m: rod(t[1]).0,
+                from_m_s: rod(t[0]).1,
+                to_m_s: rod(t[1]).1,
+            })
+            .collect();
+        let inputs = Inputs {
+            time_s,
+            motion: Motion { start_m: 0.0, segments },
+            signals: vec![StrutValves::default(); samples + 1],
+        };
+        replay(model, &inputs).unwrap().force_n
+    }
+
     /// A rod that moves on at 1 mm/s, sampled at an interval: its seal shears for 0.2 s to its level, which swings.
     fn creeping_n(interval_s: f64, samples: usize) -> Vec<f64> {
         let mut model = StrutModel::defender110(8000.0);
@@ -156,20 +174,7 @@ mod tests {
             attraction: None,
         }];
         let speed_m_s = 1e-3;
-        let segment = |k: usize| Segment {
-            to_m: speed_m_s * interval_s * (k + 1) as f64,
-            from_m_s: speed_m_s,
-            to_m_s: speed_m_s,
-        };
-        let inputs = Inputs {
-            time_s: (0..=samples).map(|k| interval_s * k as f64).collect(),
-            motion: Motion {
-                start_m: 0.0,
-                segments: (0..samples).map(segment).collect(),
-            },
-            signals: vec![StrutValves::new(true, true, true); samples + 1],
-        };
-        replay(&model, &inputs).unwrap().force_n
+        recorded_n(&model, interval_s, samples, |t| (speed_m_s * t, speed_m_s))
     }
 
     #[test]
@@ -190,23 +195,9 @@ mod tests {
             overlap_growth_1_m: 0.0,
         });
         let (stroke_m, w) = (0.025, 4.0 * std::f64::consts::PI);
-        let segment = |k: usize| {
-            let [from_s, to_s] = [k, k + 1].map(|k| interval_s * k as f64);
-            Segment {
-                to_m: stroke_m * libm::sin(w * to_s),
-                from_m_s: stroke_m * w * libm::cos(w * from_s),
-                to_m_s: stroke_m * w * libm::cos(w * to_s),
-            }
-        };
-        let inputs = Inputs {
-            time_s: (0..=samples).map(|k| interval_s * k as f64).collect(),
-            motion: Motion {
-                start_m: 0.0,
-                segments: (0..samples).map(segment).collect(),
-            },
-            signals: vec![StrutValves::new(false, false, false); samples + 1],
-        };
-        replay(&model, &inputs).unwrap().force_n
+        recorded_n(&model, interval_s, samples, |t| {
+            (stroke_m * libm::sin(w * t), stroke_m * w * libm::cos(w * t))
+        })
     }
 
     #[test]

@@ -78,6 +78,21 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// The motion through displacements (m) and speeds (m/s) at its samples, without a jump of speed.
+    #[cfg(test)]
+    pub(super) fn through(rod: impl IntoIterator<Item = (f64, f64)>) -> Self {
+        let rod: Vec<(f64, f64)> = rod.into_iter().collect();
+        let segments = rod.windows(2).map(|ends| Segment {
+            to_m: ends[1].0,
+            from_m_s: ends[0].1,
+            to_m_s: ends[1].1,
+        });
+        Self {
+            start_m: rod[0].0,
+            segments: segments.collect(),
+        }
+    }
+
     /// Acceleration at each sample, m/s2, where all motion is known. It is taken across the sample, or from that side of it on which it changes much less: where the
     /// acceleration jumps, a mean of both sides is neither.
     pub(super) fn accelerations_m_s2(&self, time_s: &[f64]) -> Vec<f64> {

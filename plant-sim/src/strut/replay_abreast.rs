@@ -175,7 +175,7 @@ impl<'r, 'a, S: Simd> Seats<'r, 'a, S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::strut::motion::{Motion, Segment};
+    use crate::strut::motion::Motion;
     use crate::strut::replay::{replay, replay_with_course};
     use crate::strut::terms::{Effects, LawArgument, LawPlace, UnlistedLaw};
     use oleo_interface::StrutValves;
@@ -212,17 +212,9 @@ mod tests {
                 0.0
             }
         };
-        let segments = (1..samples).map(|k| Segment {
-            to_m: at(k),
-            from_m_s: speed(k - 1),
-            to_m_s: speed(k),
-        });
         let mut signals = StrutValves::new(true, false, true);
         Inputs {
-            motion: Motion {
-                start_m: at(0),
-                segments: segments.collect(),
-            },
+            motion: Motion::through((0..samples).map(|k| (at(k), speed(k)))),
             signals: (0..samples)
                 .map(|k| {
                     if k % 37 == 0 {

@@ -78,7 +78,7 @@ impl StrutModel {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::strut::motion::{Motion, Segment};
+    use crate::strut::motion::Motion;
     use crate::strut::{
         BumpStop, Inputs, MountCompliance, SealFriction, SideLoadFriction, UnlistedLaw, replay, replay_with_course,
     };
@@ -88,15 +88,8 @@ mod tests {
     fn sweep() -> Inputs {
         let time_s: Vec<f64> = (0..=400).map(|k| 0.01 * f64::from(k)).collect();
         let at = |t: f64| (0.08 * libm::sin(3.0 * t), 0.24 * libm::cos(3.0 * t));
-        let segments = (time_s.windows(2))
-            .map(|t| Segment {
-                to_m: at(t[1]).0,
-                from_m_s: at(t[0]).1,
-                to_m_s: at(t[1]).1,
-            })
-            .collect();
         Inputs {
-            motion: Motion { start_m: 0.0, segments },
+            motion: Motion::through(time_s.iter().map(|t| at(*t))),
             signals: (0..time_s.len())
                 .map(|k| StrutValves::new(k % 90 > 40, true, k > 200))
                 .collect(),

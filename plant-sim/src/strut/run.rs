@@ -222,16 +222,7 @@ mod tests {
         let speed = |k: usize| 0.3 * libm::cos(0.03 * k as f64) + 0.8 * libm::cos(0.2 * k as f64);
         Inputs {
             time_s: (from..=to).map(|k| at(k).0).collect(),
-            motion: Motion {
-                start_m: at(from).1,
-                segments: (from + 1..=to)
-                    .map(|k| Segment {
-                        to_m: at(k).1,
-                        from_m_s: speed(k - 1),
-                        to_m_s: speed(k),
-                    })
-                    .collect(),
-            },
+            motion: Motion::through((from..=to).map(|k| (at(k).1, speed(k)))),
             signals: vec![StrutValves::new(true, true, true); to - from + 1],
         }
     }

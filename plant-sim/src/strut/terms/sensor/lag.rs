@@ -84,7 +84,6 @@ pub fn undo(tau_s: f64, times_s: &[f64], motion: &mut Motion) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::strut::motion::Segment;
 
     #[test]
     fn answers_a_step_exponentially() {
@@ -151,21 +150,6 @@ mod tests {
         }
     }
 
-    /// A motion through samples, without a jump of its speed.
-    fn through(t: &[f64], x: impl Fn(f64) -> f64, speed: impl Fn(f64) -> f64) -> Motion {
-        let segments = (t.windows(2))
-            .map(|t| Segment {
-                to_m: x(t[1]),
-                from_m_s: speed(t[0]),
-                to_m_s: speed(t[1]),
-            })
-            .collect();
-        Motion {
-            start_m: x(t[0]),
-            segments,
-        }
-    }
-
     #[test]
     fn the_motion_of_a_wheel_that_hops_is_found_again() {
         // 12 Hz at 200 Hz, behind a lag of 5 ms.
@@ -174,7 +158,7 @@ mod tests {
         let size = 1.0 / (1.0 + w * w * tau * tau);
         let shown = |t: f64| size * (libm::sin(w * t) - w * tau * libm::cos(w * t));
         let speed = |t: f64| size * w * (libm::cos(w * t) + w * tau * libm::sin(w * t));
-        let mut motion = through(&t, shown, speed);
+        let mut motion = Motion::through(t.iter().map(|t| (shown(*t), speed(*t))));
         undo(tau, &t, &mut motion);
         for (segment, time) in motion.segments.iter().zip(t.windows(2)).skip(2).take(395) {
             assert!((segment.to_m - libm::sin(w * time[1])).abs() < 1e-9);
@@ -192,7 +176,7 @@ mod tests {
         let t: Vec<f64> = (0..100).map(|i| 0.002 * f64::from(i)).collect();
         let left = |t: f64| libm::exp(-(t - stop).max(0.0) / tau);
         let shown = |t: f64| t.min(stop) - tau * left(t);
-        let mut motion = through(&t, shown, left);
+        let mut motion = Motion::through(t.iter().map(|t| (shown(*t), left(*t))));
         undo(tau, &t, &mut motion);
         for (segment, time) in motion.segments.iter().zip(&t) {
             let exact = if *time < stop - 0.001 { 1.0 } else { 0.0 };

@@ -30,6 +30,7 @@ fn case(seed: u64, concealed: Vec<Concealed>) -> Case {
         drives: drives(seed, DURATION_S),
         first_edition: false,
         command_acts_late: false,
+        keeps_oil: false,
         begins_s: 0.0,
     }
 }
@@ -125,6 +126,37 @@ fn commands_that_act_a_tick_late_are_not_taken_for_missing_physics() {
         "{}",
         report["notes"]
     );
+}
+
+#[test]
+fn oil_that_a_vehicle_keeps_is_not_taken_for_a_sensor_that_drifts() {
+    let case = Case {
+        keeps_oil: true,
+        ..case(5, vec![])
+    };
+    let (folder, report, _) = diagnosed(&case);
+    assert_eq!(report["verdict"], "consistent", "{:#}", report["effects"]);
+    assert!(report["notes"].to_string().contains("The struts keep their oil"));
+    let file = std::fs::read_to_string(folder.path().join("found/rear-left.toml")).expect("a file");
+    assert!(file.contains("counted_at = \"static\""), "{file}");
+}
+
+#[test]
+fn what_is_found_of_the_oil_keeps_it_too() {
+    let concealed = Concealed::new(EffectId::OilCompressibility, 0, 1.0 / 1.4e9, Corner::ALL.to_vec());
+    let case = Case {
+        keeps_oil: true,
+        ..case(6, vec![concealed])
+    };
+    let (folder, report, _) = diagnosed(&case);
+    assert_eq!(
+        effects(&report),
+        ["oil_compressibility@vehicle/main-chamber"],
+        "{:#}",
+        report["fit"]
+    );
+    let file = std::fs::read_to_string(folder.path().join("found/rear-left.toml")).expect("a file");
+    assert!(file.contains("counted_at = \"static\""), "{file}");
 }
 
 #[test]

@@ -119,6 +119,7 @@ fn driven(seed: u64, concealed: Vec<Concealed>, in_motion: bool, draw: &mut Draw
         drives,
         first_edition: draw.uniform() < 0.5,
         command_acts_late: draw.uniform() < 0.25,
+        keeps_oil: !seed.is_multiple_of(2),
         begins_s,
     }
 }

@@ -61,6 +61,7 @@ pub fn cases(seed: u64, wanted: &[String]) -> Vec<(String, Case)> {
                 drives: drives(seed, DURATION_S),
                 first_edition: seed % 2 == 1,
                 command_acts_late: false,
+                keeps_oil: false,
                 begins_s: 0.0,
             };
             (format!("{name}-{seed}"), case)

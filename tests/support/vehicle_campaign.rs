@@ -18,7 +18,7 @@ use oleo_hil::{Frame, Scenario, run, scenario};
 use oleo_interface::tick::{TICK_S, TICK_US};
 use oleo_interface::{Corner, Corners, Gauge, PressurePoint, StrutPressures};
 use oleo_plant_sim::course::{CourseSettings, ManoeuvreKind};
-use oleo_plant_sim::strut::{COLUMNS, StrutModel, record_column};
+use oleo_plant_sim::strut::{COLUMNS, OilCount, StrutModel, record_column};
 use oleo_plant_sim::vehicle::VehicleParameters;
 
 /// What is concealed.
@@ -77,6 +77,8 @@ pub struct Case {
     pub first_edition: bool,
     /// Whether a command acts one tick after the sample whose tick it echoes.
     pub command_acts_late: bool,
+    /// Whether the struts keep their oil, as those of a vehicle do. Else they lose it by the equation of the recordings.
+    pub keeps_oil: bool,
     /// Time at which each log begins after the start from rest, s; 0 for logs that begin at rest.
     pub begins_s: f64,
 }
@@ -186,6 +188,9 @@ pub fn write(case: &Case, folder: &Path) -> Vec<TrueAtCorner> {
             let id = concealed.id;
             let numbers = concealed.put(&mut model).into_iter();
             all.extend(numbers.map(|number| TrueAtCorner { corner, id, number }));
+        }
+        if let Some(oil) = model.effects.oil_compressibility.as_mut().filter(|_| case.keeps_oil) {
+            oil.counted_at = OilCount::Static;
         }
         let _ = writeln!(index, "{} = \"{}.toml\"", corner.key(), corner.name());
         let beginning = if case.begins_s > 0.0 {

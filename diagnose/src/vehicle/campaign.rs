@@ -9,6 +9,7 @@ use super::bridge::bridge;
 use super::command_timing::{a_sample_later, acts_later};
 use super::drive::{Drive, Resolution};
 use super::model::{BodyModel, VehicleModel};
+use super::oil_count;
 use super::stretch::{BridgedDrive, Chosen, choose};
 use crate::campaign::{Campaign, MODEL_FILE};
 use crate::error::DiagnoseError;
@@ -80,11 +81,8 @@ impl VehicleCampaign {
             }
         }
         let at_once = specimens(&struts, &recordings, at_rest)?;
-        let a_tick_later = specimens(
-            &struts,
-            &recordings.map(|all| all.into_iter().map(a_sample_later).collect()),
-            at_rest,
-        )?;
+        let commanded_later = (recordings.clone()).map(|all| all.into_iter().map(a_sample_later).collect());
+        let a_tick_later = specimens(&struts, &commanded_later, at_rest)?;
         let period_s = drives.first().map_or(TICK_S, |drive| drive.period_s);
         let is_later = acts_later(&at_once, &a_tick_later, period_s)?;
         if is_later {
@@ -94,8 +92,25 @@ impl VehicleCampaign {
                  edges of the valves better."
             ));
         }
-        let specimens = if is_later { a_tick_later } else { at_once };
-        let corners = specimens
+        let (mut as_believed, recordings) = if is_later {
+            (a_tick_later, commanded_later)
+        } else {
+            (at_once, recordings)
+        };
+        let counted_at = oil_count::shown_by(&as_believed, &struts);
+        let counting = oil_count::with_oil_counted_at(counted_at, &struts);
+        if counting != struts {
+            as_believed = specimens(&counting, &recordings, at_rest)?;
+            notes.push(
+                "The struts keep their oil, as every vehicle does: their pressures do not follow the loss of oil in the equation of the \
+                 files. Oil is counted at its static density, and the improved files say so (counted_at = \"static\")."
+                    .to_owned(),
+            );
+        }
+        as_believed
+            .values_mut()
+            .for_each(|strut| strut.count_found_oil_at(counted_at));
+        let corners = as_believed
             .zip(Corners::from_fn(|corner| corner))
             .map(|(specimen, corner)| Campaign {
                 name: format!("{} strut", corner.name()),

@@ -39,9 +39,11 @@ mod common;
 mod diagnosis;
 mod drive;
 mod model;
+mod oil_count;
 mod page;
 mod pooling;
 mod report;
+mod share;
 mod sharing;
 mod stretch;
 

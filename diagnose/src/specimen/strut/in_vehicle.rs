@@ -1,11 +1,11 @@
 //! A strut in a vehicle: what its recordings leave unknown is noise of the samples that it touches.
 
-use oleo_plant_sim::strut::{Beginning, Inputs, StrutModel, smooth_free_motion};
+use oleo_plant_sim::strut::{Beginning, Inputs, OilCount, Replay, StrutModel, replay_all, smooth_free_motion};
 use rayon::prelude::*;
 
 use super::channels::Layout;
 use super::unknown_motion::{Counted, Unknown, UnknownMotion};
-use super::{TwoStageStrut, beginning, displacement_noise, floor, unread};
+use super::{TwoStageStrut, beginning, displacement_noise, finite_channels, floor, unread};
 use crate::instrument::Examined;
 use crate::recording::Recording;
 use crate::specimen::channel::Series;
@@ -67,6 +67,34 @@ impl TwoStageStrut {
     /// was read there, and its valves stand still if they do so within the first seconds. Returns the length of what is cut off, s.
     pub fn let_begin_in_motion(recording: &mut Recording) -> f64 {
         beginning::from_first_complete_sample(recording, Layout::VEHICLE)
+    }
+
+    /// Lets oil whose compressibility is found, because the believed model has none, be counted at this density.
+    pub fn count_found_oil_at(&mut self, counted_at: OilCount) {
+        self.found_oil_counted_at = counted_at;
+    }
+
+    /// What was read less what another model makes of the same motion and beginning, by recording and channel, Pa; exactly zero where nothing was read. `None`
+    /// if the model cannot be simulated.
+    #[must_use]
+    pub fn residuals_of(&self, model: &StrutModel) -> Option<Vec<Series>> {
+        let wanted: Vec<Replay<'_>> = (self.inputs.iter().zip(&self.begins))
+            .map(|(inputs, begins)| Replay {
+                model,
+                inputs,
+                begins: *begins,
+                with_course: false,
+            })
+            .collect();
+        let simulated = replay_all(&wanted)
+            .into_iter()
+            .map(|replayed| finite_channels(replayed.ok()?.prediction).ok());
+        (simulated.enumerate())
+            .map(|(r, channels)| {
+                let channels = self.layout.recorded(channels?).into_iter().enumerate();
+                Some(channels.map(|(c, series)| less(self.measured(r, c), &series)).collect())
+            })
+            .collect()
     }
 
     /// Adds to the noise of each sample what the readings leave unknown: how far the pressures of other motions and other switching signals are from
@@ -162,6 +190,12 @@ impl TwoStageStrut {
         let beyond = (0..self.channels.len()).map(|c| motion.beyond(c, self.mean_square(c, &differences)));
         (1.0 + beyond.sum::<f64>() / self.channels.len() as f64).sqrt()
     }
+}
+
+/// What was read less what was simulated; zero where nothing was read.
+fn less(read: &[f64], simulated: &[f64]) -> Vec<f64> {
+    let difference = |(read, simulated): (&f64, &f64)| if read.is_finite() { read - simulated } else { 0.0 };
+    read.iter().zip(simulated).map(difference).collect()
 }
 
 /// Inputs of a recording that its readings allow beside the best ones.

@@ -17,7 +17,7 @@ use std::sync::OnceLock;
 
 use oleo_interface::{StrutValves, Valve};
 use oleo_plant_sim::model_file::InvalidValue;
-use oleo_plant_sim::strut::{Beginning, COLUMNS, Inputs, Prediction, StrutModel, record_column};
+use oleo_plant_sim::strut::{Beginning, COLUMNS, Inputs, OilCount, Prediction, StrutModel, record_column};
 use rayon::prelude::*;
 
 use calibration::Calibration;
@@ -63,6 +63,8 @@ pub struct TwoStageStrut {
     unknown_motion: Option<UnknownMotion>,
     inputs: Vec<Inputs>,
     channels: Vec<Channel>,
+    /// The density at which oil is counted whose compressibility the believed model lacks.
+    found_oil_counted_at: OilCount,
     /// How each recording begins, as it was read.
     begins: Vec<Beginning>,
     calibration: Vec<Calibration>,
@@ -212,6 +214,7 @@ impl TwoStageStrut {
             unknown_motion: None,
             inputs,
             channels,
+            found_oil_counted_at: OilCount::default(),
             begins,
             calibration,
             unknown_beginnings,
@@ -288,6 +291,11 @@ impl TwoStageStrut {
             if let Some(effect) = of(candidate.id).in_strut() {
                 effect.put(&mut model, candidate, values);
             }
+        }
+        if self.model.effects.oil_compressibility.is_none()
+            && let Some(found) = &mut model.effects.oil_compressibility
+        {
+            found.counted_at = self.found_oil_counted_at;
         }
         model
     }

@@ -1,0 +1,146 @@
+//! Whether the struts keep their oil in a drive, or lose it as the recordings' equation does.
+//!
+//! That equation counts oil at the density of the main chamber ([`OilCount::Chamber`]), so that a strut loses `loop area / beta` of oil with every loop in the
+//! force-displacement plane: a millimetre of ride height in a minute on a rough road. A vehicle loses none, and a log of a simulator that has the equation
+//! does. What a file says of it is therefore a belief like any other, and has no number to be fitted; without this decision the lost oil would be
+//! called a drift of the displacement. It is decided from the pressures, by what they do over seconds: each pressure of each recording gives its
+//! [share](super::share) of what the recording contains.
+
+use oleo_interface::Corners;
+use oleo_plant_sim::strut::{OilCompressibility, OilCount, StrutModel};
+
+use super::share::{HALF, Share, changes, median};
+use crate::specimen::Specimen;
+use crate::specimen::strut::TwoStageStrut;
+
+/// Length of the parts of a recording over which residuals are averaged, s: longer than what the road does, shorter than what oil takes to be lost.
+const AVERAGED_S: f64 = 1.0;
+/// Bulk modulus of ordinary oil, Pa.
+const USUAL_BULK_MODULUS_PA: f64 = 1.5e9;
+/// Where a file has rigid oil, the oil that is lost is looked at if the oil has at least this part of the compressibility of ordinary oil. Of stiffer oil next
+/// to nothing is lost.
+const LEAST_COMPRESSIBILITY: f64 = 0.1;
+
+/// The density at which the struts count oil, as the recordings show with the believed models. That a file counts it at the static density is a statement,
+/// which is not asked.
+#[must_use]
+pub fn shown_by(struts: &Corners<TwoStageStrut>, believed: &Corners<StrutModel>) -> OilCount {
+    let states_static = |strut: &StrutModel| counted_at(strut) == Some(OilCount::Static);
+    if believed.values().any(states_static) {
+        return OilCount::Static;
+    }
+    let mut shares = Vec::new();
+    for (strut, believed) in struts.values().zip(believed.values()) {
+        let compressible = match &believed.effects.oil_compressibility {
+            Some(_) => Some(believed.clone()),
+            None => as_compressible_as_shown(strut, believed),
+        };
+        shares.extend(compressible.into_iter().flat_map(|model| shares_of_kept(strut, &model)));
+    }
+    match median(shares) {
+        Some(kept) if kept > HALF => OilCount::Static,
+        _ => OilCount::Chamber,
+    }
+}
+
+fn counted_at(strut: &StrutModel) -> Option<OilCount> {
+    strut.effects.oil_compressibility.as_ref().map(|oil| oil.counted_at)
+}
+
+/// The share of a strut that keeps its oil in each pressure of each recording.
+fn shares_of_kept(strut: &TwoStageStrut, model: &StrutModel) -> Vec<Share> {
+    let of = |count: OilCount| strut.residuals_of(&counting_at(count, model.clone()));
+    let (Some(losing), Some(keeping)) = (of(OilCount::Chamber), of(OilCount::Static)) else {
+        return vec![];
+    };
+    let pairs = losing.iter().zip(&keeping).zip(strut.recordings());
+    pairs
+        .flat_map(|((losing, keeping), recording)| {
+            let samples = super::bridge::samples_in(AVERAGED_S, recording.interval_s());
+            let of_channel = move |(a, b): (&Vec<f64>, &Vec<f64>)| Share::of(slow(a, b, samples));
+            losing.iter().zip(keeping).filter_map(of_channel)
+        })
+        .collect()
+}
+
+/// A strut with rigid oil, with the compressibility that the fast changes of its pressures show; `None` if they show next to none.
+fn as_compressible_as_shown(strut: &TwoStageStrut, rigid: &StrutModel) -> Option<StrutModel> {
+    let with = |bulk_modulus_pa: f64| {
+        let mut model = rigid.clone();
+        model.effects.oil_compressibility = Some(OilCompressibility {
+            bulk_modulus_pa,
+            counted_at: OilCount::default(),
+        });
+        model
+    };
+    let (of_rigid, of_ordinary) = (
+        strut.residuals_of(rigid)?,
+        strut.residuals_of(&with(USUAL_BULK_MODULUS_PA))?,
+    );
+    let pairs = of_rigid.iter().flatten().zip(of_ordinary.iter().flatten());
+    let compressibility = median(pairs.filter_map(|(a, b)| Share::of(changes(a, b))).collect())?;
+    (compressibility >= LEAST_COMPRESSIBILITY).then(|| with(USUAL_BULK_MODULUS_PA / compressibility))
+}
+
+/// A strut whose oil, if it is compressible, is counted at a density.
+fn counting_at(count: OilCount, mut strut: StrutModel) -> StrutModel {
+    if let Some(oil) = &mut strut.effects.oil_compressibility {
+        oil.counted_at = count;
+    }
+    strut
+}
+
+/// The struts with their oil counted at a density, where it is compressible.
+#[must_use]
+pub fn with_oil_counted_at(count: OilCount, struts: &Corners<StrutModel>) -> Corners<StrutModel> {
+    struts.each_ref().map(|strut| counting_at(count, strut.clone()))
+}
+
+/// Both residuals, averaged over so many samples, about their mean: an offset of a pressure or of the displacement is no loss. Parts of which less than half
+/// was recorded do not count.
+fn slow(first: &[f64], second: &[f64], samples: usize) -> Vec<[f64; 2]> {
+    let parts = first.chunks(samples).zip(second.chunks(samples));
+    let mut means: Vec<[f64; 2]> = parts
+        .filter_map(|(first, second)| {
+            let recorded = || first.iter().zip(second).filter(|(first, _)| **first != 0.0);
+            let count = recorded().count();
+            (2 * count > samples).then(|| mean(recorded().map(|(first, second)| [*first, *second]), count))
+        })
+        .collect();
+    let middle = mean(means.iter().copied(), means.len());
+    for of_part in &mut means {
+        *of_part = [of_part[0] - middle[0], of_part[1] - middle[1]];
+    }
+    means
+}
+
+fn mean(values: impl Iterator<Item = [f64; 2]>, count: usize) -> [f64; 2] {
+    let sum = values.fold([0.0; 2], |sum, value| [sum[0] + value[0], sum[1] + value[1]]);
+    sum.map(|sum| sum / count.max(1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_offset_is_no_loss() {
+        // The second simulation loses 10 Pa a sample, and what was recorded does not; both are off by 700 Pa, and a road makes 50 Pa.
+        let road = |k: usize| if k.is_multiple_of(2) { 50.0 } else { -50.0 };
+        let first: Vec<f64> = (0..40).map(|k| 700.0 + road(k)).collect();
+        let second: Vec<f64> = (0..40).map(|k| 700.0 + road(k) + 10.0 * k as f64).collect();
+        let kept = |first: &[f64], second: &[f64]| median(Share::of(slow(first, second, 4)).into_iter().collect());
+        assert_eq!((kept(&first, &second), kept(&second, &first)), (Some(0.0), Some(1.0)));
+    }
+
+    #[test]
+    fn what_was_not_recorded_does_not_count() {
+        let mut first: Vec<f64> = (0..12).map(f64::from).collect();
+        let second = first.clone();
+        // The first sample of the first part, and three of four of the second part.
+        first[4..7].fill(0.0);
+        let slow = slow(&first, &second, 4);
+        // Of 1, 2, 3 and of 8 to 11.
+        assert_eq!(slow, [[-3.75; 2], [3.75; 2]]);
+    }
+}

@@ -49,4 +49,4 @@ pub use power::LeastSize;
 pub use screen::Screen;
 pub use select::select;
 pub use selection::{CandidateScore, Fitted, LawPairs, Progress, Rival, SelectedEffect, Selection};
-pub use shared::with_shared;
+pub use shared::{begun_at_others, with_shared};

@@ -1,12 +1,16 @@
-//! An effect that specimens of one kind have in common, tried where the search did not find it.
+//! An effect that specimens of one kind have in common, tried where the search did not find it, or found it with other numbers.
 //!
 //! Its numbers are known from the others, so that it spends none here. It need not gain what an effect of this specimen alone must: it joins the model if
-//! the recordings do not speak against it or, where one other alone shows it, if they speak for it.
+//! the recordings do not speak against it or, where one other alone shows it, if they speak for it. Where the search found it, the numbers of the others are
+//! where further fits begin: it may have ended in a minimum that is not the lowest.
 
 use super::selection::Selection;
 use super::selector::{Open, Selector};
 use crate::error::DiagnoseError;
 use crate::estimation::{Fit, LeastSquares, Point};
+
+/// By how much the cost of a fit falls that is better: less is within one standard deviation of the numbers.
+const ONE_DEVIATION: f64 = 1.0;
 
 /// What a search found, with an effect that others have with these coordinates; `None` if the recordings do not meet the model better with it, by this
 /// much of the cost.
@@ -44,29 +48,51 @@ pub fn with_shared(
     if held.cost > most {
         return Ok(None);
     }
-    while let Some(less) = selector.without_superfluous(&held, least_gain)? {
+    while let Some(less) = selector.without_superfluous(&held, least_gain, &|point| selector.with_last_held(point))? {
         held = less;
     }
-    let Some(best) = selector.fitted_if_simulated(held.point)? else {
+    selector.found_with(found, held.point)
+}
+
+/// What a search found, fitted once more from the numbers with which others have one of its effects, as coordinates; `None` if none of these fits is better.
+///
+/// Effects that gain less beside the new numbers than an effect must leave the model.
+///
+/// # Errors
+/// [`DiagnoseError::Interrupted`] once the caller asked to stop.
+pub fn begun_at_others(
+    problem: &LeastSquares<'_>,
+    found: &Selection,
+    shared: usize,
+    starts: &[Vec<f64>],
+) -> Result<Option<Selection>, DiagnoseError> {
+    let mut selector = Selector::new(problem);
+    let specimen = problem.specimen();
+    let least_gain = (selector.criteria().acceptance).least_gain_of(problem.residuals() as f64);
+    let Some(position) = found.best.point.effects.iter().position(|&effect| effect == shared) else {
         return Ok(None);
     };
-    let effects = selector.compare_with_rivals(&best, Open::Names)?.effects;
-    let beside = selector.open(&best.point, Open::Names);
-    let screened = selector.screen(&best, beside)?;
-    let mut scores = found.scores.clone();
-    for score in &mut scores {
-        (score.added, score.least_sizes) = (None, vec![]);
+    let without = found.best.point.without_effect(specimen, position);
+    let worth = |fit: &Fit| fit.cost + least_gain * fit.point.effects.len() as f64;
+    let mut best: Option<Fit> = None;
+    for start in starts {
+        let mut point = without.clone();
+        point.effects.push(shared);
+        point.z.extend(start);
+        let Some(mut fit) = selector.fitted_holding(point, 0..0)? else {
+            continue;
+        };
+        while let Some(less) =
+            selector.without_superfluous(&fit, least_gain, &|point| selector.fitted_holding(point, 0..0))?
+        {
+            fit = less;
+        }
+        let least = best.as_ref().map_or(worth(&found.best) - ONE_DEVIATION, worth);
+        if worth(&fit) < least {
+            best = Some(fit);
+        }
     }
-    selector.score_added(&screened, &best, &mut scores);
-    Ok(Some(Selection {
-        effects,
-        improved_ratio: selector.held_out_ratio(&best),
-        incomplete: !selector.is_complete(&best),
-        complete_where_fitted: selector.complete_where_fitted(&best),
-        best,
-        scores,
-        ..found.clone()
-    }))
+    best.map_or(Ok(None), |best| selector.found_with(found, best.point))
 }
 
 impl Selector<'_, '_> {
@@ -77,14 +103,43 @@ impl Selector<'_, '_> {
     }
 
     /// The model without the effect before the last that gains least, if it gains less than an effect must.
-    fn without_superfluous(&self, full: &Fit, least_gain: f64) -> Result<Option<Fit>, DiagnoseError> {
+    fn without_superfluous(
+        &self,
+        full: &Fit,
+        least_gain: f64,
+        fitted: &dyn Fn(Point) -> Result<Option<Fit>, DiagnoseError>,
+    ) -> Result<Option<Fit>, DiagnoseError> {
         let mut weakest: Option<Fit> = None;
         for position in 0..full.point.effects.len() - 1 {
-            let less = self.with_last_held(full.point.without_effect(self.specimen(), position))?;
+            let less = fitted(full.point.without_effect(self.specimen(), position))?;
             let cost_of_weakest = weakest.as_ref().map_or(full.cost + least_gain, |w| w.cost);
             weakest = less.filter(|less| less.cost < cost_of_weakest).or(weakest);
         }
         Ok(weakest)
+    }
+
+    /// What a search found, with another model, which is fitted from this point.
+    fn found_with(&mut self, found: &Selection, point: Point) -> Result<Option<Selection>, DiagnoseError> {
+        let Some(best) = self.fitted_if_simulated(point)? else {
+            return Ok(None);
+        };
+        let effects = self.compare_with_rivals(&best, Open::Names)?.effects;
+        let beside = self.open(&best.point, Open::Names);
+        let screened = self.screen(&best, beside)?;
+        let mut scores = found.scores.clone();
+        for score in &mut scores {
+            (score.added, score.least_sizes) = (None, vec![]);
+        }
+        self.score_added(&screened, &best, &mut scores);
+        Ok(Some(Selection {
+            effects,
+            improved_ratio: self.held_out_ratio(&best),
+            incomplete: !self.is_complete(&best),
+            complete_where_fitted: self.complete_where_fitted(&best),
+            best,
+            scores,
+            ..found.clone()
+        }))
     }
 }
 
@@ -155,6 +210,36 @@ mod tests {
             .expect("it joins");
         assert_eq!(with_it.best.point.effects, [FRICTION, CUBIC]);
         assert!(!with_it.incomplete);
+    }
+
+    #[test]
+    fn from_the_numbers_of_others_the_lower_minimum_is_found() {
+        let specimen = specimen(vec![(CUBIC, vec![0.3])], &[CUBIC, FRICTION]);
+        let problem = LeastSquares::new(&specimen, &RUN);
+        let right = select(&problem, &|_, _| {}).expect("a selection");
+        assert_eq!(right.best.point.effects, [CUBIC]);
+        let z = |size: f64| vec![specimen.candidates()[CUBIC].parameters[0].z(size)];
+        let begun = |found: &Selection, size: f64| begun_at_others(&problem, found, CUBIC, &[z(size)]).expect("fits");
+        assert!(begun(&right, 0.29).is_none(), "it is the lowest already");
+        // A search that ended beside it, and took friction for what was left.
+        let beside = Point::nominal(&specimen)
+            .with_effect(&specimen, CUBIC, &[0.2])
+            .with_effect(&specimen, FRICTION, &[0.1]);
+        let everything = 0..beside.z.len();
+        let ended = Selection {
+            best: (Selector::new(&problem).fitted_holding(beside, everything))
+                .expect("fits")
+                .expect("it can be simulated"),
+            ..right.clone()
+        };
+        let better = begun(&ended, 0.29).expect("it is better");
+        assert_eq!(better.best.point.effects, [CUBIC]);
+        assert!((better.best.cost / right.best.cost - 1.0).abs() < 1e-6);
+        assert!(
+            begun_at_others(&problem, &right, FRICTION, &[z(0.3)])
+                .expect("fits")
+                .is_none()
+        );
     }
 
     #[test]

@@ -1,9 +1,13 @@
-//! Effects of the oil, the gas or the design that some corners show, tried at the corners that do not show them.
+//! Effects of the oil, the gas or the design that some corners show, tried at the corners that do not show them, and those that all corners show with numbers
+//! that contradict each other.
 //!
 //! What all four struts share may be too weak to be found at each of them: one strut moves less than the others, or something else explains it as well
 //! there. Where two or three corners show such an effect with estimates that agree, and the recordings of every other corner do not speak against it
 //! ([`with_shared`]), it is an effect of the vehicle. Where one corner alone shows it, the recordings of all others must speak for it, with the number of this one.
+//! Where all corners show it and do not agree, the search may have ended in a minimum at one of them that is not the lowest: each is fitted once more from the
+//! numbers of all others ([`begun_at_others`]).
 
+use std::ops::RangeInclusive;
 use std::sync::atomic::AtomicBool;
 
 use oleo_interface::{Corner, Corners};
@@ -11,12 +15,12 @@ use oleo_interface::{Corner, Corners};
 use super::campaign::VehicleCampaign;
 use super::common::{common, is_shared};
 use super::pooling::Pooled;
-use crate::diagnosis::Diagnosis;
+use crate::diagnosis::{Diagnosis, Effect};
 use crate::effect::Candidate;
 use crate::error::DiagnoseError;
 use crate::estimation::{LeastSquares, interval};
 use crate::parameter::Parameter;
-use crate::search::with_shared;
+use crate::search::{begun_at_others, with_shared};
 
 /// By how much the cost of every other corner falls with what one corner alone shows, if it is an effect of the vehicle: three standard deviations of its size,
 /// which is not fitted there. An effect of one corner makes the cost of the others rise.
@@ -32,14 +36,18 @@ pub fn with_what_all_share(
     stop: &AtomicBool,
 ) -> Result<Corners<Diagnosis>, DiagnoseError> {
     let struts = Corners::from_fn(|corner| LeastSquares::new(&*campaign.corners[corner].specimen, stop));
+    for effect in shown_by_all(&struts, &corners) {
+        if !agree_on(
+            effect,
+            &corners.each_ref().map(|diagnosis| diagnosis.effects.as_slice()),
+        ) {
+            begin_at_others(effect, &struts, &mut corners)?;
+        }
+    }
     for effect in shown_by_some(&struts, &corners) {
         let mut with_it = shared_by_all(effect, &struts, &corners)?;
         let effects = Corners::from_fn(|c| with_it[c].as_ref().unwrap_or(&corners[c]).effects.as_slice());
-        let first = effects[Corner::FrontLeft];
-        let agrees = (common(&effects).iter())
-            .map(|c| &first[c.positions[Corner::FrontLeft]])
-            .any(|e| (e.id, &e.label) == (effect.id, &effect.label));
-        if agrees {
+        if agree_on(effect, &effects) {
             for (corner, diagnosis) in corners.iter_mut() {
                 if let Some(with_it) = with_it[corner].take() {
                     *diagnosis = with_it;
@@ -50,8 +58,30 @@ pub fn with_what_all_share(
     Ok(corners)
 }
 
+/// Whether all corners have an effect with one value.
+fn agree_on(effect: &Candidate, effects: &Corners<&[Effect]>) -> bool {
+    let first = effects[Corner::FrontLeft];
+    (common(effects).iter())
+        .map(|c| &first[c.positions[Corner::FrontLeft]])
+        .any(|e| (e.id, &e.label) == (effect.id, &effect.label))
+}
+
 /// Candidates that one to three corners have in their models, of effects that a vehicle's struts share.
 fn shown_by_some<'a>(struts: &Corners<LeastSquares<'a>>, corners: &Corners<Diagnosis>) -> Vec<&'a Candidate> {
+    shown_by(1..=3, struts, corners)
+}
+
+/// Candidates that all corners have in their models, of effects that a vehicle's struts share.
+fn shown_by_all<'a>(struts: &Corners<LeastSquares<'a>>, corners: &Corners<Diagnosis>) -> Vec<&'a Candidate> {
+    shown_by(4..=4, struts, corners)
+}
+
+/// Candidates that so many corners have in their models, of effects that a vehicle's struts share.
+fn shown_by<'a>(
+    many: RangeInclusive<usize>,
+    struts: &Corners<LeastSquares<'a>>,
+    corners: &Corners<Diagnosis>,
+) -> Vec<&'a Candidate> {
     let mut shown: Vec<(&Candidate, usize)> = Vec::new();
     for (corner, diagnosis) in corners.iter() {
         let candidates = struts[corner].specimen().candidates();
@@ -64,12 +94,46 @@ fn shown_by_some<'a>(struts: &Corners<LeastSquares<'a>>, corners: &Corners<Diagn
             }
         }
     }
-    let some = |&(candidate, times): &(&'a Candidate, usize)| (1..=3).contains(&times).then_some(candidate);
-    shown.iter().filter_map(some).collect()
+    let wanted = |&(candidate, times): &(&'a Candidate, usize)| many.contains(&times).then_some(candidate);
+    shown.iter().filter_map(wanted).collect()
 }
 
 fn is_same(one: &Candidate, other: &Candidate) -> bool {
     (one.id, &one.place, &one.label) == (other.id, &other.place, &other.label)
+}
+
+/// Fits each corner once more from the numbers with which every other one shows an effect, and keeps what is better.
+fn begin_at_others(
+    effect: &Candidate,
+    struts: &Corners<LeastSquares<'_>>,
+    corners: &mut Corners<Diagnosis>,
+) -> Result<(), DiagnoseError> {
+    let shown = Corners::from_fn(|corner| numbers_of(effect, &struts[corner], &corners[corner]));
+    for (corner, diagnosis) in corners.iter_mut() {
+        let Some((candidate, _)) = shown[corner] else { continue };
+        let parameters = &struts[corner].specimen().candidates()[candidate].parameters;
+        let others = shown.iter().filter(|(other, _)| *other != corner);
+        let starts: Vec<Vec<f64>> = others
+            .filter_map(|(_, shown)| shown.as_ref())
+            .map(|(_, numbers)| parameters.iter().zip(numbers).map(|(p, &value)| p.z(value)).collect())
+            .collect();
+        if let Some(selection) = begun_at_others(&struts[corner], &diagnosis.selection, candidate, &starts)? {
+            *diagnosis = Diagnosis::of_selection(&struts[corner], selection)?;
+        }
+    }
+    Ok(())
+}
+
+/// The candidate of an effect in the model of a corner, and its numbers there.
+fn numbers_of(effect: &Candidate, strut: &LeastSquares<'_>, diagnosis: &Diagnosis) -> Option<(usize, Vec<f64>)> {
+    let (specimen, point) = (strut.specimen(), &diagnosis.selection.best.point);
+    let position = (point.effects.iter()).position(|&e| is_same(&specimen.candidates()[e], effect))?;
+    let parameters = point.parameters(specimen);
+    let own = point.coordinates_of(specimen, position);
+    Some((
+        point.effects[position],
+        own.map(|k| parameters[k].value(point.z[k])).collect(),
+    ))
 }
 
 /// The diagnoses with an effect, of the corners that do not show it; none unless it joins the model of all of them.

@@ -91,6 +91,14 @@ fn one_altered_strut_is_named_with_its_corner() {
     assert!((read("front-left.toml").noise["p1_Pa"] - 4e3).abs() < 1e-9);
     let page = std::fs::read_to_string(folder.path().join("found/report.html")).expect("a page");
     assert!(page.contains("of the rear-left strut") && page.contains("lane-change"));
+    // What it costs the driver.
+    let roll = |which: &str| report["driven"][which]["max_roll_deg"].as_f64().expect("a roll");
+    assert!(
+        roll("believed") > 1.0 && roll("found") != roll("believed"),
+        "{}",
+        report["driven"]
+    );
+    assert!(page.contains("What the driver feels of it"));
     // Diagnosed again with what was found, nothing is missing.
     let again = folder.path().join("again");
     let logs = ["belgian.log", "lane-change.log", "random-road.log"].map(|name| folder.path().join(name));
@@ -137,6 +145,7 @@ fn oil_that_a_vehicle_keeps_is_not_taken_for_a_sensor_that_drifts() {
     let (folder, report, _) = diagnosed(&case);
     assert_eq!(report["verdict"], "consistent", "{:#}", report["effects"]);
     assert!(report["notes"].to_string().contains("The struts keep their oil"));
+    assert!(report["driven"].is_null(), "as found is as believed");
     let file = std::fs::read_to_string(folder.path().join("found/rear-left.toml")).expect("a file");
     assert!(file.contains("counted_at = \"static\""), "{file}");
 }

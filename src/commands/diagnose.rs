@@ -1,6 +1,7 @@
 //! `oleo diagnose`: finds the physics that a model leaves out.
 
 mod campaign;
+mod driven;
 mod foreign;
 mod self_test;
 mod vehicle;

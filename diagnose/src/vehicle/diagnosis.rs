@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use super::body::BodyCampaign;
 use super::campaign::VehicleCampaign;
 use super::common::{Common, common};
+use super::driven::Driven;
 use super::sharing::with_what_all_share;
 use crate::body::BodyFindings;
 use crate::campaign::MODEL_FILE;
@@ -40,6 +41,8 @@ pub struct VehicleDiagnosis {
     pub effects: Vec<VehicleEffect>,
     /// What the balance of the body says, or why it says nothing; `None` where there is nothing to balance.
     pub body: Option<Result<BodyFindings, String>>,
+    /// What the driver feels of the effects, or why it is not known; `None` until the loop was driven.
+    pub driven: Option<Result<Driven, String>>,
 }
 
 impl VehicleDiagnosis {
@@ -72,6 +75,7 @@ impl VehicleDiagnosis {
             effects: effects(&corners),
             corners,
             body: campaign.body.as_ref().map(BodyCampaign::find),
+            driven: None,
         })
     }
 
@@ -99,6 +103,15 @@ impl VehicleDiagnosis {
         })
     }
 
+    /// The struts as they were found, with the noise of the fit.
+    ///
+    /// # Errors
+    /// A model that cannot be read back.
+    pub fn struts(&self, campaign: &VehicleCampaign) -> Result<Corners<StrutModel>, DiagnoseError> {
+        let names = campaign.model.distinct_files();
+        Corners::try_from_fn(|corner| Ok(StrutModel::from_toml(&self.corners[corner].model_toml, &names[corner])?))
+    }
+
     /// The improved model: name and text of each file, in the form of the given one.
     ///
     /// # Errors
@@ -106,8 +119,7 @@ impl VehicleDiagnosis {
     pub fn improved(&self, campaign: &VehicleCampaign) -> Result<Vec<(String, String)>, DiagnoseError> {
         let names = campaign.model.distinct_files();
         let mut files = vec![(MODEL_FILE.to_owned(), campaign.model.to_toml(&names)?)];
-        for (corner, own) in self.corners.iter() {
-            let mut strut = StrutModel::from_toml(&own.model_toml, &names[corner])?;
+        for (corner, mut strut) in Corner::ALL.into_iter().zip(self.struts(campaign)?.into_array()) {
             // The noise that was fitted with contains the rounding of the bus; the file states the sensor's.
             strut.noise.clone_from(&campaign.model.struts[corner].noise);
             files.push((names[corner].clone(), campaign.model.strut_to_toml(corner, &strut)));

@@ -23,11 +23,14 @@
 //! | `bridge` | missing readings: what stays missing, and what no longer counts |
 //! | `stretch` | the parts of the drives that are used, and why |
 //! | `command_timing` | when a logged command acts on the valves |
+//! | `oil_count` | whether the struts keep their oil |
+//! | `share` | which of two simulations a recording follows, for both |
 //! | `campaign` | model and drives put together |
 //! | `sharing` | effects that some corners show, tried at the others |
 //! | `common` | effects that all four corners have with one value |
 //! | `pooling` | the common value of several estimates |
 //! | `diagnosis` | the diagnosis of the vehicle |
+//! | `driven` | what the driver feels of what was found |
 //! | `report` | `report.json` |
 //! | `page` | `report.html` |
 
@@ -38,6 +41,7 @@ mod command_timing;
 mod common;
 mod diagnosis;
 mod drive;
+mod driven;
 mod model;
 mod oil_count;
 mod page;
@@ -50,6 +54,7 @@ mod stretch;
 pub use campaign::VehicleCampaign;
 pub use diagnosis::{VehicleDiagnosis, VehicleEffect};
 pub use drive::{Drive, InertialSamples, Resolution, StrutSamples};
+pub use driven::{Driven, Felt, driven_in_words};
 pub use model::{BodyModel, VEHICLE, VehicleModel, is_vehicle};
 pub use page::{effects_table, headline, page};
 pub use report::report;

@@ -6,6 +6,7 @@ use oleo_report::{Cell, Column, Page, Table, Verdict as Colour, significant};
 use super::body;
 use super::campaign::VehicleCampaign;
 use super::diagnosis::{VehicleDiagnosis, VehicleEffect};
+use super::driven;
 use crate::diagnosis::Verdict;
 use crate::effect::of;
 use crate::page::{evidence, table_of_effects, words};
@@ -43,6 +44,9 @@ pub fn page(campaign: &VehicleCampaign, diagnosis: &VehicleDiagnosis, command: &
     );
     if let Some(found) = &diagnosis.body {
         body::section(&mut page, found);
+    }
+    if let Some(felt) = &diagnosis.driven {
+        driven::section(&mut page, felt);
     }
     page.section("The four corners beside each other");
     page.text("Held-out noise ratios of each strut, recalibrated within its tolerances and improved by the effects that were found there.");

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 use super::body;
 use super::campaign::VehicleCampaign;
 use super::diagnosis::VehicleDiagnosis;
+use super::driven;
 use crate::json;
 use crate::vocabulary::VehiclePart;
 
@@ -78,6 +79,9 @@ pub fn report(campaign: &VehicleCampaign, diagnosis: &VehicleDiagnosis, runtime_
     out["fit"] = Value::Object(fit);
     if let Some(found) = &diagnosis.body {
         out["body"] = body::report(found);
+    }
+    if let Some(felt) = &diagnosis.driven {
+        out["driven"] = driven::report(felt);
     }
     out
 }

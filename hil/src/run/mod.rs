@@ -50,15 +50,20 @@ use waiting::{CONTROLLER_PHASE, PATIENCE, TICK, partner_timeout};
 /// # Errors
 /// A file is missing or wrong.
 pub fn builder(scenario: &Scenario) -> Result<Builder, RunError> {
+    Ok(builder_knowing(scenario, &Parameters::read(scenario)?))
+}
+
+/// The same of a vehicle whose files have been read.
+fn builder_knowing(scenario: &Scenario, parameters: &Parameters) -> Builder {
     let mut builder = Builder {
-        vehicle: Parameters::read(scenario)?.description(),
+        vehicle: parameters.description(),
         strategy: scenario.strategy,
         ..Builder::default()
     };
     let strategies = &mut builder.tuning.strategy;
     strategies.ride_handling.dampers.policy = scenario.damper_policy;
     strategies.road_and_dampers.dampers.policy = scenario.damper_policy;
-    Ok(builder)
+    builder
 }
 
 /// The controller's configuration for a scenario.
@@ -77,6 +82,22 @@ pub fn both(scenario: &Scenario, vehicle: Vehicle, threads: usize, watch: Watch)
     both_with(scenario, vehicle, threads, None, watch)
 }
 
+/// Runs both nodes in this process, in one thread, with a vehicle that stands on struts of its own or whose controller is told of another strut.
+///
+/// # Errors
+/// See [`RunError`].
+pub fn both_of(scenario: &Scenario, parameters: &Parameters, watch: Watch) -> Result<Outcome, RunError> {
+    let configuration = builder_knowing(scenario, parameters).build()?;
+    both_configured(
+        scenario,
+        plant::begin(scenario, parameters)?,
+        configuration,
+        1,
+        None,
+        watch,
+    )
+}
+
 /// The same; the controller's node also serves something else.
 ///
 /// # Errors
@@ -88,15 +109,21 @@ pub fn both_with(
     companion: Option<Box<dyn Companion>>,
     watch: Watch,
 ) -> Result<Outcome, RunError> {
+    both_configured(scenario, vehicle, configuration(scenario)?, threads, companion, watch)
+}
+
+fn both_configured(
+    scenario: &Scenario,
+    vehicle: Vehicle,
+    configuration: Configuration,
+    threads: usize,
+    companion: Option<Box<dyn Companion>>,
+    watch: Watch,
+) -> Result<Outcome, RunError> {
     let (plant_end, controller_end) = both_ends(scenario)?;
     let real_time = scenario.clock == Clock::RealTime;
     let mut plant = PlantNode::new(plant_end, scenario, vehicle, real_time);
-    let mut controller = ControllerNode::new(
-        controller_end,
-        configuration(scenario)?,
-        &scenario.faults,
-        scenario.ticks as usize,
-    );
+    let mut controller = ControllerNode::new(controller_end, configuration, &scenario.faults, scenario.ticks as usize);
     if let Some(companion) = companion {
         controller.serve(companion);
     }
@@ -281,6 +308,32 @@ mod tests {
         assert_eq!(one.plant.trace.len(), two.plant.trace.len());
         assert_eq!((one.plant.bus_frames_lost, one.plant.e2e_errors), (0, 0));
         assert_eq!(one.plant.frames_sent, 300 * 7 + 300 / 20);
+    }
+
+    #[test]
+    fn parameters_that_were_read_drive_as_their_scenario_does_and_others_differ() {
+        let scenario = short("belgian", 300);
+        let read = || Parameters::read(&scenario).unwrap();
+        let pressures = |parameters: &Parameters| -> Vec<_> {
+            let outcome = both_of(&scenario, parameters, &mut |_| true).unwrap();
+            let samples = outcome.plant.recording.samples.iter();
+            samples.map(|sample| sample.strut).collect()
+        };
+        let as_read = pressures(&read());
+        let of_scenario = run(&scenario, 1).plant.recording.samples;
+        assert!(
+            of_scenario
+                .iter()
+                .map(|sample| sample.strut)
+                .eq(as_read.iter().copied())
+        );
+        let mut weak = oleo_plant_sim::strut::StrutModel::defender110(1.0);
+        weak.accumulator[1].static_gas_volume_m3 *= 0.8;
+        let on_others = pressures(&read().on_struts(oleo_interface::Corners::from_fn(|_| weak.clone())));
+        assert_ne!(on_others, as_read);
+        // The controller of a vehicle that it takes for another one is configured for that one.
+        let told = |parameters: Parameters| format!("{:?}", parameters.description());
+        assert_ne!(told(read().telling_of(weak.clone())), told(read()));
     }
 
     #[test]

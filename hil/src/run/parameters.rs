@@ -58,6 +58,11 @@ impl Parameters {
         Self { struts, ..self }
     }
 
+    /// The same vehicle with a controller that is told of another strut.
+    pub fn telling_of(self, strut: StrutModel) -> Self {
+        Self { strut, ..self }
+    }
+
     /// What the controller knows of the vehicle.
     pub fn description(&self) -> VehicleDescription {
         describe(&self.vehicle, &self.handling, &self.strut)

@@ -29,7 +29,7 @@ pub fn vehicle_on(scenario: &Scenario, struts: Corners<StrutModel>) -> Result<Ve
     begin(scenario, &Parameters::read(scenario)?.on_struts(struts))
 }
 
-fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunError> {
+pub(super) fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunError> {
     let loaded = carried(scenario, &parameters.vehicle);
     let step_s = loaded.solver.step_s;
     let steps = TICK_S / step_s;

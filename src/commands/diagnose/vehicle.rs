@@ -10,6 +10,7 @@ use oleo_diagnose::vehicle::{self, BodyModel, VehicleCampaign, VehicleDiagnosis,
 use oleo_hil::logs::Format;
 use oleo_report::Progress;
 
+use super::driven::driven;
 use crate::commands::vehicle_log::DatabaseArgs;
 use crate::failure::Failure;
 use crate::results::{ResultsArgs, command_line};
@@ -88,10 +89,14 @@ pub fn run(logs: &Logs, database: &DatabaseArgs, results: &ResultsArgs) -> Resul
     }
     let stop = AtomicBool::new(false);
     let progress = Progress::new(&campaign.model.name, STEPS);
-    let diagnosis = VehicleDiagnosis::of(&campaign, &stop, &|doing, part| {
+    let mut diagnosis = VehicleDiagnosis::of(&campaign, &stop, &|doing, part| {
         progress.phase(doing);
         progress.set((part * STEPS as f64) as u64);
     })?;
+    if !diagnosis.effects.is_empty() {
+        progress.phase("driving the closed loop as believed and as found");
+        diagnosis.driven = Some(driven(&campaign, &diagnosis, folder));
+    }
     drop(progress);
     let runtime_s = begun.elapsed().as_secs_f64();
     if let Some(out) = &mut out {
@@ -109,6 +114,9 @@ pub fn run(logs: &Logs, database: &DatabaseArgs, results: &ResultsArgs) -> Resul
     );
     if !diagnosis.effects.is_empty() {
         text += &vehicle::effects_table(&diagnosis).to_string();
+    }
+    if let Some(felt) = &diagnosis.driven {
+        text += &format!("\n{}\n", vehicle::driven_in_words(felt));
     }
     results.publish(out, &text)?;
     Ok(ExitCode::SUCCESS)

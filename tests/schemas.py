@@ -54,6 +54,27 @@ def invalid(oleo, schema, out):
     return [f"{error.json_path}: {error.message[:200]}" for error in validator.iter_errors(found)]
 
 
+CORNERS = ["front-left", "front-right", "rear-left", "rear-right"]
+
+
+def vehicle(oleo, folder):
+    """A drive, and the files of its vehicle with too little gas at one corner; the command that diagnoses them."""
+    drive = ["hil", "--duration-s", "20", "--road", "iso-d", "--speed-km-h", "20", "--record", "all", "--out", "run"]
+    subprocess.run([oleo, *drive], cwd=folder, check=True, capture_output=True)
+    files = folder / "vehicle"
+    files.mkdir()
+    named = "".join(f'{corner.replace("-", "_")} = "{corner}.toml"\n' for corner in CORNERS)
+    text = f'[specimen]\nname = "car"\nkind = "vehicle"\n[strut]\n{named}'
+    (files / "model.toml").write_text(text, encoding="utf-8")
+    for corner in CORNERS:
+        strut = (folder / "run" / corner / "model.toml").read_text(encoding="utf-8")
+        if corner == "rear-left":
+            assert "static_gas_volume_m3 = 0.0004" in strut
+            strut = strut.replace("static_gas_volume_m3 = 0.0004", "static_gas_volume_m3 = 0.00036")
+        (files / f"{corner}.toml").write_text(strut, encoding="utf-8")
+    return ["diagnose", "run/candump.log", "--vehicle", "vehicle/model.toml"]
+
+
 def main():
     oleo, folder = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
     failed = False
@@ -62,6 +83,7 @@ def main():
     subprocess.run([oleo, *saved], cwd=folder, check=True, capture_output=True)
     campaign = next(path.parent for path in (folder / "campaigns").glob("*/model.toml"))
     commands.append(("diagnose", ["diagnose", str(campaign.relative_to(folder))]))
+    commands.append(("diagnose", vehicle(oleo, folder)))
     commands.append(("study-fleet", ["study", "fleet", "campaigns"]))
     # The first two commands are runs of hil, whose results lie in these folders.
     commands.append(("compare", ["compare", "out-0", "out-1", "--tolerance", "roll_rad=1%"]))

@@ -24,7 +24,7 @@ const NOTED_S: f64 = 0.5;
 
 /// A vehicle ready to be diagnosed.
 pub struct VehicleCampaign {
-    /// The model files as they are believed.
+    /// The model files as they are believed, with oil counted as the drives show.
     pub model: VehicleModel,
     /// Each strut with its recordings.
     pub corners: Corners<Campaign>,
@@ -40,7 +40,7 @@ impl VehicleCampaign {
     /// # Errors
     /// Drives of which nothing can be used; a strut that cannot be at rest.
     pub fn of(
-        model: VehicleModel,
+        mut model: VehicleModel,
         drives: &[Drive],
         resolution: &Corners<Resolution>,
         source: &str,
@@ -101,11 +101,8 @@ impl VehicleCampaign {
         let counting = oil_count::with_oil_counted_at(counted_at, &struts);
         if counting != struts {
             as_believed = specimens(&counting, &recordings, at_rest)?;
-            notes.push(
-                "The struts keep their oil, as every vehicle does: their pressures do not follow the loss of oil in the equation of the \
-                 files. Oil is counted at its static density, and the improved files say so (counted_at = \"static\")."
-                    .to_owned(),
-            );
+            model.struts = oil_count::with_oil_counted_at(counted_at, &model.struts);
+            notes.push(oil_count::IS_KEPT.to_owned());
         }
         as_believed
             .values_mut()

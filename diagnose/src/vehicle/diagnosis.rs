@@ -103,6 +103,12 @@ impl VehicleDiagnosis {
         })
     }
 
+    /// Whether something is found of the struts themselves, and not of their instruments alone.
+    #[must_use]
+    pub fn alters_struts(&self) -> bool {
+        self.effects.iter().any(|found| found.effect.place.sensor().is_none())
+    }
+
     /// The struts as they were found, with the noise of the fit.
     ///
     /// # Errors

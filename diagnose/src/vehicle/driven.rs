@@ -83,9 +83,9 @@ pub fn section(page: &mut Page, driven: &Result<Driven, String>) {
         }
     };
     page.text(&format!(
-        "The closed loop of controller and vehicle, with the struts as they are believed to be and as they were found. The ride is that of the \
-         scenario \"{}\", the roll that of \"{}\" (oleo hil --scenario NAME). The controller is told of the believed front left strut in both. \
-         Instruments are taken to be right, and each strut is charged for the load that it carries.",
+        "The closed loop of controller and vehicle, with the struts as they are believed to be and as they were found: with the effects, and \
+         with the numbers that were fitted within their tolerances. The ride is that of the scenario \"{}\", the roll that of \"{}\" \
+         (oleo hil --scenario NAME). The controller is told of the believed front left strut in both. Instruments are taken to be right, and each strut is charged for the load that it carries.",
         driven.rough_road, driven.lane_change
     ));
     let mut table = Table::new([

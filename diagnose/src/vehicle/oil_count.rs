@@ -13,6 +13,10 @@ use super::share::{HALF, Share, changes, median};
 use crate::specimen::Specimen;
 use crate::specimen::strut::TwoStageStrut;
 
+/// The note where files that do not say so are read as if they did.
+pub const IS_KEPT: &str = "The struts keep their oil: it is counted at its static density at every corner, because the pressures do not follow the loss of oil \
+                           in the equation of the files, or because the file of another corner says so. The improved files say it too (counted_at = \"static\").";
+
 /// Length of the parts of a recording over which residuals are averaged, s: longer than what the road does, shorter than what oil takes to be lost.
 const AVERAGED_S: f64 = 1.0;
 /// Bulk modulus of ordinary oil, Pa.

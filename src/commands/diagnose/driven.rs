@@ -5,8 +5,8 @@ use std::path::Path;
 use oleo_diagnose::vehicle::{BodyModel, Driven, Felt, VehicleCampaign, VehicleDiagnosis};
 use oleo_hil::metrics::Metrics;
 use oleo_hil::run::{self, Parameters};
+use oleo_hil::scenario;
 use oleo_hil::scenario::check::{Figure, Metric};
-use oleo_hil::scenario::{self, Scenario};
 use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::strut::StrutModel;
 
@@ -42,7 +42,7 @@ fn felt(struts: &Corners<StrutModel>, told: &StrutModel, vehicle: Option<&Path>)
     physical
         .values_mut()
         .for_each(|strut| strut.effects.retain_sensor_faults(|_| false));
-    let figures_of = |name: &str| -> Result<Metrics, Failure> {
+    let metrics = |name: &str| -> Result<Metrics, Failure> {
         let mut scenario = scenario::named(name)?;
         if let Some(path) = vehicle {
             scenario.vehicle = path.display().to_string();
@@ -50,9 +50,10 @@ fn felt(struts: &Corners<StrutModel>, told: &StrutModel, vehicle: Option<&Path>)
         let parameters = Parameters::read(&scenario)?
             .on_struts(physical.clone())
             .telling_of(told.clone());
-        driven_to_its_end(&scenario, &parameters)
+        let outcome = run::both_of(&scenario, &parameters, &mut |_| true)?;
+        Ok(Metrics::of(&scenario, &outcome))
     };
-    let (rough_road, lane_change) = (figures_of(ROUGH_ROAD)?, figures_of(LANE_CHANGE)?);
+    let (rough_road, lane_change) = (metrics(ROUGH_ROAD)?, metrics(LANE_CHANGE)?);
     let [driver, rear_left] = rough_road.seats.map(|seat| seat.weighted_rms_m_s2);
     let Figure::Number(roll_deg) = lane_change.figure(Metric::MaxRoll) else {
         return Err(Failure::new(format!("{LANE_CHANGE}: the body's roll is not known")));
@@ -62,9 +63,4 @@ fn felt(struts: &Corners<StrutModel>, told: &StrutModel, vehicle: Option<&Path>)
         rear_left_m_s2: rear_left,
         roll_deg,
     })
-}
-
-fn driven_to_its_end(scenario: &Scenario, parameters: &Parameters) -> Result<Metrics, Failure> {
-    let outcome = run::both_of(scenario, parameters, &mut |_| true)?;
-    Ok(Metrics::of(scenario, &outcome))
 }

@@ -93,7 +93,7 @@ pub fn run(logs: &Logs, database: &DatabaseArgs, results: &ResultsArgs) -> Resul
         progress.phase(doing);
         progress.set((part * STEPS as f64) as u64);
     })?;
-    if !diagnosis.effects.is_empty() {
+    if diagnosis.alters_struts() {
         progress.phase("driving the closed loop as believed and as found");
         diagnosis.driven = Some(driven(&campaign, &diagnosis, folder));
     }

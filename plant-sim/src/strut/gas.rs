@@ -172,12 +172,12 @@ impl<N: Number> Gas<N> {
     pub fn refresh(&self, real: &mut Departure<N>, base: GasState<N>, duration_s: N, flow: N) {
         if let Some(gases) = &self.real {
             let volume = (base.volume_m3 - duration_s * flow).at_least(self.least_volume_m3);
-            let density = self.mass_kg / volume;
-            let moved = (density - real.density).abs().above(density * 2e-2)
-                | (base.temperature_k - real.temperature_k).abs().above(density.of(4.0));
+            // Of mass and not of density: a division costs more than the rest.
+            let moved = (self.mass_kg - real.density * volume).abs().above(self.mass_kg * 2e-2)
+                | (base.temperature_k - real.temperature_k).abs().above(volume.of(4.0));
             if moved.any() {
                 let moved = N::each(|lane| moved.lane(lane));
-                *real = real.looked_up(gases, &moved, density, base.temperature_k);
+                *real = real.looked_up(gases, &moved, self.mass_kg / volume, base.temperature_k);
             }
         }
     }

@@ -208,15 +208,24 @@ impl<N: Number> Hydraulics<N> {
     #[inline(always)]
     fn step_with<const LAWS: bool>(&self, flowing: &mut Flowing<N>, step: &Step<N>) {
         let h = step.duration_s;
-        let hg = h * GAMMA;
-        let [first, second] = self.stage_ends::<LAWS>(flowing, step);
-        flowing.supplied_m = flowing.supplied_m + h * (1.0 - GAMMA) * first.speed_m_s;
-        let one = self.network.stage::<LAWS>(&flowing.state, &first, &mut flowing.last);
-        let base = flowing.state.blend::<LAWS>(&one.state, (1.0 - GAMMA) / GAMMA);
-        flowing.supplied_m = flowing.supplied_m + hg * second.speed_m_s;
-        let two = self.network.stage::<LAWS>(&base, &second, &mut flowing.last);
-        flowing.state = two.state;
-        flowing.pressure_pa = two.pressure_pa;
+        let supplied_s = [h * (1.0 - GAMMA), h * GAMMA];
+        let ends = self.stage_ends::<LAWS>(flowing, step);
+        let mut base = flowing.state;
+        let mut k = 0;
+        // A loop, so that the compiler lays down a stage once.
+        let last = loop {
+            flowing.supplied_m = flowing.supplied_m + supplied_s[k] * ends[k].speed_m_s;
+            let stage = self.network.stage::<LAWS>(&base, &ends[k], &mut flowing.last);
+            if k == 1 {
+                break stage;
+            }
+            base = base.blend::<LAWS>(&stage.state, (1.0 - GAMMA) / GAMMA);
+            k = 1;
+        };
+        // Without a law its memory stays where it is.
+        let laws = if LAWS { last.state.laws } else { flowing.state.laws };
+        flowing.state = State { laws, ..last.state };
+        flowing.pressure_pa = last.pressure_pa;
         if let Some(cooling) = &self.cooling {
             let [heat1, heat2] = flowing.state.heat_j;
             flowing.state.heat_j = [cooling.cooled(heat1, h), cooling.cooled(heat2, h)];

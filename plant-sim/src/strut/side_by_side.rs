@@ -57,8 +57,8 @@ impl<S: Simd> SideBySide<S> {
         self.friction.as_ref().map(|_| self.friction_n[lane])
     }
 
-    /// Takes the steps.
-    #[inline(always)]
+    /// Takes the steps. A step is long, and compiled once for all who take one.
+    #[inline(never)]
     pub fn step(&mut self) {
         self.simd.vectorize(TakeSteps {
             hydraulics: &self.hydraulics,

@@ -326,8 +326,37 @@ fn a_broken_link_is_named_by_oleo_diagnose() {
         lost[0].as_f64().unwrap() < 1.0 && lost[1].as_f64().unwrap() > 1.0,
         "{lost}"
     );
+    // What the driver feels of it is what the loop with a broken link gives.
+    assert_eq!(
+        report["verdict"], "consistent",
+        "the struts are as they are believed to be"
+    );
+    let driven = &report["driven"];
+    let roll_deg = |broken: &str| {
+        let shown = oleo(&["show", "scenario", driven["lane_change"].as_str().unwrap()]);
+        let scenario = String::from_utf8(shown.stdout).unwrap();
+        fs::write(path("lane.toml"), format!("{broken}\n{scenario}")).unwrap();
+        let ran = oleo(&["hil", "--scenario", &path("lane.toml"), "--out", &path("lane")]);
+        assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+        let summary = fs::read_to_string(path("lane/summary.json")).unwrap();
+        fs::remove_dir_all(path("lane")).unwrap();
+        let summary: serde_json::Value = serde_json::from_str(&summary).unwrap();
+        summary["max_roll_deg"].as_f64().unwrap()
+    };
+    let [as_believed, with_broken] = [roll_deg(""), roll_deg("broken_anti_roll_link = \"rear\"")];
+    for (which, truth) in [("believed", as_believed), ("found", with_broken)] {
+        let roll = driven[which]["max_roll_deg"].as_f64().unwrap();
+        assert!(
+            (roll / truth - 1.0).abs() < 0.02,
+            "{which}: {roll}, and the loop itself {truth}"
+        );
+    }
+    assert!(
+        (with_broken / as_believed - 1.0).abs() > 0.05,
+        "{with_broken} {as_believed}"
+    );
     let page = fs::read_to_string(path("found/report.html")).unwrap();
-    assert!(page.contains("The body in the balance"));
+    assert!(page.contains("The body in the balance") && page.contains("What the driver feels of it"));
     // The improved model names what is believed of the body, as the given one did.
     assert_eq!(fs::read_to_string(path("found/car.toml")).unwrap(), vehicle.to_toml());
     assert!(fs::read_to_string(path("found/model.toml")).unwrap().contains("[body]"));

@@ -19,7 +19,9 @@
 //! | `balance` | heave, pitch and roll of the body as rows of a linear problem |
 //! | `fit` | least squares over blocks, with the covariance of their means |
 //! | `findings` | the rule by which something is named |
+//! | `as_found` | the vehicle with what was named |
 
+mod as_found;
 mod balance;
 mod band;
 mod believed;

@@ -103,10 +103,17 @@ impl VehicleDiagnosis {
         })
     }
 
-    /// Whether something is found of the struts themselves, and not of their instruments alone.
+    /// Whether something is found of the vehicle itself, and not of its instruments alone.
     #[must_use]
-    pub fn alters_struts(&self) -> bool {
-        self.effects.iter().any(|found| found.effect.place.sensor().is_none())
+    pub fn alters_vehicle(&self) -> bool {
+        let of_struts = self.effects.iter().any(|found| found.effect.place.sensor().is_none());
+        of_struts || self.balanced().is_some_and(BodyFindings::alters_vehicle)
+    }
+
+    /// What the balance of the body found, where there was one.
+    #[must_use]
+    pub fn balanced(&self) -> Option<&BodyFindings> {
+        self.body.as_ref()?.as_ref().ok()
     }
 
     /// The struts as they were found, with the noise of the fit.

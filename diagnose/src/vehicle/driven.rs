@@ -1,4 +1,4 @@
-//! What the driver feels of what was found, as JSON, words and a table: the closed loop with the struts as they are believed to be and as they were found.
+//! What the driver feels of what was found, as JSON, words and a table: the closed loop with the vehicle as it is believed to be and as it was found.
 //!
 //! This crate does not know the loop; whoever does drives it and fills in [`Driven`].
 
@@ -44,9 +44,9 @@ pub struct Driven {
     pub rough_road: String,
     /// Name of the built-in drive with a lane change.
     pub lane_change: String,
-    /// With the struts as they are believed to be.
+    /// With the vehicle as it is believed to be.
     pub believed: Felt,
-    /// With the struts as they were found.
+    /// With the vehicle as it was found.
     pub found: Felt,
 }
 
@@ -77,15 +77,17 @@ pub fn section(page: &mut Page, driven: &Result<Driven, String>) {
         Ok(driven) => driven,
         Err(why) => {
             page.text(&format!(
-                "The closed loop could not be driven with the struts that were found: {why}"
+                "The closed loop could not be driven with the vehicle that was found: {why}"
             ));
             return;
         }
     };
     page.text(&format!(
-        "The closed loop of controller and vehicle, with the struts as they are believed to be and as they were found: with the effects, and \
-         with the numbers that were fitted within their tolerances. The ride is that of the scenario \"{}\", the roll that of \"{}\" \
-         (oleo hil --scenario NAME). The controller is told of the believed front left strut in both. Instruments are taken to be right, and each strut is charged for the load that it carries.",
+        "The closed loop of controller and vehicle, as the vehicle is believed to be and as it was found: with the effects, and with the numbers of \
+         the struts that were fitted within their tolerances. What the balance of the body names is there too; a mass stands in the middle \
+         plane, as high as it can be. The ride is that of the scenario \"{}\", the roll that of \"{}\" (oleo hil --scenario NAME). In both the \
+         controller is told of the believed vehicle with the believed front left strut. Instruments are taken to be right, and each strut is \
+         charged for the load that it carries.",
         driven.rough_road, driven.lane_change
     ));
     let mut table = Table::new([
@@ -117,7 +119,7 @@ pub fn driven_in_words(driven: &Result<Driven, String>) -> String {
                 driven.lane_change,
             )
         }
-        Err(why) => format!("The closed loop could not be driven with the struts that were found: {why}"),
+        Err(why) => format!("The closed loop could not be driven with the vehicle that was found: {why}"),
     }
 }
 

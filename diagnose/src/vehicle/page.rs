@@ -117,8 +117,7 @@ pub fn headline(diagnosis: &VehicleDiagnosis) -> String {
 
 /// Whether the balance of the body names something.
 fn names_body(diagnosis: &VehicleDiagnosis) -> bool {
-    let found = diagnosis.body.as_ref().and_then(|found| found.as_ref().ok());
-    found.is_some_and(|findings| !findings.effects.is_empty())
+    (diagnosis.balanced()).is_some_and(|findings| !findings.effects.is_empty())
 }
 
 /// An effect as a phrase: its name, the place in the strut, and the corner.

@@ -13,10 +13,12 @@ use crate::scenario::file::DEFENDER;
 
 /// Parameters of a vehicle that carries nothing.
 pub struct Parameters {
-    /// Body, axles, tyres.
+    /// Body, axles, tyres, as the controller is told.
     pub vehicle: VehicleParameters,
     /// Steering, links, driver.
     pub handling: HandlingParameters,
+    /// Those of the vehicle that drives.
+    pub(super) driven: VehicleParameters,
     /// The strut that the controller is told of, charged for some load.
     strut: StrutModel,
     /// The struts that the vehicle stands on, charged for some load.
@@ -39,13 +41,15 @@ impl Parameters {
             DEFENDER => StrutModel::defender110(1.0),
             path => StrutModel::from_toml(&text(path)?, path)?,
         };
+        let vehicle = match scenario.vehicle.as_str() {
+            DEFENDER => VehicleParameters::defender110(),
+            path => VehicleParameters::from_toml(&text(path)?, path)?,
+        };
         Ok(Self {
             struts: Corners::from_fn(|_| strut.clone()),
             strut,
-            vehicle: match scenario.vehicle.as_str() {
-                DEFENDER => VehicleParameters::defender110(),
-                path => VehicleParameters::from_toml(&text(path)?, path)?,
-            },
+            driven: vehicle.clone(),
+            vehicle,
             handling: match scenario.handling.as_str() {
                 DEFENDER => HandlingParameters::defender110(),
                 path => HandlingParameters::from_toml(&text(path)?, path)?,
@@ -56,6 +60,11 @@ impl Parameters {
     /// The same vehicle on other struts, of which the controller is not told.
     pub fn on_struts(self, struts: Corners<StrutModel>) -> Self {
         Self { struts, ..self }
+    }
+
+    /// The same struts under another body and on other axles, of which the controller is not told.
+    pub fn under(self, driven: VehicleParameters) -> Self {
+        Self { driven, ..self }
     }
 
     /// The same vehicle with a controller that is told of another strut.

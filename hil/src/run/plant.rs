@@ -30,7 +30,7 @@ pub fn vehicle_on(scenario: &Scenario, struts: Corners<StrutModel>) -> Result<Ve
 }
 
 pub(super) fn begin(scenario: &Scenario, parameters: &Parameters) -> Result<Vehicle, RunError> {
-    let loaded = carried(scenario, &parameters.vehicle);
+    let loaded = carried(scenario, &parameters.driven);
     let step_s = loaded.solver.step_s;
     let steps = TICK_S / step_s;
     if (steps - steps.round()).abs() > 1e-9 * steps || steps < 0.5 {

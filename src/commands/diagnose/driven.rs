@@ -1,12 +1,12 @@
-//! Drives the closed loop with the struts of a vehicle as they are believed to be and as they were found.
+//! Drives the closed loop with a vehicle as it is believed to be and as it was found.
 
 use std::path::Path;
 
 use oleo_diagnose::vehicle::{BodyModel, Driven, Felt, VehicleCampaign, VehicleDiagnosis};
 use oleo_hil::metrics::Metrics;
 use oleo_hil::run::{self, Parameters};
-use oleo_hil::scenario;
 use oleo_hil::scenario::check::{Figure, Metric};
+use oleo_hil::scenario::{self, Scenario};
 use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::strut::StrutModel;
 
@@ -21,36 +21,54 @@ const LANE_CHANGE: &str = "lane-change-on-belgian";
 pub fn driven(campaign: &VehicleCampaign, diagnosis: &VehicleDiagnosis, folder: &Path) -> Result<Driven, String> {
     let both = || -> Result<Driven, Failure> {
         let believed = &campaign.model.struts;
-        let vehicle = (campaign.model.body.as_ref())
-            .and_then(BodyModel::own_file)
-            .map(|file| folder.join(file));
-        let felt = |struts: &Corners<StrutModel>| felt(struts, &believed[Corner::FrontLeft], vehicle.as_deref());
+        let scenario = |name: &str| scenario_with(campaign, folder, name);
+        let mut struts = diagnosis.struts(campaign)?;
+        if let Some(balanced) = diagnosis.balanced() {
+            balanced.on_struts(believed, &mut struts);
+        }
         Ok(Driven {
             rough_road: ROUGH_ROAD.to_owned(),
             lane_change: LANE_CHANGE.to_owned(),
-            believed: felt(believed)?,
-            found: felt(&diagnosis.struts(campaign)?)?,
+            believed: felt(scenario, |told| told.on_struts(physical(believed)))?,
+            found: felt(scenario, |told| {
+                let body = diagnosis
+                    .balanced()
+                    .map_or_else(|| told.vehicle.clone(), |balanced| balanced.on_body(&told.vehicle));
+                told.on_struts(physical(&struts)).under(body)
+            })?,
         })
     };
     both().map_err(|failure| failure.to_string())
 }
 
-/// What is felt on these struts. The controller is told of one strut, as of every vehicle.
-fn felt(struts: &Corners<StrutModel>, told: &StrutModel, vehicle: Option<&Path>) -> Result<Felt, Failure> {
-    // What a reading suffers is not the strut's.
+/// A built-in scenario with the vehicle that is believed, and its parameters: the controller is told of the believed front left strut.
+fn scenario_with(campaign: &VehicleCampaign, folder: &Path, name: &str) -> Result<(Scenario, Parameters), Failure> {
+    let mut scenario = scenario::named(name)?;
+    if let Some(file) = campaign.model.body.as_ref().and_then(BodyModel::own_file) {
+        scenario.vehicle = folder.join(file).display().to_string();
+    }
+    let strut = campaign.model.struts[Corner::FrontLeft].clone();
+    let told = Parameters::read(&scenario)?.telling_of(strut);
+    Ok((scenario, told))
+}
+
+/// The struts without what a reading suffers.
+fn physical(struts: &Corners<StrutModel>) -> Corners<StrutModel> {
     let mut physical = struts.clone();
     physical
         .values_mut()
         .for_each(|strut| strut.effects.retain_sensor_faults(|_| false));
+    physical
+}
+
+/// What is felt in scenarios of the vehicle that is made of what the controller is told.
+fn felt(
+    scenario: impl Fn(&str) -> Result<(Scenario, Parameters), Failure>,
+    vehicle: impl Fn(Parameters) -> Parameters,
+) -> Result<Felt, Failure> {
     let metrics = |name: &str| -> Result<Metrics, Failure> {
-        let mut scenario = scenario::named(name)?;
-        if let Some(path) = vehicle {
-            scenario.vehicle = path.display().to_string();
-        }
-        let parameters = Parameters::read(&scenario)?
-            .on_struts(physical.clone())
-            .telling_of(told.clone());
-        let outcome = run::both_of(&scenario, &parameters, &mut |_| true)?;
+        let (scenario, told) = scenario(name)?;
+        let outcome = run::both_of(&scenario, &vehicle(told), &mut |_| true)?;
         Ok(Metrics::of(&scenario, &outcome))
     };
     let (rough_road, lane_change) = (metrics(ROUGH_ROAD)?, metrics(LANE_CHANGE)?);

@@ -93,7 +93,7 @@ pub fn run(logs: &Logs, database: &DatabaseArgs, results: &ResultsArgs) -> Resul
         progress.phase(doing);
         progress.set((part * STEPS as f64) as u64);
     })?;
-    if diagnosis.alters_struts() {
+    if diagnosis.alters_vehicle() {
         progress.phase("driving the closed loop as believed and as found");
         diagnosis.driven = Some(driven(&campaign, &diagnosis, folder));
     }

@@ -341,6 +341,11 @@ fn bad_input_is_one_line_and_leaves_nothing() {
         (&["--scenario", &path("nowhere.toml")], "nowhere.toml"),
         (&["--strut", &path("strut.toml")], "strut.toml"),
         (&["--strut", &path("nowhere.toml")], "nowhere.toml"),
+        (
+            &["--strut-at", &format!("rear-left={}", path("nowhere.toml"))],
+            "nowhere.toml",
+        ),
+        (&["--strut-at", "rear=weak.toml"], "the corners are front-left"),
         (&["--vehicle", &path("strut.toml")], "strut.toml"),
         (&["--road", &path("road.crg")], "road.crg"),
         (&["--road", "cobbles"], "cobbles"),
@@ -459,11 +464,17 @@ fn help_has_examples_and_units() {
 #[test]
 fn a_run_is_repeated_from_its_own_folder() {
     let folder = tempfile::tempdir().unwrap();
-    let [given, first, again] = ["given.toml", "first", "again"].map(|name| folder.path().join(name));
+    let [given, weak, first, again] =
+        ["given.toml", "weak.toml", "first", "again"].map(|name| folder.path().join(name));
     let strut = run(&["show", "strut"]);
     let wider = String::from_utf8(strut.stdout)
         .unwrap()
         .replacen("bore_m = 0.05", "bore_m = 0.051", 1);
+    fs::write(
+        &weak,
+        wider.replacen("static_gas_volume_m3 = 0.0004", "static_gas_volume_m3 = 0.0003", 1),
+    )
+    .unwrap();
     fs::write(&given, wider).unwrap();
     let text = |path: &Path| path.to_str().unwrap().to_owned();
     let changed = [
@@ -479,6 +490,7 @@ fn a_run_is_repeated_from_its_own_folder() {
         "2",
     ];
     let (strut, out) = (text(&given), text(&first));
+    let at_corner = format!("rear-left={}", text(&weak));
     let output = run(&[
         &[
             "hil",
@@ -488,6 +500,8 @@ fn a_run_is_repeated_from_its_own_folder() {
             "iso-c",
             "--strut",
             &strut,
+            "--strut-at",
+            &at_corner,
             "--out",
             &out,
         ][..],
@@ -507,7 +521,13 @@ fn a_run_is_repeated_from_its_own_folder() {
         String::from_utf8_lossy(&output.stderr)
     );
     let bytes = |folder: &Path, name: &str| fs::read(folder.join(name)).unwrap();
-    for name in ["timeseries.csv", "candump.log", "strut.toml", "scenario.toml"] {
+    for name in [
+        "timeseries.csv",
+        "candump.log",
+        "strut.toml",
+        "strut-rear-left.toml",
+        "scenario.toml",
+    ] {
         assert_eq!(bytes(&first, name), bytes(&again, name), "{name}");
     }
     assert!(
@@ -515,4 +535,5 @@ fn a_run_is_repeated_from_its_own_folder() {
             .unwrap()
             .contains("bore_m = 0.051")
     );
+    assert_eq!(bytes(&first, "strut-rear-left.toml"), fs::read(&weak).unwrap());
 }

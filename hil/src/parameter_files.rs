@@ -2,11 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use oleo_interface::Corners;
 use oleo_plant_sim::handling::HandlingParameters;
 use oleo_plant_sim::model_file::ModelFileError;
 use oleo_plant_sim::strut::StrutModel;
 use oleo_plant_sim::vehicle::VehicleParameters;
 use oleo_report::{OutputDirectory, OutputError};
+
+use crate::scenario::file::DEFENDER;
+use crate::scenario::{Scenario, kept_as};
 
 /// Parameters as they were read, once, so that results hold what was used.
 pub struct Parameters {
@@ -19,6 +23,8 @@ pub struct Parameters {
     vehicle_text: String,
     handling_text: String,
     strut_text: String,
+    /// Texts of the models of struts that differ.
+    strut_at_text: Corners<Option<String>>,
 }
 
 impl Parameters {
@@ -45,7 +51,21 @@ impl Parameters {
             vehicle_text,
             handling_text,
             strut_text,
+            strut_at_text: Corners::default(),
         })
+    }
+
+    /// The same with the struts of a scenario that differ from the others.
+    ///
+    /// # Errors
+    /// A file cannot be read.
+    pub fn with_struts_of(self, scenario: &Scenario) -> Result<Self, ModelFileError> {
+        let strut_at_text = Corners::try_from_fn(|corner| match scenario.strut_at[corner].as_deref() {
+            None => Ok(None),
+            Some(DEFENDER) => Ok(Some(StrutModel::DEFENDER110_TOML.to_owned())),
+            Some(path) => read(Path::new(path), "model").map(|(text, _)| Some(text)),
+        })?;
+        Ok(Self { strut_at_text, ..self })
     }
 
     /// Puts the parameters of vehicle and handling into the results, so that they can be given back.
@@ -63,7 +83,13 @@ impl Parameters {
     /// A file cannot be written.
     pub fn keep(&self, out: &mut OutputDirectory) -> Result<(), OutputError> {
         self.keep_vehicle(out)?;
-        out.write("strut.toml", &self.strut_text)
+        out.write("strut.toml", &self.strut_text)?;
+        for (corner, text) in self.strut_at_text.iter() {
+            if let Some(text) = text {
+                out.write(&kept_as(corner), text)?;
+            }
+        }
+        Ok(())
     }
 }
 

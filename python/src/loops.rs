@@ -135,6 +135,7 @@ pub fn hil<'py>(
         strategy: settings.word("strategy")?,
         damper_policy: settings.damper_policy()?,
         strut: settings.text("strut")?,
+        strut_at: Vec::new(),
         vehicle: settings.text("vehicle")?,
         handling: settings.text("handling")?,
         imu_m: None,

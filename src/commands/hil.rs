@@ -22,6 +22,7 @@ use oleo_hil::scenario::file::DEFENDER;
 use oleo_hil::scenario::{self, Clock, FaultKind, Overrides, Scenario};
 use oleo_hil::telemetry::{Live, McapFile, Rows};
 use oleo_hil::{page, sync::Role};
+use oleo_interface::Corner;
 use oleo_plant_sim::course::ManoeuvreKind;
 use oleo_plant_sim::road;
 use oleo_report::interrupt::{self, Graceful};
@@ -50,6 +51,7 @@ Examples:
   oleo hil --scenario lane-change-on-belgian --out lane     change lanes in the middle of a rough road
   oleo hil --manoeuvre lane-change-2 --driver hard --load laden --road flat
   oleo hil --record rear-left --out run                     record a strut, for oleo diagnose run/rear-left
+  oleo hil --strut-at rear-left=weak.toml --out weak        one strut that differs, of which the controller is not told
   oleo hil --imu=0.3,0,-0.2 --out run                       an inertial unit on the body sends on the same bus
   oleo hil --bus socketcan:vcan0                            send the frames over SocketCAN
   oleo hil --clock realtime --duration-s 5                  run in real time
@@ -103,6 +105,10 @@ pub struct Args {
     /// Strut model, such as the model.toml that oleo diagnose writes [default: the scenario's]
     #[arg(long, value_name = "MODEL.toml")]
     strut: Option<String>,
+    /// Strut model of one corner, of which the controller is not told; may be given for each corner [default: the scenario's, which is
+    /// that of all corners unless it has a table strut_at]
+    #[arg(long, value_name = "CORNER=MODEL.toml", value_parser = strut_at)]
+    strut_at: Vec<(Corner, String)>,
     /// File of vehicle parameters [default: the scenario's]
     #[arg(long, value_name = "VEHICLE.toml")]
     vehicle: Option<String>,
@@ -168,7 +174,8 @@ pub fn run(args: Args) -> Result<ExitCode, Failure> {
     let staged = args.results.stage("oleo hil", &name, inputs)?;
     let [vehicle, handling, strut] = [&scenario.vehicle, &scenario.handling, &scenario.strut]
         .map(|name| (name != DEFENDER).then(|| PathBuf::from(name)));
-    let parameters = Parameters::read(vehicle.as_ref(), handling.as_ref(), strut.as_ref())?;
+    let parameters =
+        Parameters::read(vehicle.as_ref(), handling.as_ref(), strut.as_ref())?.with_struts_of(&scenario)?;
     let mut vehicle = run::vehicle(&scenario)?;
     if args.record.is_some() {
         vehicle = vehicle.recording_struts();
@@ -216,6 +223,9 @@ fn has_no_vehicle(args: &Args) -> Result<(), Failure> {
     if args.record.is_some() {
         return refused("--record", "strut");
     }
+    if !args.strut_at.is_empty() {
+        return refused("--strut-at", "strut");
+    }
     if args.imu.is_some() {
         return refused("--imu", "body");
     }
@@ -260,7 +270,7 @@ fn inputs(args: &Args, scenario: &Scenario) -> Vec<PathBuf> {
     let file = (!built_in).then_some(&args.scenario);
     let road = Some(&scenario.road).filter(|road| !road::NAMES.contains(&road.as_str()));
     let parts = [&scenario.strut, &scenario.vehicle, &scenario.handling];
-    let parts = parts.into_iter().filter(|part| *part != DEFENDER);
+    let parts = (parts.into_iter().chain(scenario.strut_at.values().flatten())).filter(|part| *part != DEFENDER);
     let mut inputs: Vec<PathBuf> = (file.into_iter().chain(road).chain(parts)).map(PathBuf::from).collect();
     inputs.extend(args.firmware.clone());
     inputs
@@ -316,12 +326,25 @@ fn chosen(args: &Args) -> Result<Scenario, Failure> {
         damper_policy: args.damper_policy,
         imu_m: args.imu,
         strut: args.strut.clone(),
+        strut_at: args.strut_at.clone(),
         vehicle: args.vehicle.clone(),
         handling: args.handling.clone(),
         seed: args.seed,
     };
     let written = scenario::named(&args.scenario)?;
     overrides.of(&written).map_err(|invalid| option_failure(&invalid))
+}
+
+/// Reads a corner with the path of a strut model.
+fn strut_at(text: &str) -> Result<(Corner, String), String> {
+    let given = text.split_once('=').and_then(|(name, path)| {
+        let corner = Corner::ALL.into_iter().find(|corner| corner.name() == name)?;
+        (!path.is_empty()).then(|| (corner, path.to_owned()))
+    });
+    let corners = Corner::ALL.map(Corner::name).join(", ");
+    given.ok_or_else(|| {
+        format!("give a corner and a model file, such as rear-left=model.toml; the corners are {corners}")
+    })
 }
 
 /// Reads a place: three numbers with commas between.

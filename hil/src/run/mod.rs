@@ -282,6 +282,7 @@ mod tests {
     use super::*;
     use crate::record::command_hash;
     use crate::scenario;
+    use oleo_interface::{Corner, Corners};
     use std::time::Duration;
 
     pub(super) fn short(name: &str, ticks: u32) -> Scenario {
@@ -329,11 +330,25 @@ mod tests {
         );
         let mut weak = oleo_plant_sim::strut::StrutModel::defender110(1.0);
         weak.accumulator[1].static_gas_volume_m3 *= 0.8;
-        let on_others = pressures(&read().on_struts(oleo_interface::Corners::from_fn(|_| weak.clone())));
+        let on_others = pressures(&read().on_struts(Corners::from_fn(|_| weak.clone())));
         assert_ne!(on_others, as_read);
         // The controller of a vehicle that it takes for another one is configured for that one.
         let told = |parameters: Parameters| format!("{:?}", parameters.description());
         assert_ne!(told(read().telling_of(weak.clone())), told(read()));
+        // One corner may differ, of which it is not told.
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), weak.to_toml()).unwrap();
+        let mut differs = scenario.clone();
+        differs.strut_at[Corner::RearLeft] = Some(file.path().display().to_string());
+        let with_weak = Parameters::read(&differs).unwrap();
+        let strut_at = |corner| match corner {
+            Corner::RearLeft => weak.clone(),
+            _ => oleo_plant_sim::strut::StrutModel::defender110(1.0),
+        };
+        let at_corner = pressures(&read().on_struts(Corners::from_fn(strut_at)));
+        assert_eq!(pressures(&with_weak), at_corner);
+        assert_ne!(at_corner, as_read);
+        assert_eq!(told(with_weak), told(read()));
     }
 
     #[test]

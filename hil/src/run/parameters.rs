@@ -37,16 +37,22 @@ impl Parameters {
                 source,
             })
         };
-        let strut = match scenario.strut.as_str() {
-            DEFENDER => StrutModel::defender110(1.0),
-            path => StrutModel::from_toml(&text(path)?, path)?,
+        let model = |name: &str| -> Result<StrutModel, RunError> {
+            Ok(match name {
+                DEFENDER => StrutModel::defender110(1.0),
+                path => StrutModel::from_toml(&text(path)?, path)?,
+            })
         };
+        let strut = model(&scenario.strut)?;
         let vehicle = match scenario.vehicle.as_str() {
             DEFENDER => VehicleParameters::defender110(),
             path => VehicleParameters::from_toml(&text(path)?, path)?,
         };
         Ok(Self {
-            struts: Corners::from_fn(|_| strut.clone()),
+            struts: Corners::try_from_fn(|corner| match &scenario.strut_at[corner] {
+                Some(name) => model(name),
+                None => Ok(strut.clone()),
+            })?,
             strut,
             driven: vehicle.clone(),
             vehicle,

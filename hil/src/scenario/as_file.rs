@@ -6,6 +6,7 @@ use toml::{Table, Value};
 
 use super::definition::Scenario;
 use super::file::DEFENDER;
+use super::strut_at::as_table;
 
 /// Keys that describe the manoeuvre; those of the written one go where another is driven.
 const MANOEUVRE: [&str; 8] = [
@@ -74,6 +75,9 @@ impl Scenario {
                 .into_iter()
                 .filter_map(|(key, number)| Some((key.to_owned(), number?.into())));
             table.extend(given);
+        }
+        if let Some(struts) = as_table(&self.strut_at) {
+            table.insert("strut_at".to_owned(), struts);
         }
         if let Some(imu) = self.imu.as_ref().and_then(|imu| Value::try_from(imu).ok()) {
             table.insert("imu".to_owned(), imu);

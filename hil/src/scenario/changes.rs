@@ -62,6 +62,12 @@ pub fn changes(before: &Scenario, after: &Scenario) -> Vec<String> {
     ] {
         say(new != old, format!("{name} {}", file(new)));
     }
+    for (corner, new) in after.strut_at.iter() {
+        if let Some(new) = new {
+            let differs = before.strut_at[corner].as_ref() != Some(new);
+            say(differs, format!("strut {} at {}", file(new), corner.name()));
+        }
+    }
     changes
 }
 

@@ -1,8 +1,8 @@
 //! A complete and valid scenario: vehicle and road, clock, faults and checks.
 
 use oleo_controller::{DamperPolicy, Strategy};
-use oleo_interface::Axle;
 use oleo_interface::tick::TICK_S;
+use oleo_interface::{Axle, Corners};
 use oleo_plant_sim::course::CourseSettings;
 use oleo_plant_sim::vehicle::{Load, Payload};
 use strum::{EnumString, IntoStaticStr, VariantNames};
@@ -66,6 +66,8 @@ pub struct Scenario {
     pub damper_policy: DamperPolicy,
     /// Strut model: `defender110` or the path of a `model.toml`.
     pub strut: String,
+    /// Strut models of single corners, of which the controller is not told: as [`strut`](Self::strut), which a corner without one has.
+    pub strut_at: Corners<Option<String>>,
     /// Vehicle: `defender110` or the path of a parameter file.
     pub vehicle: String,
     /// Handling parameters: `defender110` or the path of a file.

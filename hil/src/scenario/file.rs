@@ -15,6 +15,7 @@ use strum::VariantArray;
 use super::check_entry::CheckEntry;
 use super::definition::Scenario;
 use super::fault_entry::FaultEntry;
+use super::strut_at::StrutAt;
 use crate::bus::BusAddress;
 use crate::imu::ImuSettings;
 
@@ -38,6 +39,8 @@ struct ScenarioFile {
     strategy: Option<String>,
     damper_policy: Option<String>,
     strut: Option<String>,
+    #[serde(default)]
+    strut_at: StrutAt,
     vehicle: Option<String>,
     handling: Option<String>,
     load: Option<String>,
@@ -123,6 +126,7 @@ impl ScenarioFile {
             ticks,
             strategy: one_of("strategy", self.strategy.as_deref())?,
             damper_policy: one_of("damper_policy", self.damper_policy.as_deref())?,
+            strut_at: (self.strut_at.by_corner()).map(|path| path.map(|path| located(&path, folder, &[DEFENDER]))),
             strut: located(self.strut.as_deref().unwrap_or(DEFENDER), folder, &[DEFENDER]),
             vehicle: located(self.vehicle.as_deref().unwrap_or(DEFENDER), folder, &[DEFENDER]),
             handling: located(self.handling.as_deref().unwrap_or(DEFENDER), folder, &[DEFENDER]),

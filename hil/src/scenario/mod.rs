@@ -20,6 +20,7 @@ pub mod fault;
 mod fault_entry;
 pub mod file;
 mod overrides;
+mod strut_at;
 
 pub use built_in::{BUILT_IN, named};
 pub use changes::changes;
@@ -27,3 +28,4 @@ pub use check::{Check, Comparison};
 pub use definition::{Clock, OnControllerLoss, Scenario};
 pub use fault::{Fault, FaultKind};
 pub use overrides::Overrides;
+pub use strut_at::kept_as;

@@ -1,6 +1,7 @@
 //! What is driven instead of what a scenario says.
 
 use oleo_controller::{DamperPolicy, Strategy};
+use oleo_interface::Corner;
 use oleo_interface::tick::TICK_S;
 use oleo_plant_sim::course::{CourseChanges, CourseSettings, ManoeuvreKind};
 use oleo_plant_sim::model_file::{Checked, InvalidValue};
@@ -39,6 +40,8 @@ pub struct Overrides {
     pub imu_m: Option<[f64; 3]>,
     /// Path of a strut model.
     pub strut: Option<String>,
+    /// Paths of strut models of single corners.
+    pub strut_at: Vec<(Corner, String)>,
     /// Path of vehicle parameters.
     pub vehicle: Option<String>,
     /// Path of handling parameters.
@@ -61,6 +64,9 @@ impl Overrides {
         };
         own(&self.road, &mut chosen.road);
         own(&self.strut, &mut chosen.strut);
+        for (corner, path) in &self.strut_at {
+            chosen.strut_at[*corner] = Some(path.clone());
+        }
         own(&self.vehicle, &mut chosen.vehicle);
         own(&self.handling, &mut chosen.handling);
         chosen.load = self.load.unwrap_or(chosen.load);

@@ -123,6 +123,10 @@ fn complaints_name_file_line_and_key() {
             "[payload]\nmass_kg = -5\n",
             "x.toml:6: [payload] mass_kg is -5: must be from 0 to 2000 kg",
         ),
+        (
+            "[strut_at]\nrear = \"weak.toml\"\n",
+            "x.toml:6: [strut_at] rear is not a known key: ",
+        ),
         ("[imu]\nx_m = 9\n", "x.toml:6: [imu] x_m is 9: must be from -5 to 5 m"),
         ("[imu]\nplace = 9\n", "x.toml:6: [imu] place is not a known key: "),
         ("entry_m = 50\n", "x.toml:5: entry_m needs a manoeuvre"),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, overload
 
 import pandas as pd
@@ -27,6 +27,7 @@ def hil(
     strategy: str | None = None,
     damper_policy: str | None = None,
     strut: Path | None = None,
+    strut_at: Mapping[str, Path] | None = None,
     vehicle: Path | None = None,
     handling: Path | None = None,
     load: str | None = None,
@@ -43,8 +44,8 @@ def hil(
     """Closes the loop: plant and controller communicate through CAN frames in memory, in lockstep, as in ``oleo hil``.
 
     ``scenario``: name of a built-in scenario, or path of a scenario file. The other settings replace the scenario's and are those
-    of ``oleo hil``: speed in km/h, times in s, lengths in m, angles in degrees. ``progress``: ``False`` shows none, and a function
-    is told the phase and the part that is done.
+    of ``oleo hil``: speed in km/h, times in s, lengths in m, angles in degrees. ``strut_at``: struts of single corners that differ, such
+    as ``{"rear-left": "weak.toml"}``. ``progress``: ``False`` shows none, and a function is told the phase and the part that is done.
 
     Returns a data frame with a row for each tick of 5 ms and the columns of ``timeseries.csv`` (``docs/results-files.md``).
     ``attrs["summary"]`` is the content of ``summary.json``; ``attrs["passed"]`` says whether all checks of the scenario are met.

@@ -1,5 +1,6 @@
 //! The vehicle with its controller: over the bus (`hil`) and without it (`drive`).
 
+use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -14,6 +15,7 @@ use oleo_hil::parameter_files::Parameters;
 use oleo_hil::run::{self, RunError};
 use oleo_hil::scenario::{self, Clock, Overrides};
 use oleo_hil::time_series;
+use oleo_interface::Corner;
 use oleo_plant_sim::course::CourseChanges;
 use oleo_plant_sim::model_file::names::suggestion;
 use pyo3::prelude::*;
@@ -86,6 +88,18 @@ impl<'py> Settings<'py> {
         }
     }
 
+    /// Paths of struts by the names of their corners.
+    fn struts_at(&self) -> PyResult<Vec<(Corner, String)>> {
+        let given: Option<BTreeMap<String, PathBuf>> = self.value("strut_at", "corners with paths of strut models")?;
+        let named = given.unwrap_or_default().into_iter().map(|(name, path)| {
+            let corner = Corner::ALL.into_iter().find(|corner| corner.name() == name);
+            let known = suggestion(&name, &Corner::ALL.map(Corner::name), "corners");
+            let corner = corner.ok_or_else(|| complaint(&format!("strut_at has {name}: {known}")))?;
+            Ok((corner, path.display().to_string()))
+        });
+        named.collect()
+    }
+
     fn course(&self) -> PyResult<CourseChanges> {
         Ok(CourseChanges {
             driver: self.word("driver")?,
@@ -135,7 +149,7 @@ pub fn hil<'py>(
         strategy: settings.word("strategy")?,
         damper_policy: settings.damper_policy()?,
         strut: settings.text("strut")?,
-        strut_at: Vec::new(),
+        strut_at: settings.struts_at()?,
         vehicle: settings.text("vehicle")?,
         handling: settings.text("handling")?,
         imu_m: None,

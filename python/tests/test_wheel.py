@@ -133,10 +133,12 @@ class SameAsTheCommandLine(unittest.TestCase):
 
     def test_loop(self):
         out = self.folder / "run"
-        arguments = ["--scenario", "bus-silence", "--road", "iso-c", "--duration-s", "6"]
+        weak = self.folder / "weak.toml"
+        weak.write_text(oleo.Model.built_in().to_toml().replace("bore_m = 0.05", "bore_m = 0.051"))
+        arguments = ["--scenario", "bus-silence", "--road", "iso-c", "--duration-s", "6", "--strut-at", f"rear-left={weak}"]
         status, _, error = run("hil", *arguments, "--out", out)
         self.assertIn(status, (0, 1), error)
-        frame = oleo.hil("bus-silence", road="iso-c", duration_s=6)
+        frame = oleo.hil("bus-silence", road="iso-c", duration_s=6, strut_at={"rear-left": weak})
         summary = json.loads((out / "summary.json").read_text())
         own = frame.attrs["summary"]
         for key in own.keys() - {"wall_s", "real_time_factor"}:
@@ -275,6 +277,9 @@ class Complaints(unittest.TestCase):
             (lambda: oleo.hil(damper_policy="karnopp"), "damper_policy has no use in the strategy road-and-cornering"),
             (lambda: oleo.hil(driver="hard"), "driver has no use"),
             (lambda: oleo.hil(seed=-1), "seed is -1: give a whole number"),
+            (lambda: oleo.hil(strut_at={"rear": "weak.toml"}), "strut_at has rear: did you mean rear-left? The corners are "),
+            (lambda: oleo.hil(strut_at="weak.toml"), "strut_at is weak.toml: give corners with paths of strut models"),
+            (lambda: oleo.hil(strut_at={"rear-left": "none.toml"}), "none.toml: cannot be read"),
             (lambda: oleo.drive("loop"), "manoeuvre is loop: "),
             (lambda: oleo.drive("lane-change", setting=["soft", "soft"]), "setting has soft twice"),
             (lambda: oleo.drive("lane-change", setting=[]), "setting is empty"),

@@ -31,8 +31,7 @@ no_slower() {
     local ours theirs
     ours=$(instructions "$dist") theirs=$(instructions "$release")
     echo "${ours:-none} instructions for 2 s of oleo hil, release ${theirs:-none}"
-    # The command itself is made small, which costs 3 % where a run is short.
-    [ "${ours:-0}" -gt 0 ] && [ $((100 * ours)) -le $((105 * theirs)) ]
+    [ "${ours:-0}" -gt 0 ] && [ "$ours" -le "$theirs" ]
 }
-check "hardly more instructions" no_slower && sed 's/^/   /' "$log"
+check "no more instructions" no_slower && sed 's/^/   /' "$log"
 exit 0

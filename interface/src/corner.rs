@@ -109,6 +109,18 @@ impl Corner {
         }
     }
 
+    /// The corner with a [`name`](Self::name).
+    ///
+    /// ```
+    /// use oleo_interface::Corner;
+    /// assert_eq!(Corner::named("rear-left"), Some(Corner::RearLeft));
+    /// assert_eq!(Corner::named("rear"), None);
+    /// ```
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|corner| corner.name() == name)
+    }
+
     /// Position in [`Corner::ALL`], 0 to 3.
     #[must_use]
     pub const fn index(self) -> usize {

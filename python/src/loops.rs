@@ -92,9 +92,8 @@ impl<'py> Settings<'py> {
     fn struts_at(&self) -> PyResult<Vec<(Corner, String)>> {
         let given: Option<BTreeMap<String, PathBuf>> = self.value("strut_at", "corners with paths of strut models")?;
         let named = given.unwrap_or_default().into_iter().map(|(name, path)| {
-            let corner = Corner::ALL.into_iter().find(|corner| corner.name() == name);
             let known = suggestion(&name, &Corner::ALL.map(Corner::name), "corners");
-            let corner = corner.ok_or_else(|| complaint(&format!("strut_at has {name}: {known}")))?;
+            let corner = Corner::named(&name).ok_or_else(|| complaint(&format!("strut_at has {name}: {known}")))?;
             Ok((corner, path.display().to_string()))
         });
         named.collect()

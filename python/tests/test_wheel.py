@@ -134,7 +134,9 @@ class SameAsTheCommandLine(unittest.TestCase):
     def test_loop(self):
         out = self.folder / "run"
         weak = self.folder / "weak.toml"
-        weak.write_text(oleo.Model.built_in().to_toml().replace("bore_m = 0.05", "bore_m = 0.051"))
+        model = oleo.Model.built_in().to_toml()
+        weak.write_text(model.replace("bore_m = 0.05", "bore_m = 0.051"))
+        self.assertNotEqual(weak.read_text(), model)
         arguments = ["--scenario", "bus-silence", "--road", "iso-c", "--duration-s", "6", "--strut-at", f"rear-left={weak}"]
         status, _, error = run("hil", *arguments, "--out", out)
         self.assertIn(status, (0, 1), error)

@@ -338,7 +338,7 @@ fn chosen(args: &Args) -> Result<Scenario, Failure> {
 /// Reads a corner with the path of a strut model.
 fn strut_at(text: &str) -> Result<(Corner, String), String> {
     let given = text.split_once('=').and_then(|(name, path)| {
-        let corner = Corner::ALL.into_iter().find(|corner| corner.name() == name)?;
+        let corner = Corner::named(name)?;
         (!path.is_empty()).then(|| (corner, path.to_owned()))
     });
     let corners = Corner::ALL.map(Corner::name).join(", ");

@@ -54,7 +54,7 @@ mod stretch;
 pub use campaign::VehicleCampaign;
 pub use diagnosis::{VehicleDiagnosis, VehicleEffect};
 pub use drive::{Drive, InertialSamples, Resolution, StrutSamples};
-pub use driven::{Driven, Felt, driven_in_words};
+pub use driven::{DRIVES, Driven, Felt, driven_in_words};
 pub use model::{BodyModel, VEHICLE, VehicleModel, is_vehicle};
 pub use page::{effects_table, headline, page};
 pub use report::report;

@@ -238,7 +238,7 @@ impl FromStr for Place {
             None => (None, text),
             Some((VEHICLE, site)) => (Some(VehiclePart::All), site),
             Some((name, site)) => {
-                let corner = Corner::ALL.into_iter().find(|c| c.name() == name).ok_or_else(unknown)?;
+                let corner = Corner::named(name).ok_or_else(unknown)?;
                 (Some(VehiclePart::Corner(corner)), site)
             }
         };

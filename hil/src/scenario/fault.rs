@@ -21,10 +21,6 @@ pub const CORNER_NAMES: [&str; 4] = [
 /// Names of a strut's sensors, in order.
 pub const SENSOR_NAMES: [&str; 5] = ["displacement", "p1", "p2", "p3", "p4"];
 
-fn corner_from_name(name: &str) -> Option<Corner> {
-    Corner::ALL.into_iter().find(|corner| corner.name() == name)
-}
-
 /// A sensor of a strut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sensor {
@@ -58,7 +54,7 @@ impl SensorPlace {
     pub fn from_name(text: &str) -> Option<Self> {
         let (corner, sensor) = text.split_once('.')?;
         Some(Self {
-            corner: corner_from_name(corner)?,
+            corner: Corner::named(corner)?,
             sensor: Sensor::from_name(sensor)?,
         })
     }
@@ -78,7 +74,7 @@ impl ValvePlace {
     pub fn from_name(text: &str) -> Option<Self> {
         let (corner, valve) = text.split_once('.')?;
         Some(Self {
-            corner: corner_from_name(corner)?,
+            corner: Corner::named(corner)?,
             valve: Valve::from_number(valve.parse().ok()?)?,
         })
     }

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use oleo_diagnose::vehicle::{BodyModel, Driven, Felt, VehicleCampaign, VehicleDiagnosis};
+use oleo_diagnose::vehicle::{BodyModel, DRIVES, Driven, Felt, VehicleCampaign, VehicleDiagnosis};
 use oleo_hil::metrics::Metrics;
 use oleo_hil::run::{self, Parameters};
 use oleo_hil::scenario::check::{Figure, Metric};
 use oleo_hil::scenario::{self, Scenario};
 use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::strut::StrutModel;
+use rayon::prelude::*;
 
 use crate::failure::Failure;
 
@@ -61,24 +62,34 @@ fn physical(struts: &Corners<StrutModel>) -> Corners<StrutModel> {
     physical
 }
 
-/// What is felt in scenarios of the vehicle that is made of what the controller is told.
+/// What is felt in scenarios, seed by seed, of the vehicle that is made of what the controller is told.
 fn felt(
     scenario: impl Fn(&str) -> Result<(Scenario, Parameters), Failure>,
     vehicle: impl Fn(Parameters) -> Parameters,
-) -> Result<Felt, Failure> {
-    let metrics = |name: &str| -> Result<Metrics, Failure> {
-        let (scenario, told) = scenario(name)?;
-        let outcome = run::both_of(&scenario, &vehicle(told), &mut |_| true)?;
+) -> Result<[Felt; DRIVES], Failure> {
+    let read = |name: &str| scenario(name).map(|(scenario, told)| (scenario, vehicle(told)));
+    let (rough_road, lane_change) = (read(ROUGH_ROAD)?, read(LANE_CHANGE)?);
+    let metrics = |(scenario, vehicle): &(Scenario, Parameters), seed: u64| -> Result<Metrics, Failure> {
+        let scenario = Scenario {
+            seed,
+            ..scenario.clone()
+        };
+        let outcome = run::both_of(&scenario, vehicle, &mut |_| true)?;
         Ok(Metrics::of(&scenario, &outcome))
     };
-    let (rough_road, lane_change) = (metrics(ROUGH_ROAD)?, metrics(LANE_CHANGE)?);
-    let [driver, rear_left] = rough_road.seats.map(|seat| seat.weighted_rms_m_s2);
-    let Figure::Number(roll_deg) = lane_change.figure(Metric::MaxRoll) else {
-        return Err(Failure::new(format!("{LANE_CHANGE}: the body's roll is not known")));
+    let drive = |seed: u64| -> Result<Felt, Failure> {
+        let [driver, rear_left] = metrics(&rough_road, seed)?.seats.map(|seat| seat.weighted_rms_m_s2);
+        let Figure::Number(roll_deg) = metrics(&lane_change, seed)?.figure(Metric::MaxRoll) else {
+            return Err(Failure::new(format!("{LANE_CHANGE}: the body's roll is not known")));
+        };
+        Ok(Felt {
+            driver_m_s2: driver,
+            rear_left_m_s2: rear_left,
+            roll_deg,
+        })
     };
-    Ok(Felt {
-        driver_m_s2: driver,
-        rear_left_m_s2: rear_left,
-        roll_deg,
-    })
+    let drives = (1..=DRIVES as u64).into_par_iter().map(drive);
+    let felt: Vec<Felt> = drives.collect::<Result<_, _>>()?;
+    felt.try_into()
+        .map_err(|_| Failure::new("the loop was not driven as often as asked".to_owned()))
 }

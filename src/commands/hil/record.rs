@@ -17,8 +17,7 @@ pub fn recorded(text: &str) -> Result<Recorded, String> {
     if text == "all" {
         return Ok(Recorded(Corner::ALL.to_vec()));
     }
-    let corner = Corner::ALL.into_iter().find(|corner| corner.name() == text);
-    corner
+    Corner::named(text)
         .map(|corner| Recorded(vec![corner]))
         .ok_or_else(|| format!("give {} or all", Corner::ALL.map(Corner::name).join(", ")))
 }

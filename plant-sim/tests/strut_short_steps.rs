@@ -1,4 +1,4 @@
-//! Steps of an instant: a step ends where a valve begins or ends to move, and may be as short as a fraction of a microsecond.
+//! Short steps: of an instant, because a step ends where a valve begins or ends to move, and while the main chamber settles.
 
 use oleo_interface::StrutValves;
 use oleo_plant_sim::strut::{Effects, Strut, StrutModel};
@@ -49,5 +49,38 @@ fn a_long_step_after_an_instant_finds_the_gas() {
                 out.pressure_pa[0]
             );
         }
+    }
+}
+
+/// p1 behind a stroke of 0.5 m/s on closed valves that ends within 5 ms, 5 ms apart, Pa: told in intervals of this many milliseconds.
+fn behind_a_stroke(interval_ms: u32) -> Vec<f64> {
+    const FAST_UNTIL_S: f64 = 0.03;
+    const STANDS_FROM_S: f64 = 0.035;
+    let closed = StrutValves::default();
+    let mut strut = Strut::at_rest(&StrutModel::defender110(8000.0), closed).unwrap();
+    let left = |t_s: f64| ((STANDS_FROM_S - t_s) / (STANDS_FROM_S - FAST_UNTIL_S)).clamp(0.0, 1.0);
+    let speed = |t_s: f64| 0.5 * left(t_s);
+    let position = |t_s: f64| {
+        let braking_s = (t_s - FAST_UNTIL_S).clamp(0.0, STANDS_FROM_S - FAST_UNTIL_S);
+        0.5 * (t_s.min(FAST_UNTIL_S) + 0.5 * braking_s * (1.0 + left(t_s)))
+    };
+    let h = 1e-3 * f64::from(interval_ms);
+    let told: Vec<(u32, f64)> = (1..=60 / interval_ms)
+        .map(|k| {
+            let end_s = h * f64::from(k);
+            let out = strut.advance_with_speeds(position(end_s), speed(end_s - h), speed(end_s), h, closed);
+            (k * interval_ms, out.pressure_pa[0])
+        })
+        .collect();
+    let stands = told.into_iter().filter(|(ms, _)| *ms > 35 && ms.is_multiple_of(5));
+    stands.map(|(_, p1_pa)| p1_pa).collect()
+}
+
+/// The main chamber settles within milliseconds, also where the rod is slow again.
+#[test]
+fn what_a_stroke_leaves_is_followed_where_the_motion_is_slow_again() {
+    let (short, long) = (behind_a_stroke(1), behind_a_stroke(5));
+    for (short, long) in short.iter().zip(&long) {
+        assert!((long - short).abs() < 100.0, "{long} {short} Pa");
     }
 }

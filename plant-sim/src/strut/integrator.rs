@@ -37,8 +37,10 @@ const DAMPED_STEP_S: f64 = 1.25e-3;
 const VALVE_STEP_S: f64 = 2e-3;
 /// Shortest step, s: a sliver shorter than this is not worth a step of its own.
 const LEAST_STEP_S: f64 = 1e-6;
-/// Below this speed and change of speed a step may be as long as the recording's sampling interval, m/s.
+/// Below this speed and change of speed a step may be as long as the recording's sampling interval, m/s ...
 const SLOW_M_S: f64 = 0.02;
+/// ... from this time after the last fast movement on, s: until then the main chamber settles.
+const SETTLES_S: f64 = 0.02;
 
 /// Time from which on none of the valves moves or is about to, s.
 fn settled_s(valves: &StrutValves<ValveMotion>) -> f64 {
@@ -134,6 +136,8 @@ pub struct Strut {
     swing: Option<OilSwing>,
     /// The seals of the floating pistons, where they rub.
     seals: Option<SealShear>,
+    /// End of the last interval in which the piston moved fast, s.
+    fast_until_s: f64,
 
     time_s: f64,
     actuator_m: f64,
@@ -206,6 +210,7 @@ impl Strut {
         Ok(Self {
             swing: OilSwing::of(&hydraulics.network, model.gas.temperature_k),
             seals: SealShear::of(effects),
+            fast_until_s: 0.0,
             hydraulics,
             rod: RodForces::of(effects),
             response_polynomial_s: model.response_polynomial_s(),
@@ -298,15 +303,16 @@ impl Strut {
         let change_m_s = (from_m_s - self.speed_m_s).abs() + (to_m_s - from_m_s).abs();
         let kicked_s = (self.swing.as_ref()).map_or(f64::INFINITY, |swing| swing.longest_step_of_kick_s(change_m_s));
         let fast = from_m_s.abs() > SLOW_M_S || to_m_s.abs() > SLOW_M_S || (to_m_s - from_m_s).abs() > SLOW_M_S;
-        if fast && let Some(seals) = &mut self.seals {
-            seals.moves_fast_until(self.time_s + duration_s);
+        if fast {
+            self.fast_until_s = self.time_s + duration_s;
         }
+        let settles = fast || self.time_s < self.fast_until_s + SETTLES_S;
         Interval {
             start_s: self.time_s,
             duration_s,
             segment,
             motion: Cubic::through(self.actuator_m, &segment, duration_s),
-            longest_step_s: match fast {
+            longest_step_s: match settles {
                 false => duration_s,
                 true if by.signals[Valve::Bypass1] && by.signals[Valve::Bypass2] => FAST_STEP_S,
                 true => DAMPED_STEP_S,
@@ -399,7 +405,9 @@ impl Strut {
     #[inline(always)]
     fn step_length(&self, now_s: f64, left_s: f64, limit_s: f64) -> f64 {
         let swing_s = (self.swing.as_ref()).map_or(f64::INFINITY, OilSwing::longest_step_s);
-        let shear_s = (self.seals.as_ref()).map_or(f64::INFINITY, |seals| seals.longest_step_s(now_s, self.settled_s));
+        let shear_s = (self.seals.as_ref()).map_or(f64::INFINITY, |seals| {
+            seals.longest_step_s(now_s, self.settled_s, self.fast_until_s)
+        });
         let limit_s = limit_s.min(self.longest_step_s).min(swing_s).min(shear_s);
         if now_s < self.settled_s {
             return self.step_length_while_valves_move(now_s, left_s, limit_s);

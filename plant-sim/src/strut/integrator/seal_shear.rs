@@ -4,8 +4,6 @@
 //! in which the flow stops or turns gets that shear wrong by a part of it. So the more a seal holds back, the shorter are the steps while
 //! oil flows, and until the chambers have come to rest.
 
-use serde::{Deserialize, Serialize};
-
 use crate::strut::flow_path::FlowPath;
 use crate::strut::terms::{Effects, most_held_back_pa};
 
@@ -21,14 +19,6 @@ const COMES_TO_REST_S: f64 = 0.1;
 #[derive(Debug, Clone)]
 pub(super) struct SealShear {
     step_s: f64,
-    pub course: ShearCourse,
-}
-
-/// What is carried from one step to the next.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub(super) struct ShearCourse {
-    /// End of the last interval in which the piston moved fast, s.
-    fast_until_s: f64,
 }
 
 impl SealShear {
@@ -42,20 +32,13 @@ impl SealShear {
         let largest_pa = FlowPath::ALL.map(held_back_pa).into_iter().fold(0.0, f64::max);
         (largest_pa > 0.0).then(|| Self {
             step_s: (STEP_PA_S / largest_pa).max(LEAST_STEP_S),
-            course: ShearCourse::default(),
         })
     }
 
-    /// Notes an interval in which the piston moves fast, by its end, s.
+    /// Longest step now, s, where no valve moves from a time on, s, and nothing has moved fast since another, s; infinite once the oil has come to rest.
     #[inline]
-    pub const fn moves_fast_until(&mut self, end_s: f64) {
-        self.course.fast_until_s = end_s;
-    }
-
-    /// Longest step now, s, where no valve moves from a time on, s; infinite once the oil has come to rest.
-    #[inline]
-    pub fn longest_step_s(&self, now_s: f64, valves_settled_s: f64) -> f64 {
-        if now_s < self.course.fast_until_s.max(valves_settled_s) + COMES_TO_REST_S {
+    pub fn longest_step_s(&self, now_s: f64, valves_settled_s: f64, fast_until_s: f64) -> f64 {
+        if now_s < fast_until_s.max(valves_settled_s) + COMES_TO_REST_S {
             self.step_s
         } else {
             f64::INFINITY
@@ -119,12 +102,11 @@ mod tests {
     #[test]
     fn steps_are_as_long_as_ever_once_the_oil_rests_and_where_nothing_is_held_back() {
         assert!(SealShear::of(&model(0.0).effects).is_none());
-        let mut seals = SealShear::of(&model(5e5).effects).unwrap();
-        seals.moves_fast_until(2.0);
-        assert_eq!(seals.longest_step_s(2.05, f64::NEG_INFINITY), 6e-4);
-        assert_eq!(seals.longest_step_s(2.15, f64::NEG_INFINITY), f64::INFINITY);
-        assert_eq!(seals.longest_step_s(2.15, 2.1), 6e-4);
+        let seals = SealShear::of(&model(5e5).effects).unwrap();
+        assert_eq!(seals.longest_step_s(2.05, f64::NEG_INFINITY, 2.0), 6e-4);
+        assert_eq!(seals.longest_step_s(2.15, f64::NEG_INFINITY, 2.0), f64::INFINITY);
+        assert_eq!(seals.longest_step_s(2.15, 2.1, 2.0), 6e-4);
         let gross = SealShear::of(&model(1e9).effects).unwrap();
-        assert_eq!(gross.longest_step_s(0.05, 0.0), LEAST_STEP_S);
+        assert_eq!(gross.longest_step_s(0.05, 0.0, 0.0), LEAST_STEP_S);
     }
 }

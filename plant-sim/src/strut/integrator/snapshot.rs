@@ -4,7 +4,6 @@ use oleo_interface::StrutValves;
 use serde::{Deserialize, Serialize};
 
 use super::oil_swing::SwingCourse;
-use super::seal_shear::ShearCourse;
 use super::{Strut, settled_s};
 use crate::model_file::InvalidValue;
 use crate::strut::hydraulics::Flowing;
@@ -28,7 +27,7 @@ pub struct StrutSnapshot {
     valves: [ValveMotion; 3],
     friction_n: f64,
     swing: SwingCourse,
-    shear: ShearCourse,
+    fast_until_s: f64,
 }
 
 impl Strut {
@@ -63,10 +62,7 @@ impl Strut {
                 .swing
                 .as_ref()
                 .map_or_else(SwingCourse::default, |swing| swing.course),
-            shear: self
-                .seals
-                .as_ref()
-                .map_or_else(ShearCourse::default, |seals| seals.course),
+            fast_until_s: self.fast_until_s,
         }
     }
 
@@ -88,9 +84,7 @@ impl Strut {
         if let Some(swing) = &mut self.swing {
             swing.course = kept.swing;
         }
-        if let Some(seals) = &mut self.seals {
-            seals.course = kept.shear;
-        }
+        self.fast_until_s = kept.fast_until_s;
     }
 
     /// A strut of another model in the present state of this one: oil, gas, valves and friction stay as they are, and the laws change.

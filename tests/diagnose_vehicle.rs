@@ -36,6 +36,7 @@ fn case(seed: u64, concealed: Vec<Concealed>) -> Case {
         command_acts_late: false,
         keeps_oil: false,
         begins_s: 0.0,
+        without_noise: false,
     }
 }
 
@@ -301,4 +302,102 @@ fn what_cannot_be_used_is_refused_in_one_line() {
     let strut = folder.path().join("strut.toml");
     assert!(refused(&[path(&log), "--vehicle", path(&strut)]).contains("vehicle"));
     assert!(refused(&[path(&log), path(&log)]).contains("--vehicle MODEL.toml"));
+}
+
+/// What `oleo diagnose` says of a log of `oleo hil`, beside the strut files that it writes: effects, verdict and, of each corner and column whose noise is not
+/// as stated, the measured one over the stated one. Readings of `oleo hil` are only rounded.
+fn of_own_log(arguments: &[&str]) -> (Vec<String>, Value, Vec<f64>) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let of = |name: &str| path(&folder.path().join(name)).to_owned();
+    let (weak, at) = (of("weak.toml"), of("run"));
+    let shown = run(&["show", "strut"]);
+    let built_in = String::from_utf8(shown.stdout).expect("text");
+    assert!(built_in.contains("time_constant_2_s = 6"), "{built_in}");
+    std::fs::write(
+        &weak,
+        built_in.replace("time_constant_2_s = 6", "time_constant_2_s = 2"),
+    )
+    .expect("a file");
+    let arguments: Vec<String> = arguments.iter().map(|word| word.replace("WEAK", &weak)).collect();
+    let words = ["hil", "--record", "all", "--out", &at]
+        .into_iter()
+        .chain(arguments.iter().map(String::as_str));
+    let ran = run(&words.collect::<Vec<_>>());
+    assert!(ran.status.code() < Some(2), "{}", String::from_utf8_lossy(&ran.stderr));
+    let mut model = String::from("[specimen]\nname = \"car\"\nkind = \"vehicle\"\n[strut]\n");
+    for corner in Corner::ALL.map(Corner::name) {
+        // What the plant was simulated with is believed, but for the weak strut: that of the other side is.
+        let believed = if corner == "front-left" { "front-right" } else { corner };
+        std::fs::copy(of(&format!("run/{believed}/model.toml")), of(&format!("{corner}.toml"))).expect("a copy");
+        model += &format!("{} = \"{corner}.toml\"\n", corner.replace('-', "_"));
+    }
+    std::fs::write(of("model.toml"), model).expect("a file");
+    let (log, vehicle, found) = (of("run/candump.log"), of("model.toml"), of("found"));
+    let ran = run(&["diagnose", &log, "--vehicle", &vehicle, "--out", &found]);
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let text = std::fs::read_to_string(of("found/report.json")).expect("a report");
+    let report: Value = serde_json::from_str(&text).expect("JSON");
+    let noise = report["instruments"].as_array().expect("a list").iter();
+    let noise = noise.filter(|finding| finding["flaw"] == "other_noise").map(|finding| {
+        let of = |key: &str| finding["numbers"][key]["value"].as_f64().expect("a number");
+        of("measured") / of("stated")
+    });
+    (effects(&report), report["verdict"].clone(), noise.collect())
+}
+
+/// The files state a noise of 4 kPa, and a log whose readings are only rounded to 5 kPa has 1.44 kPa: what is smaller than stated is seen.
+#[test]
+fn noise_that_is_smaller_than_stated_hides_nothing() {
+    let weak = "front-left=WEAK";
+    let (effects, verdict, noise) = of_own_log(&[
+        "--road",
+        "iso-d",
+        "--speed-km-h",
+        "19.9",
+        "--duration-s",
+        "30",
+        "--strut-at",
+        weak,
+    ]);
+    assert_eq!(effects, ["unlisted@front-left/accumulator-2"]);
+    assert_eq!(verdict, "missing_physics");
+    // The stated noise and the rounding together are 4.25 kPa.
+    assert!(
+        noise.len() >= 12 && noise.iter().all(|part| *part > 0.33 && *part < 0.5),
+        "{noise:?}"
+    );
+}
+
+/// Readings that stand still have one rounding error, not one a sample.
+#[test]
+fn readings_that_stand_still_are_no_fault() {
+    for still in [
+        &[
+            "--road",
+            "iso-d",
+            "--speed-km-h",
+            "40",
+            "--duration-s",
+            "20",
+            "--strategy",
+            "always-stiff",
+            "--seed",
+            "14",
+        ][..],
+        &[
+            "--road",
+            "flat",
+            "--speed-km-h",
+            "60",
+            "--duration-s",
+            "15",
+            "--manoeuvre",
+            "step-steer",
+            "--seed",
+            "16",
+        ],
+    ] {
+        let (effects, verdict, _) = of_own_log(still);
+        assert_eq!((effects, verdict), (vec![], Value::from("consistent")), "{still:?}");
+    }
 }

@@ -121,6 +121,7 @@ fn driven(seed: u64, concealed: Vec<Concealed>, in_motion: bool, draw: &mut Draw
         command_acts_late: draw.uniform() < 0.25,
         keeps_oil: !seed.is_multiple_of(2),
         begins_s,
+        without_noise: false,
     }
 }
 

@@ -63,6 +63,7 @@ pub fn cases(seed: u64, wanted: &[String]) -> Vec<(String, Case)> {
                 command_acts_late: false,
                 keeps_oil: false,
                 begins_s: 0.0,
+                without_noise: false,
             };
             (format!("{name}-{seed}"), case)
         })

@@ -2,12 +2,13 @@
 //! prints what was found beside what was concealed.
 //!
 //! ```text
-//! cargo build --release && cargo run --release --example vehicle_logs -- DIR [--seeds N] [--first SEED] [CASE...]
-//! cargo build --release && cargo run --release --example vehicle_logs -- DIR --drawn N [--wrong-numbers] [--in-motion] [--first SEED]
+//! cargo build --release && cargo run --release --example vehicle_logs -- DIR [--seeds N] [--first SEED] [--without-noise] [CASE...]
+//! cargo build --release && cargo run --release --example vehicle_logs -- DIR --drawn N [--wrong-numbers] [--in-motion] [--first SEED] [--without-noise]
 //! ```
 //!
 //! The first form runs listed cases of one effect each, the second N campaigns in which effects, corners, sizes and drives are drawn, or
-//! one wrong number of one strut's model, with logs that begin at rest or in the middle of a drive. DIR gets a folder for each campaign, with its answer and the results of the diagnosis.
+//! one wrong number of one strut's model, with logs that begin at rest or in the middle of a drive. `--without-noise` leaves the readings as the bus rounds
+//! them, like those of `oleo hil`, although the strut files state a noise. DIR gets a folder for each campaign, with its answer and the results of the diagnosis.
 
 #[path = "../../tests/support/vehicle_campaign.rs"]
 mod vehicle_campaign;
@@ -28,8 +29,8 @@ use vehicle_campaign::{Case, TrueAtCorner, write};
 /// Effects that act on the force alone, which no log of a vehicle holds: nothing is the right answer.
 const ON_FORCE_ALONE: [EffectId; 3] = [EffectId::SealFriction, EffectId::SideLoadFriction, EffectId::BumpStop];
 
-const USAGE: &str = "usage: vehicle_logs DIR [--seeds N] [--first SEED] [CASE...]
-       vehicle_logs DIR --drawn N [--wrong-numbers] [--in-motion] [--first SEED]";
+const USAGE: &str = "usage: vehicle_logs DIR [--seeds N] [--first SEED] [--without-noise] [CASE...]
+       vehicle_logs DIR --drawn N [--wrong-numbers] [--in-motion] [--first SEED] [--without-noise]";
 
 /// Says how this program is called, and ends it.
 fn usage() -> ! {
@@ -40,7 +41,7 @@ fn usage() -> ! {
 fn main() {
     let mut words = std::env::args().skip(1);
     let (mut folder, mut seeds, mut drawn, mut first, mut wanted) = (None, 1, 0, 1, Vec::new());
-    let (mut wrong_numbers, mut in_motion) = (false, false);
+    let (mut wrong_numbers, mut in_motion, mut without_noise) = (false, false, false);
     while let Some(word) = words.next() {
         let number = |next: Option<String>| next.and_then(|n| n.parse().ok()).unwrap_or_else(|| usage());
         match word.as_str() {
@@ -48,6 +49,7 @@ fn main() {
             "--drawn" => drawn = number(words.next()),
             "--wrong-numbers" => wrong_numbers = true,
             "--in-motion" => in_motion = true,
+            "--without-noise" => without_noise = true,
             "--first" => first = number(words.next()),
             "--help" | "-h" => {
                 println!("{USAGE}");
@@ -59,7 +61,7 @@ fn main() {
         }
     }
     let folder = folder.unwrap_or_else(|| usage());
-    let cases: Vec<(String, Case)> = if drawn > 0 {
+    let mut cases: Vec<(String, Case)> = if drawn > 0 {
         let all = first..first + drawn;
         let case = if wrong_numbers {
             drawn::wrong_number
@@ -73,6 +75,9 @@ fn main() {
             .flat_map(|seed| listed::cases(seed, &wanted))
             .collect()
     };
+    cases
+        .iter_mut()
+        .for_each(|(_, case)| case.without_noise = without_noise);
     let mut table = Table::new([
         Column::text("Campaign"),
         Column::text("Concealed"),

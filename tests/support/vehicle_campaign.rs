@@ -81,6 +81,8 @@ pub struct Case {
     pub keeps_oil: bool,
     /// Time at which each log begins after the start from rest, s; 0 for logs that begin at rest.
     pub begins_s: f64,
+    /// Whether readings are only rounded, as in the logs of `oleo hil`, and have none of the noise that the files state.
+    pub without_noise: bool,
 }
 
 /// Three drives of `duration_s`: Belgian block straight ahead, a lane change on a rough road, a random road with another strategy.
@@ -243,7 +245,11 @@ fn drive(case: &Case, scenario: &Scenario, truth: &Corners<StrutModel>, draw: &m
             &time_s[begins..],
             &mut series[begins..],
         );
-        let noise = model.noise[COLUMNS[column]];
+        let noise = if case.without_noise {
+            0.0
+        } else {
+            model.noise[COLUMNS[column]]
+        };
         series.iter_mut().for_each(|v| *v += noise * draw.normal());
         series
     };

@@ -4,9 +4,9 @@ use super::differences::REACH;
 use super::finding::{Finding, Flaw};
 use super::hum;
 use super::jitter::{changes, jitter};
-use super::noise::{LEAST_CORRELATION, Measured, measured};
+use super::noise::{LEAST_CORRELATION, Measured, at_most, measured};
 use super::spikes::{Course, Spike, spikes};
-use super::steps::step;
+use super::steps::{step, unknown_of_still};
 use crate::recording::Recording;
 use crate::vocabulary::Column;
 
@@ -108,14 +108,46 @@ impl Examined {
         out
     }
 
-    /// Recordings that are taken as stated, with the noise of each column.
+    /// The same of what a vehicle logs, where wheels move about as fast as the bus samples: columns may have less noise than is stated with the rounding
+    /// of the bus, and readings may stand still. `rounded_to` are the steps of the columns, 0 where they are not rounded; `beside_model` are the
+    /// readings of all columns but the first less what the believed model makes of them, by column and recording. Nothing of the recordings changes.
     #[must_use]
-    pub fn as_stated(noise: Vec<f64>, recordings: usize) -> Self {
-        Self {
-            relative: vec![vec![None; noise.len()]; recordings],
-            noise,
+    pub fn of_drives(
+        recordings: &[Recording],
+        stated: &[Stated],
+        rounded_to: &[f64],
+        beside_model: &[Vec<Vec<f64>>],
+    ) -> Self {
+        let mut out = Self {
+            columns: stated.iter().map(|s| s.column.clone()).collect(),
+            noise: stated.iter().map(|s| s.noise).collect(),
+            relative: vec![vec![None; stated.len()]; recordings.len()],
             ..Self::default()
+        };
+        for (c, stated) in stated.iter().enumerate().skip(1) {
+            let rounding = rounded_to[c] / 12.0_f64.sqrt();
+            if let Some(most) = beside_model.get(c - 1).and_then(|of_column| at_most(of_column)) {
+                // The rounding is there also where little moves.
+                let measured = most.max(rounding).max(SMALLER.0 * stated.noise);
+                if measured < SMALLER.1 * stated.noise {
+                    out.noise[c] = measured;
+                    out.find(
+                        stated,
+                        Flaw::OtherNoise {
+                            stated: stated.noise,
+                            measured,
+                        },
+                    );
+                }
+            }
+            for (r, recording) in recordings.iter().enumerate().filter(|_| rounding > 0.0) {
+                let deviations = unknown_of_still(&recording.columns[c], rounding);
+                if deviations.iter().any(|deviation| *deviation > 0.0) {
+                    out.add_noise(r, c, &deviations);
+                }
+            }
         }
+        out
     }
 
     /// Noise of the samples of a column of a recording, as multiples of the column's; `None` if all are 1.

@@ -68,6 +68,26 @@ pub fn measured(recordings: &[Recording], column: usize, counts: &dyn Fn(usize, 
     })
 }
 
+/// Strides of the differences that tell how large noise can be whose colour is not known: up to 40 ms on a bus that samples every 5 ms.
+const STRIDES: [usize; 4] = [1, 2, 4, 8];
+
+/// The most that the noise of readings can be, as a standard deviation, from the readings less what a model makes of them, one series a recording: the largest
+/// that differences of [`STRIDES`] leave. Coloured noise shows in the long ones, and what the model lacks only adds. `None` where too few readings change.
+pub fn at_most(beside_model: &[Vec<f64>]) -> Option<f64> {
+    let left = |stride: usize| -> Option<f64> {
+        // Readings that stand still, beside a model that does, hide the noise in the steps of the converter.
+        let moving = (beside_model.iter())
+            .flat_map(|series| differences(series, stride))
+            .filter(|d| d.is_finite() && *d != 0.0);
+        let moving: Vec<f64> = moving.collect();
+        (moving.len() >= FEWEST)
+            .then(|| deviation(moving.into_iter()))
+            .flatten()
+    };
+    let each: Vec<f64> = STRIDES.into_iter().map(left).collect::<Option<_>>()?;
+    each.into_iter().reduce(f64::max)
+}
+
 /// Correlation of neighbours at which differences of the long stride are this many times those of the short one.
 fn correlation(rise: f64) -> f64 {
     let at = |r: f64| (variance_of_coloured(libm::pow(r, LONG_STRIDE as f64)) / variance_of_coloured(r)).sqrt();
@@ -114,6 +134,25 @@ pub mod tests {
             columns,
             notes: vec![],
         }
+    }
+
+    #[test]
+    fn what_a_model_leaves_is_at_most_noise_whatever_its_colour() {
+        let slow = |k: usize| 40.0 * libm::sin(0.02 * k as f64);
+        let beside = |colour: f64| -> Vec<f64> {
+            let fresh = noise(4, 8000, colour).into_iter().enumerate();
+            fresh.map(|(k, v)| if k < 500 { 0.0 } else { slow(k) + v }).collect()
+        };
+        for (colour, least) in [(0.0, 0.97), (0.3, 0.95), (0.7, 0.9)] {
+            let most = at_most(&[beside(colour)]).expect("noise");
+            assert!(most > least && most < 1.06, "{colour}: {most}");
+        }
+        // What is missing in the model, and as fast as the strides are, counts as noise.
+        let fast: Vec<f64> = (beside(0.0).iter().enumerate())
+            .map(|(k, v)| v + 5.0 * libm::sin(0.3 * k as f64))
+            .collect();
+        assert!(at_most(&[fast]).expect("noise") > 3.0);
+        assert_eq!(at_most(&[vec![0.0; 4000]]), None);
     }
 
     #[test]

@@ -33,6 +33,20 @@ pub fn step(recordings: &[Recording], column: usize) -> Option<f64> {
     (many >= MOSTLY * distances.len() as f64).then_some(smallest)
 }
 
+/// So many equal readings in a row come about by chance, or by what moves fast.
+const EQUAL_BY_CHANCE: usize = 3;
+
+/// What equal readings in a row leave unknown beside their noise, as a standard deviation a sample. Their rounding, of this deviation, is one and the same
+/// error: together they tell as much as one reading does.
+pub fn unknown_of_still(series: &[f64], rounding: f64) -> Vec<f64> {
+    let runs = series.chunk_by(|a, b| a.to_bits() == b.to_bits());
+    runs.flat_map(|run| {
+        let further = if run.len() > EQUAL_BY_CHANCE { run.len() - 1 } else { 0 };
+        std::iter::repeat_n((further as f64).sqrt() * rounding, run.len())
+    })
+    .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -49,5 +63,15 @@ mod tests {
             .collect();
         let found = step(&[recording(0.002, vec![moving])], 0).expect("a step");
         assert!((found - 6103.5).abs() < 1.0, "{found}");
+    }
+
+    #[test]
+    fn readings_that_stand_still_tell_as_much_as_one() {
+        let still = [2.0, 1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 3.0];
+        let unknown = unknown_of_still(&still, 0.5);
+        assert_eq!(unknown, [0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0]);
+        // Mean of five readings, each with its rounding and with what is unknown beside it.
+        let of_mean = (0.25 + unknown[1] * unknown[1]) / 5.0;
+        assert_eq!(of_mean, 0.25);
     }
 }

@@ -80,9 +80,9 @@ impl VehicleCampaign {
                 }
             }
         }
-        let at_once = specimens(&struts, &recordings, at_rest)?;
+        let at_once = specimens(&struts, &recordings, resolution, at_rest)?;
         let commanded_later = (recordings.clone()).map(|all| all.into_iter().map(a_sample_later).collect());
-        let a_tick_later = specimens(&struts, &commanded_later, at_rest)?;
+        let a_tick_later = specimens(&struts, &commanded_later, resolution, at_rest)?;
         let period_s = drives.first().map_or(TICK_S, |drive| drive.period_s);
         let is_later = acts_later(&at_once, &a_tick_later, period_s)?;
         if is_later {
@@ -100,7 +100,7 @@ impl VehicleCampaign {
         let counted_at = oil_count::shown_by(&as_believed, &struts);
         let counting = oil_count::with_oil_counted_at(counted_at, &struts);
         if counting != struts {
-            as_believed = specimens(&counting, &recordings, at_rest)?;
+            as_believed = specimens(&counting, &recordings, resolution, at_rest)?;
             model.struts = oil_count::with_oil_counted_at(counted_at, &model.struts);
             notes.push(oil_count::IS_KEPT.to_owned());
         }
@@ -144,11 +144,18 @@ impl VehicleCampaign {
 fn specimens(
     struts: &Corners<StrutModel>,
     recordings: &Corners<Vec<Recording>>,
+    resolution: &Corners<Resolution>,
     starts_at_rest: &Corners<bool>,
 ) -> Result<Corners<TwoStageStrut>, DiagnoseError> {
     Corners::try_from_fn(|corner| {
         let (model, recordings) = (struts[corner].clone(), recordings[corner].clone());
-        TwoStageStrut::in_vehicle(model, recordings, starts_at_rest[corner]).map_err(DiagnoseError::Model)
+        TwoStageStrut::in_vehicle(
+            model,
+            recordings,
+            resolution[corner].pressure_pa,
+            starts_at_rest[corner],
+        )
+        .map_err(DiagnoseError::Model)
     })
 }
 

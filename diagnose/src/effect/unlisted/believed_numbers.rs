@@ -25,6 +25,9 @@ const VISIBLE: f64 = 0.02;
 const DEPARTURE: (f64, f64) = (-0.9, 9.0);
 /// Halvings that find the largest departure that the model file allows, to one part in a million.
 const HALVINGS: usize = 24;
+/// Departures from which a fit starts too, half of what is believed and twice as much: from a time constant that is a third, what is believed is beyond
+/// a maximum of the misfit.
+const FARTHER: [f64; 2] = [-0.5, 1.0];
 /// The largest amount that a self-test conceals: at an amount of one a number is 1.6 times, or 1/1.6 of, what is believed.
 const MOST: f64 = 0.6;
 
@@ -280,8 +283,12 @@ impl BelievedNumber {
         let believed = self.believed(model)?;
         let range = (self.farthest(model, DEPARTURE.0), self.farthest(model, DEPARTURE.1));
         let departure = Parameter::departure(self.key, VISIBLE, range).shown_as_number(believed);
+        let farther = FARTHER
+            .into_iter()
+            .filter(|departure| range.0 < *departure && *departure < range.1);
         Some(
             Candidate::new(EffectId::Unlisted, self.site.clone(), vec![departure])
+                .starting_at(farther.map(|departure| vec![departure]).collect())
                 .labelled(self.label)
                 .of_believed_number(self.tolerance),
         )

@@ -1,11 +1,12 @@
 //! A strut in a vehicle: what its recordings leave unknown is noise of the samples that it touches.
 
+use oleo_interface::StrutPressures;
 use oleo_plant_sim::strut::{Beginning, Inputs, OilCount, Replay, StrutModel, replay_all, smooth_free_motion};
 use rayon::prelude::*;
 
 use super::channels::Layout;
 use super::unknown_motion::{Counted, Unknown, UnknownMotion};
-use super::{TwoStageStrut, beginning, displacement_noise, finite_channels, floor, unread};
+use super::{TwoStageStrut, beginning, displacement_noise, finite_channels, floor, stated_noise, unread};
 use crate::instrument::Examined;
 use crate::recording::Recording;
 use crate::specimen::channel::Series;
@@ -21,12 +22,20 @@ impl TwoStageStrut {
     /// motions make which the readings cannot tell apart. A displacement or a switching signal that was not received is NaN, and what it leaves unknown counts in the
     /// same way.
     ///
+    /// `rounded_to_pa` are the steps in which the pressures were logged, 0 where they were not rounded; the noise of the model includes the rounding. Noise
+    /// that is smaller than the model states is measured and used, and readings that stand still, whose rounding is one error, count as one.
+    ///
     /// A recording that does not begin at rest begins with the pressures that were read first ([`Self::let_begin_in_motion`] cuts it); volume and temperature of
     /// the gas are then part of every fit, and the readings of the first tenth of a second do not count.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn in_vehicle(model: StrutModel, mut recordings: Vec<Recording>, starts_at_rest: bool) -> Result<Self, String> {
+    pub fn in_vehicle(
+        model: StrutModel,
+        mut recordings: Vec<Recording>,
+        rounded_to_pa: StrutPressures<f64>,
+        starts_at_rest: bool,
+    ) -> Result<Self, String> {
         let mut begins = vec![Beginning::AtRest; recordings.len()];
         if !starts_at_rest {
             for (begins, recording) in begins.iter_mut().zip(&mut recordings) {
@@ -57,10 +66,56 @@ impl TwoStageStrut {
             });
             inputs.push(best);
         }
-        let as_stated = Examined::default();
-        let mut strut = Self::with_layout(model, recordings, inputs, begins, Layout::VEHICLE, as_stated)?;
+        let mut strut = Self::with_layout(model, recordings, inputs, begins, Layout::VEHICLE, Examined::default())?;
+        let instruments = Examined::of_drives(
+            &strut.recordings,
+            &stated_noise(&strut.model, Layout::VEHICLE),
+            &[
+                0.0,
+                rounded_to_pa.p1,
+                rounded_to_pa.p2,
+                rounded_to_pa.p3,
+                rounded_to_pa.p4,
+            ],
+            &strut.beside_believed(),
+        );
+        if instruments.findings.is_empty() {
+            strut.instruments = instruments;
+        } else {
+            // What the recordings excite is judged by the noise too.
+            let Self {
+                model,
+                recordings,
+                inputs,
+                begins,
+                ..
+            } = strut;
+            strut = Self::with_layout(model, recordings, inputs, begins, Layout::VEHICLE, instruments)?;
+        }
         strut.count_what_is_unread(unread);
         Ok(strut)
+    }
+
+    /// What was read less what the believed model makes of it, by channel and recording, Pa. A recording that it cannot simulate is left out.
+    fn beside_believed(&self) -> Vec<Vec<Vec<f64>>> {
+        let believed = self.as_given();
+        let simulated: Vec<Option<Series>> = (0..self.recordings.len())
+            .into_par_iter()
+            .map(|r| self.simulate(&believed, r).ok())
+            .collect();
+        let of_channel = |c: usize| {
+            let recorded = simulated.iter().enumerate();
+            let beside = recorded.filter_map(|(r, simulated)| Some((self.measured(r, c), &simulated.as_ref()?[c])));
+            beside
+                .map(|(read, simulated)| {
+                    read.iter()
+                        .zip(simulated)
+                        .map(|(read, simulated)| read - simulated)
+                        .collect()
+                })
+                .collect()
+        };
+        (0..self.channels.len()).map(of_channel).collect()
     }
 
     /// Cuts off what a recording that does not begin at rest holds before the sample from which a strut can be simulated: all that must be known of the strut
@@ -101,8 +156,6 @@ impl TwoStageStrut {
     /// those of the best ones. What the motion makes is measured by the second difference of the residuals, in which a model that lacks something shows
     /// next to nothing, because that changes slowly.
     fn count_what_is_unread(&mut self, unread: Vec<Unread>) {
-        let sensors = std::iter::once(displacement_noise(&self.model)).chain(self.channels.iter().map(|c| c.noise));
-        self.instruments = Examined::as_stated(sensors.collect(), self.recordings.len());
         let believed = self.as_given();
         let mut seen = vec![Unknown::default(); self.channels.len()];
         let mut of_motions: Vec<Vec<Series>> = Vec::with_capacity(unread.len());

@@ -97,13 +97,7 @@ impl TwoStageStrut {
             ));
         }
         recordings.iter_mut().for_each(|r| layout.without_unrecorded(r));
-        let stated: Vec<Stated> = (std::iter::once(COLUMNS[0]).chain(layout.channels()))
-            .map(|name| Stated {
-                column: Column::known(name),
-                noise: model.noise.get(name).copied().unwrap_or(0.0),
-            })
-            .collect();
-        let mut instruments = Examined::of(&mut recordings, &stated);
+        let mut instruments = Examined::of(&mut recordings, &stated_noise(&model, layout));
         let absent = layout.unrecorded().map(|name| Finding {
             column: Some(Column::known(name)),
             flaw: Flaw::NotRecorded,
@@ -539,6 +533,16 @@ fn smoothed(
         Some(noise) => Inputs::from_uneven_recording(time_s, displacement_m, signals, &noise),
         None => Inputs::from_recording(time_s, displacement_m, signals, instruments.noise_of_motion[recording]),
     }
+}
+
+/// The displacement and the compared channels, with the noise that a model states.
+fn stated_noise(model: &StrutModel, layout: Layout) -> Vec<Stated> {
+    (std::iter::once(COLUMNS[0]).chain(layout.channels()))
+        .map(|name| Stated {
+            column: Column::known(name),
+            noise: model.noise.get(name).copied().unwrap_or(0.0),
+        })
+        .collect()
 }
 
 fn displacement_noise(model: &StrutModel) -> f64 {

@@ -8,8 +8,9 @@
 //! steps of the converter --> jitter of the sampling --> noise and its colour --> spikes --> mains hum --> Examined
 //! ```
 //!
-//! Nothing here uses a model. The motion of a specimen is slow beside the samples, so that high differences of successive samples
-//! hold the noise and next to nothing else; medians make up for the few samples at corners and valve edges where they do. An
+//! Nothing here simulates. The motion of a specimen is slow beside the samples, so that high differences of successive samples
+//! hold the noise and next to nothing else; medians make up for the few samples at corners and valve edges where they do. In a vehicle
+//! wheels move about as fast as the bus samples, and readings less what the believed model makes of them take the place of readings. An
 //! instrument that is as stated is left exactly as it is: no reading, no noise and no result changes.
 
 mod differences;

@@ -3,6 +3,7 @@
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Corner, Corners};
 use oleo_plant_sim::strut::StrutModel;
+use oleo_report::significant;
 
 use super::body::BodyCampaign;
 use super::bridge::bridge;
@@ -13,7 +14,9 @@ use super::oil_count;
 use super::stretch::{BridgedDrive, Chosen, choose};
 use crate::campaign::{Campaign, MODEL_FILE};
 use crate::error::DiagnoseError;
+use crate::instrument::Flaw;
 use crate::recording::Recording;
+use crate::specimen::Specimen;
 use crate::specimen::strut::TwoStageStrut;
 
 /// A rounded reading is off by at most half a step, and its error is even within: variance step^2 / 12.
@@ -107,6 +110,7 @@ impl VehicleCampaign {
         as_believed
             .values_mut()
             .for_each(|strut| strut.count_found_oil_at(counted_at));
+        notes.extend(smaller_noise(&as_believed));
         let corners = as_believed
             .zip(Corners::from_fn(|corner| corner))
             .map(|(specimen, corner)| Campaign {
@@ -156,6 +160,31 @@ fn specimens(
             starts_at_rest[corner],
         )
         .map_err(DiagnoseError::Model)
+    })
+}
+
+/// Says whose readings are judged by less noise than the files state; `None` if none are.
+fn smaller_noise(struts: &Corners<TwoStageStrut>) -> Option<String> {
+    let at = |(corner, strut): (Corner, &TwoStageStrut)| {
+        let measured = strut
+            .instruments()
+            .iter()
+            .filter_map(|finding| match (&finding.column, finding.flaw) {
+                (Some(column), Flaw::OtherNoise { measured, .. }) => {
+                    Some(format!("{} {}", column.as_str(), significant(measured, 3)))
+                }
+                _ => None,
+            });
+        let measured: Vec<String> = measured.collect();
+        (!measured.is_empty()).then(|| format!("{}: {}", corner.name(), measured.join(", ")))
+    };
+    let all: Vec<String> = struts.iter().filter_map(at).collect();
+    (!all.is_empty()).then(|| {
+        format!(
+            "Readings have less noise than the strut files state with the rounding of the bus. They are judged by what was measured (standard \
+             deviation): {}.",
+            all.join("; ")
+        )
     })
 }
 

@@ -6,12 +6,15 @@
 //! called a drift of the displacement. It is decided from the pressures, by what they do over seconds: each pressure of each recording gives its
 //! [share](super::share) of what the recording contains.
 
+use std::sync::atomic::AtomicBool;
+
 use oleo_interface::Corners;
 use oleo_plant_sim::strut::{OilCompressibility, OilCount, StrutModel};
 
 use super::share::{HALF, Share, changes, median};
-use crate::specimen::Specimen;
+use crate::estimation::{LeastSquares, Point, fit};
 use crate::specimen::strut::TwoStageStrut;
+use crate::specimen::{Series, Specimen};
 
 /// The note where files that do not say so are read as if they did.
 pub const IS_KEPT: &str = "The struts keep their oil: it is counted at its static density at every corner, because the pressures do not follow the loss of oil \
@@ -53,7 +56,7 @@ fn counted_at(strut: &StrutModel) -> Option<OilCount> {
 
 /// The share of a strut that keeps its oil in each pressure of each recording.
 fn shares_of_kept(strut: &TwoStageStrut, model: &StrutModel) -> Vec<Share> {
-    let of = |count: OilCount| strut.residuals_of(&counting_at(count, model.clone()));
+    let of = |count: OilCount| residuals(strut, &counting_at(count, model.clone()));
     let (Some(losing), Some(keeping)) = (of(OilCount::Chamber), of(OilCount::Static)) else {
         return vec![];
     };
@@ -65,6 +68,19 @@ fn shares_of_kept(strut: &TwoStageStrut, model: &StrutModel) -> Vec<Share> {
             losing.iter().zip(keeping).filter_map(of_channel)
         })
         .collect()
+}
+
+/// What was read less what a model makes of it. In the middle of a drive the model is fitted first: gas that was warm at the first sample cools,
+/// and its pressure falls as if oil were lost.
+fn residuals(strut: &TwoStageStrut, model: &StrutModel) -> Option<Vec<Series>> {
+    if !strut.begins_in_motion() {
+        return strut.residuals_of(model);
+    }
+    let strut = strut.believing(model.clone()).ok()?;
+    let never = AtomicBool::new(false);
+    let problem = LeastSquares::new(&strut, &never);
+    let fitted = fit(&problem, Point::nominal(&strut), problem.criteria.fitting.quick).ok()?;
+    strut.residuals(&fitted.point.hypothesis(&strut))
 }
 
 /// A strut with rigid oil, with the compressibility that the fast changes of its pressures show; `None` if they show next to none.

@@ -6,7 +6,8 @@
 /// A share above this decides for the second simulation.
 pub const HALF: f64 = 0.5;
 
-/// Share of the difference between two simulations that a part of a recording contains, and how much it weighs.
+/// Share of the difference between two simulations that a part of a recording contains, and how much it weighs: up to 1, less where the difference is smaller
+/// than what neither simulation explains.
 #[derive(Debug, Clone, Copy)]
 pub struct Share {
     value: f64,
@@ -16,15 +17,19 @@ pub struct Share {
 impl Share {
     /// From the residuals of both, or what was made of them; `None` where they do not differ.
     pub fn of(residuals: impl IntoIterator<Item = [f64; 2]>) -> Option<Self> {
-        let (mut product, mut square) = (0.0, 0.0);
+        let (mut product, mut square, mut recorded) = (0.0, 0.0, 0.0);
         for [first, second] in residuals {
             let difference = first - second;
             product += first * difference;
             square += difference * difference;
+            recorded += first * first;
         }
-        (square > 0.0).then(|| Self {
-            value: product / square,
-            weight: square.sqrt(),
+        (square > 0.0).then(|| {
+            let neither = recorded - product * product / square;
+            Self {
+                value: product / square,
+                weight: square.sqrt() / (square.sqrt() + neither.max(0.0).sqrt()),
+            }
         })
     }
 }
@@ -58,8 +63,26 @@ mod tests {
         // What was recorded is three tenths of the way from the first simulation to the second.
         let difference = [2.0, -1.0, 0.5];
         let share = Share::of(difference.map(|d| [0.3 * d, -0.7 * d])).expect("they differ");
-        assert!((share.value - 0.3).abs() < 1e-12 && (share.weight - libm::sqrt(5.25)).abs() < 1e-12);
+        assert!((share.value - 0.3).abs() < 1e-12 && (share.weight - 1.0).abs() < 1e-6);
         assert!(Share::of([[1.0, 1.0], [2.0, 2.0]]).is_none());
+    }
+
+    #[test]
+    fn a_difference_below_what_neither_explains_weighs_little() {
+        let both_lack = |amount: f64| {
+            let residuals = [[0.6, -1.4], [-0.3, 0.7]];
+            let lacking = [amount, 2.0 * amount];
+            let share = Share::of(std::array::from_fn::<_, 2, _>(|k| residuals[k].map(|r| r + lacking[k])));
+            share.map(|share| (share.value, share.weight)).expect("they differ")
+        };
+        // It resembles nothing of the difference, and is as large as it and nine times as large.
+        for (amount, weight) in [(1.0, 0.5), (9.0, 0.1)] {
+            let (value, weighs) = both_lack(amount);
+            assert!(
+                (value - 0.3).abs() < 1e-12 && (weighs - weight).abs() < 1e-12,
+                "{value} {weighs}"
+            );
+        }
     }
 
     #[test]

@@ -129,6 +129,27 @@ impl TwoStageStrut {
         self.found_oil_counted_at = counted_at;
     }
 
+    /// True if a recording begins in the middle of a drive.
+    #[must_use]
+    pub fn begins_in_motion(&self) -> bool {
+        self.begins.iter().any(|begins| *begins != Beginning::AtRest)
+    }
+
+    /// The same recordings beside another model.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn believing(&self, model: StrutModel) -> Result<Self, String> {
+        Self::with_layout(
+            model,
+            self.recordings.clone(),
+            self.inputs.clone(),
+            self.begins.clone(),
+            self.layout,
+            self.instruments.clone(),
+        )
+    }
+
     /// What was read less what another model makes of the same motion and beginning, by recording and channel, Pa; exactly zero where nothing was read. `None`
     /// if the model cannot be simulated.
     #[must_use]
@@ -143,12 +164,25 @@ impl TwoStageStrut {
             .collect();
         let simulated = replay_all(&wanted)
             .into_iter()
-            .map(|replayed| finite_channels(replayed.ok()?.prediction).ok());
+            .map(|replayed| Some(self.layout.recorded(finite_channels(replayed.ok()?.prediction).ok()?)));
         (simulated.enumerate())
-            .map(|(r, channels)| {
-                let channels = self.layout.recorded(channels?).into_iter().enumerate();
-                Some(channels.map(|(c, series)| less(self.measured(r, c), &series)).collect())
-            })
+            .map(|(r, channels)| Some(self.beside(r, &channels?)))
+            .collect()
+    }
+
+    /// The same under a hypothesis.
+    #[must_use]
+    pub fn residuals(&self, hypothesis: &Hypothesis) -> Option<Vec<Series>> {
+        (0..self.recordings.len())
+            .into_par_iter()
+            .map(|r| Some(self.beside(r, &self.simulate(hypothesis, r).ok()?)))
+            .collect()
+    }
+
+    fn beside(&self, recording: usize, simulated: &Series) -> Series {
+        let channels = simulated.iter().enumerate();
+        channels
+            .map(|(c, series)| less(self.measured(recording, c), series))
             .collect()
     }
 

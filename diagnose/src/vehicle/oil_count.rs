@@ -9,12 +9,13 @@
 use std::sync::atomic::AtomicBool;
 
 use oleo_interface::Corners;
-use oleo_plant_sim::strut::{OilCompressibility, OilCount, StrutModel};
+use oleo_plant_sim::strut::{OilCount, StrutModel};
 
-use super::share::{HALF, Share, changes, median};
+use super::share::{HALF, Share, median};
 use crate::estimation::{LeastSquares, Point, fit};
 use crate::specimen::strut::TwoStageStrut;
 use crate::specimen::{Series, Specimen};
+use crate::vocabulary::EffectId;
 
 /// The note where files that do not say so are read as if they did.
 pub const IS_KEPT: &str = "The struts keep their oil: it is counted at its static density at every corner, because the pressures do not follow the loss of oil \
@@ -22,11 +23,6 @@ pub const IS_KEPT: &str = "The struts keep their oil: it is counted at its stati
 
 /// Length of the parts of a recording over which residuals are averaged, s: longer than what the road does, shorter than what oil takes to be lost.
 const AVERAGED_S: f64 = 1.0;
-/// Bulk modulus of ordinary oil, Pa.
-const USUAL_BULK_MODULUS_PA: f64 = 1.5e9;
-/// Where a file has rigid oil, the oil that is lost is looked at if the oil has at least this part of the compressibility of ordinary oil. Of stiffer oil next
-/// to nothing is lost.
-const LEAST_COMPRESSIBILITY: f64 = 0.1;
 
 /// The density at which the struts count oil, as the recordings show with the believed models. That a file counts it at the static density is a statement,
 /// which is not asked.
@@ -36,14 +32,10 @@ pub fn shown_by(struts: &Corners<TwoStageStrut>, believed: &Corners<StrutModel>)
     if believed.values().any(states_static) {
         return OilCount::Static;
     }
-    let mut shares = Vec::new();
-    for (strut, believed) in struts.values().zip(believed.values()) {
-        let compressible = match &believed.effects.oil_compressibility {
-            Some(_) => Some(believed.clone()),
-            None => as_compressible_as_shown(strut, believed),
-        };
-        shares.extend(compressible.into_iter().flat_map(|model| shares_of_kept(strut, &model)));
-    }
+    let corners = struts.values().zip(believed.values());
+    let shares = corners
+        .flat_map(|(strut, believed)| shares_of_kept(strut, believed))
+        .collect();
     match median(shares) {
         Some(kept) if kept > HALF => OilCount::Static,
         _ => OilCount::Chamber,
@@ -55,8 +47,8 @@ fn counted_at(strut: &StrutModel) -> Option<OilCount> {
 }
 
 /// The share of a strut that keeps its oil in each pressure of each recording.
-fn shares_of_kept(strut: &TwoStageStrut, model: &StrutModel) -> Vec<Share> {
-    let of = |count: OilCount| residuals(strut, &counting_at(count, model.clone()));
+fn shares_of_kept(strut: &TwoStageStrut, believed: &StrutModel) -> Vec<Share> {
+    let of = |count: OilCount| residuals(strut, believed, count);
     let (Some(losing), Some(keeping)) = (of(OilCount::Chamber), of(OilCount::Static)) else {
         return vec![];
     };
@@ -70,36 +62,28 @@ fn shares_of_kept(strut: &TwoStageStrut, model: &StrutModel) -> Vec<Share> {
         .collect()
 }
 
-/// What was read less what a model makes of it. In the middle of a drive the model is fitted first: gas that was warm at the first sample cools,
-/// and its pressure falls as if oil were lost.
-fn residuals(strut: &TwoStageStrut, model: &StrutModel) -> Option<Vec<Series>> {
-    if !strut.begins_in_motion() {
-        return strut.residuals_of(model);
+/// What was read less what the believed model makes of it with oil counted at a density. Two models are fitted first:
+///
+/// - One with rigid oil, which counts alike at either density: oil that yields is added to it.
+/// - One in the middle of a drive. Gas that was warm at the first sample cools, and its pressure falls as if oil were lost.
+fn residuals(strut: &TwoStageStrut, believed: &StrutModel, count: OilCount) -> Option<Vec<Series>> {
+    let counting = counting_at(count, believed.clone());
+    let is_rigid = counted_at(believed).is_none();
+    if !is_rigid && !strut.begins_in_motion() {
+        return strut.residuals_of(&counting);
     }
-    let strut = strut.believing(model.clone()).ok()?;
+    let mut strut = strut.believing(counting).ok()?;
+    strut.count_found_oil_at(count);
+    let mut start = Point::nominal(&strut);
+    if is_rigid {
+        let candidates = strut.candidates();
+        let yields = candidates.iter().position(|c| c.id == EffectId::OilCompressibility)?;
+        start = start.with_effect(&strut, yields, &[0.0]);
+    }
     let never = AtomicBool::new(false);
     let problem = LeastSquares::new(&strut, &never);
-    let fitted = fit(&problem, Point::nominal(&strut), problem.criteria.fitting.quick).ok()?;
+    let fitted = fit(&problem, start, problem.criteria.fitting.quick).ok()?;
     strut.residuals(&fitted.point.hypothesis(&strut))
-}
-
-/// A strut with rigid oil, with the compressibility that the fast changes of its pressures show; `None` if they show next to none.
-fn as_compressible_as_shown(strut: &TwoStageStrut, rigid: &StrutModel) -> Option<StrutModel> {
-    let with = |bulk_modulus_pa: f64| {
-        let mut model = rigid.clone();
-        model.effects.oil_compressibility = Some(OilCompressibility {
-            bulk_modulus_pa,
-            counted_at: OilCount::default(),
-        });
-        model
-    };
-    let (of_rigid, of_ordinary) = (
-        strut.residuals_of(rigid)?,
-        strut.residuals_of(&with(USUAL_BULK_MODULUS_PA))?,
-    );
-    let pairs = of_rigid.iter().flatten().zip(of_ordinary.iter().flatten());
-    let compressibility = median(pairs.filter_map(|(a, b)| Share::of(changes(a, b))).collect())?;
-    (compressibility >= LEAST_COMPRESSIBILITY).then(|| with(USUAL_BULK_MODULUS_PA / compressibility))
 }
 
 /// A strut whose oil, if it is compressible, is counted at a density.
@@ -142,6 +126,60 @@ fn mean(values: impl Iterator<Item = [f64; 2]>, count: usize) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use oleo_interface::{StrutPressures, StrutValves};
+    use oleo_plant_sim::strut::{Inputs, OilCompressibility, replay};
+
+    use crate::recording::Recording;
+
+    /// A drive of 20 s with all valves closed, as a strut reads it: swings of 30 mm, 1.2 times a second, that begin and end softly.
+    fn driven(truth: &StrutModel) -> Recording {
+        let time_s: Vec<f64> = (0..4000).map(|k| 0.005 * f64::from(k)).collect();
+        let swing = |t: &f64| {
+            0.03 * libm::sin(std::f64::consts::PI * t / 20.0) * libm::sin(2.0 * std::f64::consts::PI * 1.2 * t)
+        };
+        let displacement_m: Vec<f64> = time_s.iter().map(swing).collect();
+        let signals = vec![StrutValves::splat(false); time_s.len()];
+        let inputs = Inputs::from_recording(&time_s, &displacement_m, &signals, 1e-6);
+        let prediction = replay(truth, &inputs).expect("a simulation");
+        let closed = std::iter::repeat_with(|| vec![0.0; time_s.len()]).take(3);
+        let columns = std::iter::once(displacement_m)
+            .chain(prediction.pressure_pa)
+            .chain(closed);
+        Recording {
+            name: "swings".into(),
+            columns: columns.collect(),
+            time_s,
+            notes: vec![],
+        }
+    }
+
+    #[test]
+    fn the_oil_of_files_that_have_it_rigid_is_kept_or_lost_as_it_is() {
+        let mut rigid = StrutModel::defender110(6000.0);
+        rigid.effects.oil_compressibility = None;
+        rigid.noise = [("displacement_m", 5e-6), ("force_N", 12.0)]
+            .into_iter()
+            .chain(["p1_Pa", "p2_Pa", "p3_Pa", "p4_Pa"].map(|pressure| (pressure, 4e3)))
+            .map(|(column, noise)| (column.to_owned(), noise))
+            .collect();
+        // Ordinary oil, and one that is thirty times as stiff: of that little is lost, and yet more than the readings' noise.
+        let moduli_pa = [1.5e9, 50e9].into_iter();
+        let oils = moduli_pa.flat_map(|pa| [(pa, OilCount::Chamber), (pa, OilCount::Static)]);
+        for (bulk_modulus_pa, counted_at) in oils {
+            let mut truth = rigid.clone();
+            truth.effects.oil_compressibility = Some(OilCompressibility {
+                bulk_modulus_pa,
+                counted_at,
+            });
+            let recording = driven(&truth);
+            let struts = Corners::from_fn(|_| {
+                let no_steps = StrutPressures::splat(0.0);
+                TwoStageStrut::in_vehicle(rigid.clone(), vec![recording.clone()], no_steps, true).expect("a strut")
+            });
+            let believed = Corners::from_fn(|_| rigid.clone());
+            assert_eq!(shown_by(&struts, &believed), counted_at, "{bulk_modulus_pa} Pa");
+        }
+    }
 
     #[test]
     fn an_offset_is_no_loss() {

@@ -15,8 +15,8 @@ const ONE_DEVIATION: f64 = 1.0;
 /// What a search found, with an effect that others have with these coordinates; `None` if the recordings do not meet the model better with it, by this
 /// much of the cost.
 ///
-/// Effects that it makes superfluous leave the model, and so do those that exclude it; in place of one that leaves so the model may cost as much more as
-/// an effect must gain.
+/// Effects that exclude it leave the model; in place of one of them the model may cost as much more as an effect must gain. Effects that it makes superfluous
+/// leave too; in place of one of these the model may cost as much more as a fitted number gains by chance.
 ///
 /// # Errors
 /// [`DiagnoseError::Interrupted`] once the caller asked to stop.
@@ -45,11 +45,14 @@ pub fn with_shared(
     let Some(mut held) = selector.with_last_held(point)? else {
         return Ok(None);
     };
-    if held.cost > most {
-        return Ok(None);
-    }
+    let is_met = held.cost <= most;
     while let Some(less) = selector.without_superfluous(&held, least_gain, &|point| selector.with_last_held(point))? {
         held = less;
+        // Its number was fitted here, that of the shared effect was not.
+        most += selector.criteria().acceptance.least_gain;
+    }
+    if !is_met && held.cost > most {
+        return Ok(None);
     }
     selector.found_with(found, held.point)
 }
@@ -210,6 +213,22 @@ mod tests {
             .expect("it joins");
         assert_eq!(with_it.best.point.effects, [FRICTION, CUBIC]);
         assert!(!with_it.incomplete);
+    }
+
+    #[test]
+    fn what_others_have_may_meet_the_recordings_a_little_worse_than_what_leaves_for_it() {
+        let weak = specimen(vec![(CUBIC, vec![0.02])], &[FRICTION, CUBIC]);
+        let problem = LeastSquares::new(&weak, &RUN);
+        let mut found = select(&problem, &|_, _| {}).expect("a selection");
+        let in_its_place = Point::nominal(&weak).with_effect(&weak, FRICTION, &[0.004]);
+        found.best = Selector::new(&problem).fitted(in_its_place).expect("a fit");
+        let joined = |size: f64| {
+            let z = weak.candidates()[CUBIC].parameters[0].z(size);
+            let joined = with_shared(&problem, &found, CUBIC, &[z], 0.0).expect("fits");
+            joined.map(|selection| selection.best.point.effects)
+        };
+        // The recordings show 0.02.
+        assert_eq!([0.05, 0.06].map(joined), [Some(vec![CUBIC]), None]);
     }
 
     #[test]

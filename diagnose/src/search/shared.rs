@@ -46,10 +46,14 @@ pub fn with_shared(
         return Ok(None);
     };
     let is_met = held.cost <= most;
+    // The number of one that leaves was fitted here, that of the shared effect was not.
+    let in_place_of_one = selector.criteria().acceptance.least_gain;
+    if held.cost > most + in_place_of_one * (held.point.effects.len() - 1) as f64 {
+        return Ok(None);
+    }
     while let Some(less) = selector.without_superfluous(&held, least_gain, &|point| selector.with_last_held(point))? {
         held = less;
-        // Its number was fitted here, that of the shared effect was not.
-        most += selector.criteria().acceptance.least_gain;
+        most += in_place_of_one;
     }
     if !is_met && held.cost > most {
         return Ok(None);

@@ -23,7 +23,7 @@ use crate::parameter::Parameter;
 use crate::search::{begun_at_others, with_shared};
 
 /// By how much the cost of every other corner falls with what one corner alone shows, if it is an effect of the vehicle: three standard deviations of its size,
-/// which is not fitted there. An effect of one corner makes the cost of the others rise.
+/// which is not fitted there. An effect of one corner makes the cost of the others rise. Where it takes the place of another effect, [`with_shared`] allows more.
 const SPEAKS_FOR_IT: f64 = 9.0;
 
 /// The diagnoses of the corners, with what all of them share.

@@ -131,15 +131,15 @@ impl TwoStageStrut {
 
     /// True if a recording begins in the middle of a drive.
     #[must_use]
-    pub fn begins_in_motion(&self) -> bool {
+    pub(crate) fn begins_in_motion(&self) -> bool {
         self.begins.iter().any(|begins| *begins != Beginning::AtRest)
     }
 
-    /// The same recordings beside another model.
+    /// The same recordings beside another model, to be fitted. Its noise is that of this strut; its floor does not count what the model makes of the unknown motion.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn believing(&self, model: StrutModel) -> Result<Self, String> {
+    pub(crate) fn believing(&self, model: StrutModel) -> Result<Self, String> {
         Self::with_layout(
             model,
             self.recordings.clone(),
@@ -172,13 +172,14 @@ impl TwoStageStrut {
 
     /// The same under a hypothesis.
     #[must_use]
-    pub fn residuals(&self, hypothesis: &Hypothesis) -> Option<Vec<Series>> {
+    pub(crate) fn residuals(&self, hypothesis: &Hypothesis) -> Option<Vec<Series>> {
         (0..self.recordings.len())
             .into_par_iter()
             .map(|r| Some(self.beside(r, &self.simulate(hypothesis, r).ok()?)))
             .collect()
     }
 
+    /// What was read in a recording less what was simulated of it.
     fn beside(&self, recording: usize, simulated: &Series) -> Series {
         let channels = simulated.iter().enumerate();
         channels

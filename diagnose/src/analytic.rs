@@ -50,6 +50,10 @@ pub const LATE: usize = 12;
 
 /// A vibration of the first output at 3 rad/s, whose phase is a number of the model; one number. With the phase that is believed it explains nothing.
 pub const PHASED: usize = 13;
+/// A vibration of the first output at 7 rad/s; one number.
+pub const OTHER_TONE: usize = 14;
+/// The vibrations of [`FIRST_OF_PAIR`] and [`OTHER_TONE`] with a little of a third; one number. Where both are true it explains nearly all, and more than either alone.
+pub const IMITATION: usize = 15;
 /// The phase that is true beyond the one that is believed, rad.
 const PHASE: f64 = std::f64::consts::FRAC_PI_2;
 
@@ -171,7 +175,7 @@ impl Analytic {
 impl Recipe {
     /// Makes the specimen: simulates the truth and adds noise.
     pub fn make(&self) -> Analytic {
-        let mut candidates: Vec<Candidate> = (0..=PHASED).map(candidate).collect();
+        let mut candidates: Vec<Candidate> = (0..=IMITATION).map(candidate).collect();
         for (k, c) in candidates.iter_mut().enumerate() {
             if !self.candidates.contains(&k) {
                 c.untestable = Some("not part of this test".to_owned());
@@ -289,6 +293,8 @@ fn candidate(index: usize) -> Candidate {
             // It begins with a size, without which a phase says nothing.
             vec![Parameter::linear("phased", 0.1, 0.05, (-5.0, 5.0))],
         ),
+        OTHER_TONE => (EffectId::LineResistance, Site::Mount.into(), vec![amount("other")]),
+        IMITATION => (EffectId::GasChargeError, Site::Mount.into(), vec![amount("both")]),
         SECOND_OF_PAIR => (EffectId::EntrainedAir, Site::Mount.into(), vec![amount("second")]),
         _ => (
             EffectId::SealFriction,
@@ -346,6 +352,11 @@ fn law(index: usize, v: &[f64], t: f64, x: f64, speed: f64) -> Result<[f64; 2], 
         FRAGILE if v[0] > 1.0 => return Err("broken".to_owned()),
         FRICTION_OF_BOTH => [v[0] * direction, v[1] * direction],
         FIRST_OF_PAIR => [v[0] * libm::sin(5.0 * t), 0.0],
+        OTHER_TONE => [v[0] * libm::sin(7.0 * t), 0.0],
+        IMITATION => {
+            let tones = libm::sin(5.0 * t) + libm::sin(7.0 * t) + 0.38 * libm::sin(9.0 * t);
+            [v[0] * tones, 0.0]
+        }
         LATE => {
             let part = if t < LATE_FROM_S { 0.02 } else { 4.0 };
             [v[0] * part * libm::sin(5.0 * t), 0.0]

@@ -6,6 +6,8 @@
 //! candidates joins the model though it is not accepted, and all others are screened beside it; from the best pairs of these,
 //! triples are made in the same way. That is done beside the model where the search has ended, and beside the calibrated model
 //! where it began.
+//!
+//! Where less is left, one effect may stand in the place of two: it explains more than either does alone, and not all that both explain.
 
 use std::collections::BTreeSet;
 
@@ -60,6 +62,29 @@ impl Selector<'_, '_> {
             }
             (one, other) => one.or(other),
         })
+    }
+
+    /// The model with two other names in the place of one of its effects, where that leaves nothing but noise; `None` if none does. One name may explain more
+    /// than either of two does alone, and not all that both explain.
+    pub fn two_in_place_of_one(&mut self, best: &Fit) -> Result<Option<Fit>, DiagnoseError> {
+        for (position, &effect) in best.point.effects.iter().enumerate() {
+            let without = best.point.without_effect(self.specimen(), position);
+            let Some(base) = self.fitted_if_simulated(without)? else {
+                continue;
+            };
+            let mut others = self.open(&base.point, Open::Names);
+            others.retain(|&other| other != effect);
+            let screened = self.screen_in_passing(&base, others)?;
+            let beside = Screening {
+                model: &base,
+                screened: &screened,
+            };
+            let pair = self.combination_beside(beside, Open::Names, best)?;
+            if let Some(pair) = pair.filter(|pair| self.reaches_noise(pair)) {
+                return Ok(Some(pair));
+            }
+        }
+        Ok(None)
     }
 
     /// The strongest combination beside a model, of what may join it. It also has to gain over the model `best`.
@@ -193,7 +218,7 @@ fn sorted(effects: &[usize], further: Option<usize>) -> Vec<usize> {
 mod tests {
     use std::slice;
 
-    use crate::analytic::{CUBIC, FIRST_OF_PAIR, FRICTION, GAIN, RUN, Recipe, SECOND_OF_PAIR};
+    use crate::analytic::{CUBIC, FIRST_OF_PAIR, FRICTION, GAIN, IMITATION, OTHER_TONE, RUN, Recipe, SECOND_OF_PAIR};
     use crate::criteria::Criteria;
     use crate::estimation::LeastSquares;
     use crate::search::select;
@@ -225,6 +250,32 @@ mod tests {
         let mut never = usual;
         never.combinations.far_from_complete = f64::INFINITY;
         assert_eq!(found(&PAIR, never), [] as [usize; 0]);
+    }
+
+    #[test]
+    fn two_take_the_place_of_one_that_explains_more_than_either_and_not_all() {
+        let found = |truth: &[(usize, f64)], candidates: &[usize]| {
+            let specimen = Recipe {
+                truth: truth.iter().map(|&(law, size)| (law, vec![size])).collect(),
+                candidates: candidates.to_vec(),
+                ..Recipe::default()
+            }
+            .make();
+            let selection = select(&LeastSquares::new(&specimen, &RUN), &|_, _| {}).expect("a selection");
+            let mut effects = selection.best.point.effects;
+            effects.sort_unstable();
+            effects
+        };
+        let (both, all) = (
+            [(FIRST_OF_PAIR, 0.2), (OTHER_TONE, 0.2)],
+            [FRICTION, FIRST_OF_PAIR, OTHER_TONE, IMITATION],
+        );
+        assert_eq!(found(&both, &all), [FIRST_OF_PAIR, OTHER_TONE]);
+        let three = [&both[..], &[(FRICTION, 0.2)]].concat();
+        assert_eq!(found(&three, &all), [FRICTION, FIRST_OF_PAIR, OTHER_TONE]);
+        // Where the two are not what is missing, the one stays.
+        assert_eq!(found(&both, &[FIRST_OF_PAIR, FRICTION, IMITATION]), [IMITATION]);
+        assert_eq!(found(&[(IMITATION, 0.2)], &all), [IMITATION]);
     }
 
     #[test]

@@ -175,6 +175,16 @@ pub fn grow(
                 continue;
             }
         }
+        if open == Open::Names && lacks_more {
+            progress(
+                "trying pairs in the place of each effect",
+                screening + done::FITTING_AFTER_SCREENING,
+            );
+            if let Some(pair) = selector.two_in_place_of_one(&best)? {
+                best = pair;
+                continue;
+            }
+        }
         let laws = selector.laws_of(&best.point);
         let next = match open {
             Open::Names if lacks_more => Some(Open::Laws),

@@ -6,7 +6,8 @@
 //!     v            (until no candidate is accepted; then with effects that wake a number of the model; then with wrong numbers of the model, if these complete
 //!     |             it; then with laws without a name; then with a second law at another place)
 //! screen all candidates --> fit the finalists --> accept the best that held-out blocks confirm -----+
-//!     ^       (none, and far above the noise: pairs and triples of names; at last pairs with laws)  |
+//!     ^       (none: two other names in the place of one, if these complete it; far above the       |
+//!     |       noise pairs and triples of names; at last pairs with laws)                            |
 //!     +---------------------------------------------------------------------------------------------+
 //!     |
 //!     v

@@ -48,8 +48,7 @@ fn counted_at(strut: &StrutModel) -> Option<OilCount> {
 
 /// The share of a strut that keeps its oil in each pressure of each recording.
 fn shares_of_kept(strut: &TwoStageStrut, believed: &StrutModel) -> Vec<Share> {
-    let of = |count: OilCount| residuals(strut, believed, count);
-    let (Some(losing), Some(keeping)) = (of(OilCount::Chamber), of(OilCount::Static)) else {
+    let Some([losing, keeping]) = residuals(strut, believed) else {
         return vec![];
     };
     let pairs = losing.iter().zip(&keeping).zip(strut.recordings());
@@ -62,28 +61,55 @@ fn shares_of_kept(strut: &TwoStageStrut, believed: &StrutModel) -> Vec<Share> {
         .collect()
 }
 
-/// What was read less what the believed model makes of it with oil counted at a density. Two models are fitted first:
+/// What was read less what the believed model makes of it with oil that is lost and that is kept. What looks like oil that is lost is fitted first:
 ///
-/// - One with rigid oil, which counts alike at either density: oil that yields is added to it.
-/// - One in the middle of a drive. Gas that was warm at the first sample cools, and its pressure falls as if oil were lost.
-fn residuals(strut: &TwoStageStrut, believed: &StrutModel, count: OilCount) -> Option<Vec<Series>> {
-    let counting = counting_at(count, believed.clone());
+/// - The beginning in the middle of a drive. Gas that was warm at the first sample cools, and its pressure falls.
+/// - Heat of the gas that the file leaves out, where the drives show it: the mean pressure moves for as long as the gas takes to be as warm as the road makes it.
+///
+/// Rigid oil counts alike at either density, so that oil that yields is added to it.
+fn residuals(strut: &TwoStageStrut, believed: &StrutModel) -> Option<[Vec<Series>; 2]> {
     let is_rigid = counted_at(believed).is_none();
-    if !is_rigid && !strut.begins_in_motion() {
-        return strut.residuals_of(&counting);
+    let yields = is_rigid.then_some(EffectId::OilCompressibility);
+    let warms = (believed.effects.gas_heat_transfer.is_none()).then_some(EffectId::GasHeatTransfer);
+    if yields.is_none() && warms.is_none() && !strut.begins_in_motion() {
+        return both(|count| strut.residuals_of(&counting_at(count, believed.clone())));
     }
-    let mut strut = strut.believing(counting).ok()?;
+    let with = |added: Vec<EffectId>| {
+        let fitted = both(|count| fitted(strut, counting_at(count, believed.clone()), count, &added))?;
+        let cost = fitted.iter().map(|(cost, _)| cost).sum::<f64>();
+        Some((cost, fitted.map(|(_, residuals)| residuals)))
+    };
+    let as_believed = with(yields.into_iter().collect());
+    let with_heat = warms.and_then(|warms| with(yields.into_iter().chain([warms]).collect()));
+    let either = as_believed.into_iter().chain(with_heat);
+    either
+        .min_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, residuals)| residuals)
+}
+
+/// The same of oil that is lost and of oil that is kept.
+fn both<T>(of: impl Fn(OilCount) -> Option<T>) -> Option<[T; 2]> {
+    Some([of(OilCount::Chamber)?, of(OilCount::Static)?])
+}
+
+/// Cost and residuals of a model with these effects added, fitted.
+fn fitted(strut: &TwoStageStrut, model: StrutModel, count: OilCount, added: &[EffectId]) -> Option<(f64, Vec<Series>)> {
+    let mut strut = strut.believing(model).ok()?;
     strut.count_found_oil_at(count);
     let mut start = Point::nominal(&strut);
-    if is_rigid {
+    for id in added {
         let candidates = strut.candidates();
-        let yields = candidates.iter().position(|c| c.id == EffectId::OilCompressibility)?;
-        start = start.with_effect(&strut, yields, &[0.0]);
+        let effect = candidates.iter().position(|candidate| candidate.id == *id)?;
+        let values: Vec<f64> = (candidates[effect].parameters.iter())
+            .map(|parameter| if parameter.is_size { 0.0 } else { parameter.start })
+            .collect();
+        start = start.with_effect(&strut, effect, &values);
     }
     let never = AtomicBool::new(false);
     let problem = LeastSquares::new(&strut, &never);
     let fitted = fit(&problem, start, problem.criteria.fitting.quick).ok()?;
-    strut.residuals(&fitted.point.hypothesis(&strut))
+    let residuals = strut.residuals(&fitted.point.hypothesis(&strut))?;
+    Some((fitted.cost, residuals))
 }
 
 /// A strut whose oil, if it is compressible, is counted at a density.

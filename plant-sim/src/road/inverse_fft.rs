@@ -14,7 +14,7 @@ pub fn inverse_fft(values: &mut [Complex<f64>]) {
     if count < 2 {
         return;
     }
-    debug_assert!(count.is_power_of_two());
+    assert!(count.is_power_of_two(), "the number of values is a power of two");
     let unused_bits = count.leading_zeros() + 1;
     for k in 0..count {
         let mirrored = k.reverse_bits() >> unused_bits;

@@ -12,7 +12,7 @@
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
-use argmin::core::{CostFunction, Executor, State as _};
+use argmin::core::{CostFunction, Executor};
 use argmin::solver::neldermead::NelderMead;
 use oleo_interface::Axles;
 
@@ -251,22 +251,17 @@ pub fn optimise(
         simplex.push(corner);
     }
     let solver = NelderMead::new(simplex).with_sd_tolerance(2e-3);
-    let end = solver.and_then(|solver| {
+    // A failed run is kept beside the path. Without one the solver has nothing to complain of, and its best is the best of the path either way.
+    drop(solver.and_then(|solver| {
         Executor::new(&search, solver)
             .configure(|state| state.max_iters(objective.iterations))
             .timer(false)
             .run()
-    });
-    let memory = &search.memory;
-    if let Some(failure) = memory.borrow_mut().failure.take() {
+    }));
+    let mut memory = search.memory.into_inner();
+    if let Some(failure) = memory.failure.take() {
         return Err(failure);
     }
-    // Without a failed run the solver has nothing to complain of; its best is the best of the path either way.
-    let iterations = end.map_or(0, |end: argmin::core::OptimizationResult<_, _, _>| {
-        end.state().get_iter()
-    });
-    debug_assert!(iterations <= objective.iterations);
-    let memory = search.memory.into_inner();
     let best = memory.path.iter().fold(
         reference,
         |best, visit| if visit.objective < best.objective { *visit } else { best },

@@ -18,7 +18,7 @@ export PYTHONPATH=$PYTHON_PACKAGES
 
 wheels=$(mktemp -d)
 # In the dev profile, which builds in half the time: its figures are to be those of the command line, which is built for release.
-check "wheel builds" "$maturin" build --locked --quiet --manifest-path python/Cargo.toml --out "$wheels" || exit 0
+CARGO=$PWD/tests/harness/cargo-of-workspace.sh check "wheel builds" "$maturin" build --locked --quiet --manifest-path python/Cargo.toml --out "$wheels" || exit 0
 check "wheel installs" python3 -m pip install --no-deps --target "$wheels/site" "$wheels"/oleo-*.whl || exit 0
 PYTHONPATH=$wheels/site:$PYTHONPATH
 check "release build" cargo build "${FEATURES[@]}" --locked --quiet --release || exit 0

@@ -202,6 +202,36 @@ fn a_missing_column_or_another_unit() {
     refused(&time, &["a.csv, line 1", "'time_ms'", "'time_s' is expected"]);
 }
 
+/// A recording with the numbers of a column multiplied, and its title as it was.
+fn scaled(csv: &str, column: &str, factor: f64) -> String {
+    let titles = csv.lines().next().expect("a header");
+    let at = titles.split(',').position(|title| title == column).expect("the column");
+    let mut out = format!("{titles}\n");
+    for line in csv.lines().skip(1) {
+        let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+        cells[at] = (factor * cells[at].parse::<f64>().expect("a number")).to_string();
+        out += &(cells.join(",") + "\n");
+    }
+    out
+}
+
+#[test]
+fn numbers_in_another_unit_below_the_right_title() {
+    let (model, csv) = strut(0.03, [true, true, true]);
+    let with = |column: &str, factor: f64| Campaign::new(&model, &[("a.csv", &scaled(&csv, column, factor))]);
+    refused(
+        &with("displacement_m", 1e3),
+        &["a.csv: displacement_m goes over 5", "write it in m"],
+    );
+    refused(&with("time_s", 1e3), &["a.csv: time_s goes on by 10", "milliseconds"]);
+    refused(&with("force_N", 1e-3), &["recording a: force_N", "if it is in kN"]);
+    refused(&with("p1_Pa", 1e-5), &["recording a: p1_Pa", "if it is in bar"]);
+    refused(
+        &with("p4_Pa", 1.0 / 6894.757),
+        &["recording a: p4_Pa", "if it is in psi"],
+    );
+}
+
 #[test]
 fn time_that_goes_back_or_stands_still() {
     let good = spring(500, 0.02, 0.5);

@@ -324,6 +324,13 @@ fn what_cannot_be_used_is_refused_in_one_line() {
         text.contains("a.log") && text.contains("2 frames with other identifiers"),
         "{text}"
     );
+    let twice = refused(&[
+        path(&folder.path().join("a.log")),
+        path(&folder.path().join("./a.log")),
+        "--vehicle",
+        path(&folder.path().join("model.toml")),
+    ]);
+    assert!(twice.contains("is given twice"), "{twice}");
     write("model.toml", &vehicle("../strut.toml"));
     assert!(refused(&[path(folder.path())]).contains("front_left"));
     let log = folder.path().join("a.log");

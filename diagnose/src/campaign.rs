@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::error::DiagnoseError;
 use crate::recording::{ColumnSpec, GapPolicy, MIN_SAMPLES, NamedColumn, Recording, of_table, read, read_by};
 use crate::specimen::{ModelFile, Specimen};
+use crate::units;
 
 /// A campaign, ready to be diagnosed.
 pub struct Campaign {
@@ -194,6 +195,7 @@ impl Campaign {
 
     fn of(file: ModelFile, recordings: Vec<Recording>, mut notes: Vec<String>) -> Result<Self, DiagnoseError> {
         let specimen = file.model.with_recordings(recordings)?;
+        units::check(&*specimen)?;
         notes.extend(specimen.remarks());
         Ok(Self {
             name: file.name,

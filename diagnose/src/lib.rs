@@ -77,6 +77,7 @@ pub mod recording;
 pub mod search;
 pub mod selftest;
 pub mod specimen;
+mod units;
 pub mod vehicle;
 pub mod vocabulary;
 pub mod whiteness;

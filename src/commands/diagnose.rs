@@ -141,6 +141,12 @@ impl Args {
     /// The logs of a vehicle, if one is to be diagnosed.
     fn logs(&self, first: &Path) -> Result<Option<vehicle::Logs>, Failure> {
         if let Some(model) = &self.vehicle {
+            if let Some(twice) = given_twice(&self.campaign) {
+                return Err(Failure::new(format!(
+                    "{}: is given twice, and what it holds would count twice; give each log once",
+                    twice.display()
+                )));
+            }
             return Ok(Some(vehicle::Logs {
                 model: model.clone(),
                 logs: self.campaign.clone(),
@@ -172,6 +178,13 @@ impl Args {
         }
         Ok(logs)
     }
+}
+
+/// The first of some files that is there under an earlier name, or the same one.
+fn given_twice(files: &[PathBuf]) -> Option<&PathBuf> {
+    let places: Vec<Option<PathBuf>> = files.iter().map(|file| file.canonicalize().ok()).collect();
+    let is_before = |k: &usize| places[*k].is_some() && places[..*k].contains(&places[*k]);
+    (0..files.len()).find(is_before).map(|k| &files[k])
 }
 
 /// The models and recordings of a campaign, by name.

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use oleo_plant_sim::rig::implausible;
+
 use super::columns::{ColumnKind, ColumnSpec, GapPolicy};
 use super::series::Recording;
 use super::thinning::{Room, Thinner};
@@ -56,7 +58,12 @@ impl<'s> Rows<'s> {
 
     /// The recording. `path` names it in errors.
     pub fn finish(self, name: String, path: &Path, gaps: GapPolicy) -> Result<Recording, DiagnoseError> {
+        let displacement = self.specs.iter().position(|spec| spec.name == "displacement_m");
         let mut recording = self.thinner.finish(name);
+        let displacement_m = displacement.map(|at| recording.columns[at].as_slice());
+        if let Some(what) = implausible(&recording.time_s, displacement_m) {
+            return Err(DiagnoseError::file(path, what));
+        }
         if gaps == GapPolicy::Cut {
             cut_at_gap(&mut recording);
         }

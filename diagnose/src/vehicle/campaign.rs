@@ -18,6 +18,7 @@ use crate::instrument::Flaw;
 use crate::recording::Recording;
 use crate::specimen::Specimen;
 use crate::specimen::strut::TwoStageStrut;
+use crate::units;
 
 /// A rounded reading is off by at most half a step, and its error is even within: variance step^2 / 12.
 const VARIANCE_OF_ROUNDING: f64 = 1.0 / 12.0;
@@ -100,6 +101,9 @@ impl VehicleCampaign {
         } else {
             (at_once, recordings)
         };
+        for (corner, strut) in as_believed.iter() {
+            units::check(strut).map_err(|e| DiagnoseError::Model(format!("{} strut, {e}", corner.name())))?;
+        }
         let counted_at = oil_count::shown_by(&as_believed, &struts);
         let counting = oil_count::with_oil_counted_at(counted_at, &struts);
         if counting != struts {

@@ -158,15 +158,20 @@ impl Drives {
 fn nothing_of_ours(account: &LogAccount) -> String {
     let plural = |n: u64, one: &str, several: &str| format!("{n} {}", if n == 1 { one } else { several });
     let received = account.total(|m| m.received);
+    let advice = if received == 0 {
+        "; log the bus of the suspension (controller/oleo.dbc) for at least a second, or name the database of the log with --dbc and \
+         --signals"
+    } else {
+        ", of which no six displacements in a row are in sequence; log the displacements too, and keep the frames in the order in which \
+         they came"
+    };
     format!(
         "holds no drive: {}, of which {} unreadable; {} with other identifiers, {} of the suspension's database with a wrong check \
-         value, {} with a right one; log the bus of the suspension (controller/oleo.dbc) for at least a second, or name the database of \
-         the log with --dbc and --signals",
+         value, {received} with a right one{advice}",
         plural(account.log.entries, "entry", "entries"),
         plural(account.log.unreadable, "is", "are"),
         plural(account.foreign_frames, "frame", "frames"),
         account.total(|m| m.corrupted),
-        received,
     )
 }
 

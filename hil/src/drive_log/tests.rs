@@ -232,6 +232,10 @@ fn a_log_without_a_drive_is_refused_in_one_line() {
     );
     assert!(!error.contains('\n'));
     assert!(parse(b"").expect_err("empty").contains("0 entries"));
+    let mut backwards = drive(0, 200, 0);
+    backwards.reverse();
+    let error = parse(&written(&backwards)).expect_err("no drive");
+    assert!(error.contains("keep the frames in the order"), "{error}");
 }
 
 /// Reads the lines one by one. Returns the number of samples, and the most frames and samples that were held at once.

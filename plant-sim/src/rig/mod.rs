@@ -20,6 +20,7 @@ mod generations;
 mod isothermal;
 mod limits;
 mod parabola;
+mod plausible;
 mod programme;
 mod recording;
 mod spring;
@@ -33,8 +34,9 @@ pub use generations::{FirstGenerationRun, demonstration, run_first_generation, s
 pub use isothermal::{Isothermal, Oil};
 pub use limits::{Limit, check_limits};
 pub use parabola::Parabola;
+pub use plausible::implausible;
 pub use programme::{Programme, Record, play};
 pub use recording::{Columns, RecordedStrut, RecordingError, other_separator, wrong_separator};
 pub use spring::{SpringCharacteristic, SpringTest, side_loaded, test_spring};
-pub use units::unit_size;
+pub use units::{other_units, unit_size};
 pub use valve_response::{ValveResponse, measure_valve_response, measure_valve_responses};

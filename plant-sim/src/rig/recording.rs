@@ -4,6 +4,7 @@ use std::io::Read;
 
 use oleo_interface::StrutValves;
 
+use super::plausible::implausible;
 use crate::strut::Inputs;
 
 /// What separates the columns of a header that is a single field: programs of many countries write semicolons, since their
@@ -74,6 +75,14 @@ pub enum RecordingError {
         /// What the reader says.
         reason: String,
     },
+    /// Times or displacements are in another unit.
+    #[error("{file}: {what}")]
+    Implausible {
+        /// Path of the recording.
+        file: String,
+        /// What is wrong and what to do.
+        what: String,
+    },
     /// The recording is too short.
     #[error("{file}: the recording has {samples} samples; a replay needs two or more")]
     Short {
@@ -100,7 +109,7 @@ impl Columns {
     ///
     /// # Errors
     /// A missing column, text that is no finite number, a signal that is neither 0 nor 1, time that does not increase, fewer
-    /// than two samples.
+    /// than two samples, times in milliseconds or displacements in millimetres.
     pub fn read(source: impl Read, file: &str, needed: &[&str], welcome: &[&str]) -> Result<Self, RecordingError> {
         let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(source);
         let csv_error = |error: csv::Error| RecordingError::Csv {
@@ -150,7 +159,7 @@ impl Columns {
                 column.push(value);
             }
         }
-        Self::long_enough(file, names, values)
+        Self::checked(file, names, values)
     }
 
     /// As [`Self::read`], from the names and values of columns in memory. `recording` names it in errors.
@@ -194,17 +203,25 @@ impl Columns {
                 "{name} has {} values and time_s {samples}; give columns of one length",
                 column.len()
             ))),
-            None => Self::long_enough(recording, names, values),
+            None => Self::checked(recording, names, values),
         }
     }
 
-    fn long_enough(file: &str, names: Vec<String>, values: Vec<Vec<f64>>) -> Result<Self, RecordingError> {
-        match values[0].len() {
-            samples @ 0..2 => Err(RecordingError::Short {
+    fn checked(file: &str, names: Vec<String>, values: Vec<Vec<f64>>) -> Result<Self, RecordingError> {
+        let samples = values[0].len();
+        if samples < 2 {
+            return Err(RecordingError::Short {
                 file: file.to_owned(),
                 samples,
+            });
+        }
+        let columns = Self { names, values };
+        match implausible(columns.time_s(), columns.column("displacement_m")) {
+            Some(what) => Err(RecordingError::Implausible {
+                file: file.to_owned(),
+                what,
             }),
-            _ => Ok(Self { names, values }),
+            None => Ok(columns),
         }
     }
 

@@ -17,6 +17,18 @@ const UNITS: [(&str, &[(&str, f64)]); 4] = [
     ),
 ];
 
+/// The units of a name's quantity besides its own, with the size of each in that; none of a name without a unit.
+///
+/// ```
+/// let of_pressures: Vec<(&str, f64)> = oleo_plant_sim::rig::other_units("p1_Pa").collect();
+/// assert!(of_pressures.contains(&("bar", 1e5)) && !of_pressures.contains(&("Pa", 1.0)));
+/// ```
+pub fn other_units(name: &str) -> impl Iterator<Item = (&'static str, f64)> {
+    let of_quantity = UNITS.iter().find(|(end, _)| name.ends_with(end));
+    let units = of_quantity.map_or(&[][..], |(_, units)| units);
+    units.iter().copied().filter(|&(_, size)| size != 1.0)
+}
+
 /// The size of a unit in that of our name, such as 0.001 for `mm` of `displacement_m`.
 ///
 /// ```

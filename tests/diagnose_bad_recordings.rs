@@ -221,7 +221,7 @@ fn numbers_in_another_unit_below_the_right_title() {
     let with = |column: &str, factor: f64| Campaign::new(&model, &[("a.csv", &scaled(&csv, column, factor))]);
     refused(
         &with("displacement_m", 1e3),
-        &["a.csv: displacement_m goes over 5", "write it in m"],
+        &["a.csv: displacement_m goes over 5", "give it in m"],
     );
     refused(&with("time_s", 1e3), &["a.csv: time_s goes on by 10", "milliseconds"]);
     refused(&with("force_N", 1e-3), &["recording a: force_N", "if it is in kN"]);

@@ -346,6 +346,16 @@ def diagnosed(log, *options):
     return json.loads(re.sub(rf"\b{log.split('.')[0]}\b", "LOG", json.dumps(report)))
 
 
+def units_mistaken():
+    """A map that takes a signal for one in another unit is refused in one line."""
+    for right, wrong, told in [("zero = 1.01325", 'zero = 1.01325, unit = "Pa"', "in bar"), ("zero = 312.0", 'zero = 312.0, unit = "m"', "in mm")]:
+        (FOLDER / "mistaken.toml").write_text((FOLDER / "car.toml").read_text().replace(right, wrong))
+        command = [OLEO, "diagnose", "car.mf4", "--vehicle", "model.toml", "--dbc", "car.dbc", "--signals", "mistaken.toml", "--no-out"]
+        run = subprocess.run(command, cwd=FOLDER, capture_output=True, text=True, check=False)
+        good = run.returncode == 2 and told in run.stderr and "front-left strut" in run.stderr and run.stderr.count("\n") == 1
+        check(f"units mistaken: {wrong}", good, run.stderr.strip())
+
+
 def diagnoses():
     """Every format gives the same diagnosis, number for number, and that in another database the same effect."""
     expected = diagnosed("drive.log")
@@ -371,6 +381,7 @@ written_mf4(logged)
 columns_for_data_frames()
 own_database_by_map(drive_columns)
 another_database(drive_columns)
+units_mistaken()
 if "--no-diagnosis" not in sys.argv:
     diagnoses()
 print(f"{passed} passed, {failed} failed")

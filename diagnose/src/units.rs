@@ -6,6 +6,7 @@
 use std::ops::RangeInclusive;
 
 use oleo_plant_sim::rig::other_units;
+use rayon::prelude::*;
 
 use crate::error::DiagnoseError;
 use crate::estimation::Point;
@@ -25,24 +26,24 @@ const ABOUT: RangeInclusive<f64> = 0.67..=1.5;
 /// The recording, the column, and what to do.
 pub fn check(specimen: &dyn Specimen) -> Result<(), DiagnoseError> {
     let believed = Point::nominal(specimen).hypothesis(specimen);
-    for (at, recording) in specimen.recordings().iter().enumerate() {
+    let in_other_unit = |at: usize| {
         // What cannot be simulated says so itself, and later.
-        let Ok(truth) = specimen.simulate(&believed, at) else {
-            continue;
-        };
-        for (c, channel) in specimen.channels().iter().enumerate() {
+        let truth = specimen.simulate(&believed, at).ok()?;
+        (specimen.channels().iter().enumerate()).find_map(|(c, channel)| {
             let name = channel.column.as_str();
-            let Some(unit) = other_unit(name, specimen.measured(at, c), &truth[c]) else {
-                continue;
-            };
+            let unit = other_unit(name, specimen.measured(at, c), &truth[c])?;
             let own = name.rsplit_once('_').map_or("", |(_, own)| own);
-            let what = format!(
-                "{name} is what the given model predicts if it is in {unit}; write it in {own}, or correct the model"
-            );
-            return Err(DiagnoseError::Model(format!("recording {}: {what}", recording.name)));
-        }
-    }
-    Ok(())
+            Some(format!(
+                "recording {}: {name} is what the given model predicts if it is in {unit}; give it in {own}, state its unit in a map, or correct the \
+                 model",
+                specimen.recordings()[at].name
+            ))
+        })
+    };
+    let found = (0..specimen.recordings().len())
+        .into_par_iter()
+        .find_map_first(in_other_unit);
+    found.map_or(Ok(()), |what| Err(DiagnoseError::Model(what)))
 }
 
 /// The unit in which readings of a column are what a model predicts.

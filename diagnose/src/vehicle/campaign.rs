@@ -2,6 +2,7 @@
 
 use oleo_interface::tick::TICK_S;
 use oleo_interface::{Corner, Corners};
+use oleo_plant_sim::rig::implausible;
 use oleo_plant_sim::strut::StrutModel;
 use oleo_report::significant;
 
@@ -22,6 +23,9 @@ use crate::units;
 
 /// A rounded reading is off by at most half a step, and its error is even within: variance step^2 / 12.
 const VARIANCE_OF_ROUNDING: f64 = 1.0 / 12.0;
+
+/// Column of the displacement in the recording of a strut.
+const DISPLACEMENT: usize = 0;
 
 /// What is cut off the beginning of a drive is said where it is longer than this, s.
 const NOTED_S: f64 = 0.5;
@@ -85,6 +89,7 @@ impl VehicleCampaign {
             }
         }
         let at_once = specimens(&struts, &recordings, resolution, at_rest)?;
+        check_units(&at_once)?;
         let commanded_later = (recordings.clone()).map(|all| all.into_iter().map(a_sample_later).collect());
         let a_tick_later = specimens(&struts, &commanded_later, resolution, at_rest)?;
         let period_s = drives.first().map_or(TICK_S, |drive| drive.period_s);
@@ -101,9 +106,6 @@ impl VehicleCampaign {
         } else {
             (at_once, recordings)
         };
-        for (corner, strut) in as_believed.iter() {
-            units::check(strut).map_err(|e| DiagnoseError::Model(format!("{} strut, {e}", corner.name())))?;
-        }
         let counted_at = oil_count::shown_by(&as_believed, &struts);
         let counting = oil_count::with_oil_counted_at(counted_at, &struts);
         if counting != struts {
@@ -147,6 +149,23 @@ impl VehicleCampaign {
             .chain(body)
             .collect()
     }
+}
+
+/// Refuses a log whose database or map of signals takes a quantity for one in another unit.
+fn check_units(struts: &Corners<TwoStageStrut>) -> Result<(), DiagnoseError> {
+    for (corner, strut) in struts.iter() {
+        let at_corner = |what: String| DiagnoseError::Model(format!("{} strut, {what}", corner.name()));
+        for Recording {
+            name, time_s, columns, ..
+        } in strut.recordings()
+        {
+            if let Some(what) = implausible(time_s, Some(&columns[DISPLACEMENT])) {
+                return Err(at_corner(format!("recording {name}: {what}")));
+            }
+        }
+        units::check(strut).map_err(|error| at_corner(error.to_string()))?;
+    }
+    Ok(())
 }
 
 fn specimens(

@@ -1,6 +1,6 @@
 //! Times and displacements that no recording has: numbers in another unit below a right title.
 
-/// No strut, damper or cylinder on a rig moves so far, m.
+/// No strut, damper or cylinder moves so far, m.
 const LONGEST_STROKE_M: f64 = 3.0;
 /// Parts of a displacement that are left out at either end: a spike of an instrument is no stroke.
 const LEFT_OUT: f64 = 0.05;
@@ -25,13 +25,13 @@ pub fn implausible(time_s: &[f64], displacement_m: Option<&[f64]>) -> Option<Str
     let interval_s = lasts_s / (time_s.len() as f64 - 1.0).max(1.0);
     if interval_s >= SLOWEST_S && lasts_s >= LONGEST_S {
         return Some(format!(
-            "time_s goes on by {interval_s:.3} from sample to sample and by {lasts_s:.0} in all, as it does in milliseconds; write it in s, or cut \
+            "time_s goes on by {interval_s:.3} from sample to sample and by {lasts_s:.0} in all, as it does in milliseconds; give it in s, or cut \
              the recording to less than an hour if it was sampled so slowly"
         ));
     }
     let stroke_m = displacement_m.map_or(0.0, stroke);
     (stroke_m > LONGEST_STROKE_M).then(|| {
-        format!("displacement_m goes over {stroke_m:.3}, farther than anything on a rig moves in m, as it does in mm; write it in m")
+        format!("displacement_m goes over {stroke_m:.3}, farther than any specimen moves in m, as it does in mm; give it in m, or state its unit in a map")
     })
 }
 

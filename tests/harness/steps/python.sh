@@ -17,8 +17,10 @@ fi
 export PYTHONPATH=$PYTHON_PACKAGES
 
 wheels=$(mktemp -d)
-# In the dev profile, which builds in half the time: its figures are to be those of the command line, which is built for release.
+# The wheel for tests is made of what the tests have built, in the dev profile. Alone, as users build it, the package asks for fewer features of the
+# libraries; that it compiles with these is another check, because building all of them once more takes minutes.
 CARGO=$PWD/tests/harness/cargo-of-workspace.sh check "wheel builds" "$maturin" build --locked --quiet --manifest-path python/Cargo.toml --out "$wheels" || exit 0
+check "the package compiles by itself" cargo check --locked --quiet --manifest-path python/Cargo.toml
 check "wheel installs" python3 -m pip install --no-deps --target "$wheels/site" "$wheels"/oleo-*.whl || exit 0
 PYTHONPATH=$wheels/site:$PYTHONPATH
 check "release build" cargo build "${FEATURES[@]}" --locked --quiet --release || exit 0
